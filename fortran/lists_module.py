@@ -17,13 +17,11 @@ found = 0
 for name, body in re.findall(r"^#define EXTRADOS_(\w+)_LIST\(ENTRY\) \\\n((?:.*\\\n)*.*\n)", text, re.M):
     entries = re.findall(r'ENTRY\((\d+), (\w+), "([^"]*)"\)', body)
     if not entries or len(entries) != body.count("ENTRY("):
-        sys.exit(f"{header}: {name} holds a line that is not an ENTRY(number, name, \"word\")")
+        sys.exit(f'{header}: {name} holds a line that is not an ENTRY(number, name, "word")')
     if len({code for code, *_ in entries}) != len(entries):
         sys.exit(f"{header}: {name} gives a number twice")
     found += len(entries)
-    lines += [
-        f"   integer(c_int), parameter :: {name.lower()}_{entry} = {code}_c_int  !! {word}" for code, entry, word in entries
-    ]
+    lines += [f"   integer(c_int), parameter :: {name.lower()}_{entry} = {code}_c_int  !! {word}" for code, entry, word in entries]
     lines += [f"   integer, parameter :: {name.lower()}_count = {len(entries)}"]
 if not found:
     sys.exit(f"{header}: no list found")

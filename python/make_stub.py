@@ -55,10 +55,7 @@ def constructor(name: str, table: Any) -> str:
     keys = {key: field for key, field in table.model_fields.items() if key != "kind"}
     kinds = {key: written(field.annotation, mark_of(table, key) is not None) for key, field in keys.items()}
     given = [f"{key}: {kinds[key]}{'' if field.is_required() else ' = ...'}" for key, field in keys.items()]
-    lines = [
-        f"class {name}:",
-        f"    def __init__(self{', *' if given else ''}{''.join(f', {one}' for one in given)}) -> None: ...",
-    ]
+    lines = [f"class {name}:", f"    def __init__(self{', *' if given else ''}{''.join(f', {one}' for one in given)}) -> None: ..."]
     return "\n".join([*lines, *(f"    {key}: Any" for key in keys)])
 
 

@@ -8,8 +8,27 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 #: Files of the program and its tests
-PARTS = ("c", "fortran", "python", "tests", "cases", "docs", "tools", "meson.build", "meson.options", "pyproject.toml",
-         "Makefile", "Containerfile", ".github", ".ci", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE")  # fmt: skip
+PARTS = (
+    "c",
+    "fortran",
+    "python",
+    "tests",
+    "cases",
+    "docs",
+    "tools",
+    "meson.build",
+    "meson.options",
+    "pyproject.toml",
+    "Makefile",
+    "Containerfile",
+    ".github",
+    ".ci",
+    "README.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "CITATION.cff",
+    "LICENSE",
+)
 
 
 def copy(place: Path) -> None:
@@ -44,9 +63,8 @@ def build(place: Path, *options: str) -> None:
         run = [str(meson), "setup", str(folder), str(place), "-Dwerror=false", *options]
         subprocess.run(run, check=True, env=environment, stdout=subprocess.DEVNULL)
     subprocess.run(
-        [str(meson), "compile", "-C", str(folder)], check=True, env=environment,
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )  # fmt: skip
+        [str(meson), "compile", "-C", str(folder)], check=True, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
     package = place / "python" / "extrados"
     for made in (*(folder / "python").glob("_core*.so"), folder / "python" / "_build_info.py"):
         shutil.copy2(made, package / made.name)
@@ -59,11 +77,7 @@ def python(place: Path) -> str:
         subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
     (packages,) = folder.glob("lib/python*/site-packages")
     # Named as mere folders, those of this environment do not bring their own program with them
-    others = [
-        p
-        for p in map(Path, sys.path)
-        if p.is_dir() and not (p.is_relative_to(ROOT) and not p.is_relative_to(sys.prefix))
-    ]
+    others = [p for p in map(Path, sys.path) if p.is_dir() and not (p.is_relative_to(ROOT) and not p.is_relative_to(sys.prefix))]
     text = "\n".join(map(str, [place / "python", *others]))
     (packages / "apart.pth").write_text(text, encoding="utf-8")
     return str(folder / "bin" / "python")

@@ -33,9 +33,7 @@ TIMES = ("seconds", "seconds_per_event", "sections_per_second")
 
 def decks(parts: list[str]) -> list[str]:
     """Names of the decks that contain one of the parts, or of all decks if no part is given."""
-    names = sorted(
-        str(p.relative_to(CASES).with_suffix("")) for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml")
-    )
+    names = sorted(str(p.relative_to(CASES).with_suffix("")) for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml"))
     return [n for n in names if not parts or any(part in n for part in parts)]
 
 
@@ -50,8 +48,19 @@ def run(folder: Path, parts: list[str], processes: int, limit: float) -> None:
         if (out / "summary.json").exists():
             return
         start = time.monotonic()
-        command = [sys.executable, "-m", "extrados", "run", str(CASES / f"{name}.toml"), "--out", str(out),
-                   "--no-figures", "--quiet", "--threads", "1"]  # fmt: skip
+        command = [
+            sys.executable,
+            "-m",
+            "extrados",
+            "run",
+            str(CASES / f"{name}.toml"),
+            "--out",
+            str(out),
+            "--no-figures",
+            "--quiet",
+            "--threads",
+            "1",
+        ]
         try:
             code = str(subprocess.run(command, timeout=limit, capture_output=True, env=one_thread).returncode)
         except subprocess.TimeoutExpired:
@@ -84,11 +93,7 @@ def values(folder: Path) -> dict[str, Any]:
     if arrays.exists():
         with h5py.File(arrays) as file:
             file.visititems(
-                lambda name, item: (
-                    found.__setitem__(f"results.h5:{name}", np.asarray(item[()]))
-                    if isinstance(item, h5py.Dataset)
-                    else None
-                )
+                lambda name, item: found.__setitem__(f"results.h5:{name}", np.asarray(item[()])) if isinstance(item, h5py.Dataset) else None
             )
     return found
 

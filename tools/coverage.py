@@ -55,10 +55,7 @@ def of_core(folder: str) -> dict[str, tuple[int, int]]:
     for notes in sorted((ROOM / "build" / folder).rglob("*.gcno")):
         ran = notes.with_suffix(".gcda")
         told = subprocess.run(
-            ["gcov", "--json-format", "--stdout", ran if ran.exists() else notes],
-            cwd=ROOM / "build",
-            capture_output=True,
-            text=True,
+            ["gcov", "--json-format", "--stdout", ran if ran.exists() else notes], cwd=ROOM / "build", capture_output=True, text=True
         )
         for file in (file for line in told.stdout.splitlines() for file in json.loads(line)["files"]):
             path = (ROOM / "build" / file["file"]).resolve()
@@ -85,9 +82,7 @@ def noted(page: str, shares: dict[str, float], date: str) -> str:
     python, fortran, c = (f"{shares[language]:.1f}" for language in WANTED)
     made, count = NOTE.subn(f"At the last whole run ({date}) they were {python}, {fortran} and {c} %", page)
     if count != 1:
-        sys.exit(
-            "CONTRIBUTING.md has no place for the shares: expected 'At the last whole run (DATE) they were A, B and C %'"
-        )
+        sys.exit("CONTRIBUTING.md has no place for the shares: expected 'At the last whole run (DATE) they were A, B and C %'")
     return made
 
 
@@ -95,22 +90,14 @@ def main() -> int:
     extras.install("coverage")
     apart.copy(ROOM)
     # -O1: the optimiser would merge lines; the counters must be exact where threads count too
-    apart.build(
-        ROOM,
-        "-Db_coverage=true",
-        "-Doptimization=1",
-        "-Dc_args=-fprofile-update=atomic",
-        "-Dfortran_args=-fprofile-update=atomic",
-    )
+    apart.build(ROOM, "-Db_coverage=true", "-Doptimization=1", "-Dc_args=-fprofile-update=atomic", "-Dfortran_args=-fprofile-update=atomic")
     run(sys.argv[1:])
     found = {"Python": of_python(), "Fortran": of_core("fortran"), "C": of_core("c")}
     shares = {language: tell(language, files) for language, files in found.items()}
     print(f"Lines: {HTML}")
     if not sys.argv[1:]:
         page = apart.ROOT / "CONTRIBUTING.md"
-        page.write_text(
-            noted(page.read_text(encoding="utf-8"), shares, datetime.date.today().isoformat()), encoding="utf-8"
-        )
+        page.write_text(noted(page.read_text(encoding="utf-8"), shares, datetime.date.today().isoformat()), encoding="utf-8")
     return 0 if sys.argv[1:] else int(any(shares[language] < wanted for language, wanted in WANTED.items()))
 
 

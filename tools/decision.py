@@ -30,25 +30,15 @@ TREE: dict[str, list[Case]] = {
         Case("blocks that slide or collapse one by one", ("dem", "dem-domain", "dem-parameters"), "dem"),
         Case("repeated or harmonic shaking", ("harmonic-map", "resonance"), "rocking"),
     ],
-    "How probable is collapse?": [
-        Case("many motions, fragility, annual rate", ("fragility",), "rocking-statistics"),
-    ],
+    "How probable is collapse?": [Case("many motions, fragility, annual rate", ("fragility",), "rocking-statistics")],
     "Where does it crack, and what load does it carry?": [
         Case("one wall in its plane", ("sla",), "sla"),
         Case("building of walls and floors, vault, dome", ("pushover",), "buildings"),
     ],
-    "Does it comply with a code?": [
-        Case("facade, gable, parapet, block, pier", ("local-mechanism", "code-checks"), "codes"),
-    ],
-    "What is the least strengthening?": [
-        Case("tie, buttress, thickness, injection, damper", ("strengthen",), "strengthening"),
-    ],
-    "How strong is this motion?": [
-        Case("record, spectrum, shake table", ("motion", "shake-table"), "motion"),
-    ],
-    "One conclusion from all of these?": [
-        Case("one building, or a ranking of many", ("assess",), "assess"),
-    ],
+    "Does it comply with a code?": [Case("facade, gable, parapet, block, pier", ("local-mechanism", "code-checks"), "codes")],
+    "What is the least strengthening?": [Case("tie, buttress, thickness, injection, damper", ("strengthen",), "strengthening")],
+    "How strong is this motion?": [Case("record, spectrum, shake table", ("motion", "shake-table"), "motion")],
+    "One conclusion from all of these?": [Case("one building, or a ranking of many", ("assess",), "assess")],
 }
 ROW, GAP, TOP, WIDTH = 34, 10, 42, 980
 #: Left edge and width of the columns: question, situation, analyses
@@ -89,9 +79,7 @@ def diagram() -> str:
         for k, case in enumerate(cases):
             top = y + k * (ROW + 4)
             at = top + ROW / 2
-            parts.append(
-                f'<path d="M{x0 + w0} {middle} C{x1 - 20} {middle} {x0 + w0 + 20} {at} {x1} {at}" class="way"/>'
-            )
+            parts.append(f'<path d="M{x0 + w0} {middle} C{x1 - 20} {middle} {x0 + w0 + 20} {at} {x1} {at}" class="way"/>')
             parts.append(f'<path d="M{x1 + w1} {at} H{x2}" class="way"/>')
             parts += [_box(x1, top, w1, ROW, "situation"), _text(x1 + 10, at + 5, case.situation)]
             parts.append(

@@ -33,9 +33,7 @@ def joints(rng: np.random.Generator, start: float, stop: float, count: int, spre
     return start + (stop - start) * np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
 
 
-def ring(
-    rng: np.random.Generator, centre: np.ndarray, inner: float, outer: float, half: float, count: int
-) -> list[Outline]:
+def ring(rng: np.random.Generator, centre: np.ndarray, inner: float, outer: float, half: float, count: int) -> list[Outline]:
     """Voussoirs of an arch from left to right."""
     angle = joints(rng, np.pi / 2 + np.radians(half), np.pi / 2 - np.radians(half), count)
     toward = np.column_stack([np.cos(angle), np.sin(angle)])
@@ -43,9 +41,7 @@ def ring(
     return [np.array([low[k], low[k + 1], high[k + 1], high[k]]) for k in range(count)]
 
 
-def courses(
-    rng: np.random.Generator, x: tuple[float, float], y: tuple[float, float], count: int, halved: tuple[int, ...]
-) -> list[Outline]:
+def courses(rng: np.random.Generator, x: tuple[float, float], y: tuple[float, float], count: int, halved: tuple[int, ...]) -> list[Outline]:
     """Courses between two upright faces; those named in `halved` have a head joint."""
     level = joints(rng, *y, count)
     stones = []
@@ -101,10 +97,12 @@ def finely(outline: Outline) -> Outline:
 def warped(points: np.ndarray) -> np.ndarray:
     """Points of a building that has moved: a smooth displacement of up to 10 mm each way."""
     x, y = points.T
-    return points + WARP * np.column_stack([
-        0.6 * np.sin(0.9 * x + 0.7 * y + 0.4) + 0.4 * np.sin(1.7 * y - 0.5 * x),
-        0.6 * np.sin(1.1 * x - 0.6 * y + 1.3) + 0.4 * np.cos(0.8 * y + 1.3 * x),
-    ])  # fmt: skip
+    return points + WARP * np.column_stack(
+        [
+            0.6 * np.sin(0.9 * x + 0.7 * y + 0.4) + 0.4 * np.sin(1.7 * y - 0.5 * x),
+            0.6 * np.sin(1.1 * x - 0.6 * y + 1.3) + 0.4 * np.cos(0.8 * y + 1.3 * x),
+        ]
+    )
 
 
 def church() -> dict[str, list[Outline]]:
@@ -112,15 +110,11 @@ def church() -> dict[str, list[Outline]]:
     rng = np.random.default_rng(SEED)
     nave_in = NAVE["face"] / np.sin(np.radians(NAVE["half_angle"]))
     stones = {
-        "NAVE": ring(
-            rng, np.array([0.0, NAVE["centre"]]), nave_in, nave_in + NAVE["thickness"], NAVE["half_angle"], NAVE["voussoirs"]
-        )
-    }  # fmt: skip
+        "NAVE": ring(rng, np.array([0.0, NAVE["centre"]]), nave_in, nave_in + NAVE["thickness"], NAVE["half_angle"], NAVE["voussoirs"])
+    }
     for side, word in ((-1, "LEFT"), (1, "RIGHT")):
         pier, buttress, aisle = supports(rng, side)
-        vault = ring(
-            rng, aisle["centre"], aisle["inner"], aisle["inner"] + AISLE["thickness"], AISLE["half_angle"], AISLE["voussoirs"]
-        )  # fmt: skip
+        vault = ring(rng, aisle["centre"], aisle["inner"], aisle["inner"] + AISLE["thickness"], AISLE["half_angle"], AISLE["voussoirs"])
         turn = mirrored if side < 0 else list
         stones |= {f"{word} PIER": turn(pier), f"{word} BUTTRESS": turn(buttress), f"{word} AISLE": turn(vault)}
     return stones
@@ -142,28 +136,20 @@ def draw(path: Path) -> int:
     for layer, outlines in stones.items():
         if layer.endswith("AISLE"):
             turned = -1.0 if layer.startswith("LEFT") else 1.0
-            centre = np.array(
-                [
-                    turned * (NAVE["face"] + PIER + AISLE["half_span"]),
-                    AISLE["spring"] - AISLE["half_span"] / np.tan(half),
-                ]
-            )
+            centre = np.array([turned * (NAVE["face"] + PIER + AISLE["half_span"]), AISLE["spring"] - AISLE["half_span"] / np.tan(half)])
             for k, (a, b, c, d) in enumerate(outlines):
                 right_to_left = turned < 0.0
                 sides = [(a, b), (b, c), (d, a)] if not right_to_left else [(b, c), (c, d), (d, a)]
                 if k:  # the joint to the voussoir before is drawn already
                     sides.pop()
                 for one, two in sides:
-                    space.add_line(
-                        *(tuple(p) for p in measured(rng, np.array([one, two]))), dxfattribs={"layer": "AISLES"}
-                    )
+                    space.add_line(*(tuple(p) for p in measured(rng, np.array([one, two]))), dxfattribs={"layer": "AISLES"})
                 one, two = (c, d) if not right_to_left else (a, b)
                 ends = measured(rng, np.array([one, two])) - ORIGIN - centre
                 angle = np.degrees(np.arctan2(ends[:, 1], ends[:, 0]))
                 space.add_arc(
-                    tuple(centre + ORIGIN), float(np.hypot(*ends.T).mean()), angle.min(), angle.max(),
-                    dxfattribs={"layer": "AISLES"},
-                )  # fmt: skip
+                    tuple(centre + ORIGIN), float(np.hypot(*ends.T).mean()), angle.min(), angle.max(), dxfattribs={"layer": "AISLES"}
+                )
             continue
         target, shift, attributes = space, np.zeros(2), {"layer": "RUBBLE" if "BUTTRESS" in layer else "ASHLAR"}
         if layer == "LEFT BUTTRESS":  # drawn once as a block, at its own origin, and referred to

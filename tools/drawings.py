@@ -42,11 +42,7 @@ def program() -> str:
     """A hash of all that calculates and draws."""
     import extrados
 
-    there = [
-        *Path(extrados.__file__).parent.rglob("*.py"),
-        *(ROOT / "fortran").rglob("*.f90"),
-        *(ROOT / "c").rglob("*.[ch]"),
-    ]
+    there = [*Path(extrados.__file__).parent.rglob("*.py"), *(ROOT / "fortran").rglob("*.f90"), *(ROOT / "c").rglob("*.[ch]")]
     return hashlib.sha256(b"".join(file.read_bytes() for file in sorted(there))).hexdigest()
 
 
@@ -66,9 +62,7 @@ def draw(case: str, analysis: str, figure: str = "") -> Picture:
     deck = ROOT / "cases" / f"{case}.toml"
     beside = sorted(file for file in deck.parent.iterdir() if file.is_file() and file.suffix != ".toml")
     given = b"".join(file.read_bytes() for file in [deck, *beside])
-    key = hashlib.sha256(f"{program()} {hashlib.sha256(given).hexdigest()} {analysis} {figure}".encode()).hexdigest()[
-        :12
-    ]
+    key = hashlib.sha256(f"{program()} {hashlib.sha256(given).hexdigest()} {analysis} {figure}".encode()).hexdigest()[:12]
     name = f"{case.replace('/', '-')}-{figure or analysis}"
     file, facts = KEPT / f"{name}.png", KEPT / f"{name}-{key}.json"
     if file.exists() and facts.exists():

@@ -16,6 +16,4 @@ def install(extra: str) -> None:
         for line in asked:
             version(line.partition(">=")[0])
     except PackageNotFoundError:
-        subprocess.run(
-            [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", *asked], check=True
-        )
+        subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", *asked], check=True)

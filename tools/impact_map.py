@@ -60,15 +60,11 @@ def main() -> None:
         for ax, (rule, title) in zip(axes, TITLES.items(), strict=True):
             error = np.clip([row[rule] for row in rows], 0.0, 1.0) - blow
             bias, rms = float(error.mean()), float(np.sqrt((error**2).mean()))
-            print(
-                f"{rule}: bias {bias:+.3f}, root mean square {rms:.3f}, greatest {np.abs(error).max():.3f}, {len(rows)} arches"
-            )
+            print(f"{rule}: bias {bias:+.3f}, root mean square {rms:.3f}, greatest {np.abs(error).max():.3f}, {len(rows)} arches")
             c_v = np.array([[cell[rule] for cell in line] for line in maps])
             drawn = ax.contourf(FINE_EMBRACES, FINE_THICKNESSES, c_v, levels=levels, cmap="viridis", extend="both")
             ax.contour(FINE_EMBRACES, FINE_THICKNESSES, c_v, levels=[0.0, 1.0], colors="white", linewidths=1.2)
-            ax.scatter(
-                x, y, c=blow, cmap="viridis", vmin=0.0, vmax=1.0, edgecolors="white", s=55, linewidths=1.0, zorder=3
-            )
+            ax.scatter(x, y, c=blow, cmap="viridis", vmin=0.0, vmax=1.0, edgecolors="white", s=55, linewidths=1.0, zorder=3)
             ax.set_title(f"{title}: bias {bias:+.2f}, rms {rms:.2f}")
             ax.set_xlabel("embrace [deg]")
             ax.set_facecolor(style.STONE)

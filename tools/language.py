@@ -33,8 +33,12 @@ GLOSSARY = [
     Word(r"\b(?:give|gives|gave|given|giving) way\b|\bsoft bases?\b", "compliant base; settlement"),
     Word(r"\b(?:sink|sinks|sank|sunk|sinking)\b", "settlement"),
     Word(r"\bblows?\b", "impact"),
-    Word(r"\b(?:falls?|fell|fallen|falling)\b", "collapses, overturns; for a quantity: drops",
-         r"\bfree fall\b|\bfalling weight\b|\| Falls\b", "free fall is a motion of mechanics; Falls is a type"),
+    Word(
+        r"\b(?:falls?|fell|fallen|falling)\b",
+        "collapses, overturns; for a quantity: drops",
+        r"\bfree fall\b|\bfalling weight\b|\| Falls\b",
+        "free fall is a motion of mechanics; Falls is a type",
+    ),
     Word(r"\b(?:comes?|came|coming|takes?|br(?:ing|ings|ought)(?: \w+){0,5}) (?:it |them )?down\b", "collapses; causes collapse"),
     Word(r"\bstays? up\b", "stands, does not collapse"),
     Word(r"\bhold (?:it|them) from\b", "restrains"),
@@ -54,16 +58,30 @@ GLOSSARY = [
     Word(r"\b(?:asks?|asked|asking)\b", "requires, requested"),
     Word(r"\bknows?\b", "includes, has, recognises"),
     Word(r"\b(?:left|leaves?|leaving) out\b", "neglected, not considered"),
-    Word(r"\b(?:answer|answers|answered|answering)\b", "result; conclusion", r"\bno-answer\b|\bp\.answer\b", "a word of summary.json; a class of style sheets"),
-    Word(r"\brooms?\b", "module, package", r"\b(?:rooms? of (?:a|the) (?:building|house)|two rooms|rooms and|one room|two-rooms?)\b", "rooms of buildings"),
+    Word(
+        r"\b(?:answer|answers|answered|answering)\b",
+        "result; conclusion",
+        r"\bno-answer\b|\bp\.answer\b",
+        "a word of summary.json; a class of style sheets",
+    ),
+    Word(
+        r"\brooms?\b",
+        "module, package",
+        r"\b(?:rooms? of (?:a|the) (?:building|house)|two rooms|rooms and|one room|two-rooms?)\b",
+        "rooms of buildings",
+    ),
     Word(r"\blost at once\b|\bat once\b", "brittle; immediately, together"),
     Word(r"\bproofs?\b", "certificate", r"\bdamp-proof\b", "a layer of a wall"),
     Word(r"\b(?:for ever|the clock|goes? round|as it is|lets? be|takes? away|taken away|looks? at|looked at)\b", "no metaphor"),
-    Word(r"\bstands? (?:on|in|by|beside|for|at|over)\b", "is supported by, is in, is listed with",
-         r"\bcannot stand\b|\bmay stand by jamming\b", "words of an outcome and of a message"),
+    Word(
+        r"\bstands? (?:on|in|by|beside|for|at|over)\b",
+        "is supported by, is in, is listed with",
+        r"\bcannot stand\b|\bmay stand by jamming\b",
+        "words of an outcome and of a message",
+    ),
     Word(r"\bwhat\b(?![^.?!]*\?)", "name the subject"),
     Word(r"\bwhere (?:there|none|no|it|they|one|nothing|neither|both|that)\b", "if, unless, in ... that"),
-]  # fmt: skip
+]
 
 #: Rows of the glossary of CONTRIBUTING.md that no pattern holds, each with its reason
 NOT_LINTED = {
@@ -80,11 +98,7 @@ NOT_LINTED = {
 def pages() -> list[Path]:
     """README, CONTRIBUTING and the written pages of docs."""
     pages = sorted((ROOT / "docs").rglob("*.md"))
-    written = [
-        page
-        for page in pages
-        if page.name not in GENERATED | RECORDS and page.parent.name not in ("verification", "_made")
-    ]
+    written = [page for page in pages if page.name not in GENERATED | RECORDS and page.parent.name not in ("verification", "_made")]
     return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *written]
 
 
@@ -111,9 +125,7 @@ def sentences(text: str) -> list[str]:
         cells = [cell for row in rows if row.lstrip().startswith("|") for cell in row.strip().strip("|").split("|")]
         plain = " ".join(row for row in rows if not row.lstrip().startswith("|"))
         for piece in [plain, *cells]:
-            plainer = re.sub(
-                r"\b(Figs?|Eqs?|al|Eng|Struct|Dyn|e\.g|i\.e)\.", r"\1", re.sub(r"\s+", " ", piece).strip(" -*")
-            )
+            plainer = re.sub(r"\b(Figs?|Eqs?|al|Eng|Struct|Dyn|e\.g|i\.e)\.", r"\1", re.sub(r"\s+", " ", piece).strip(" -*"))
             parts = re.split(r"(?:(?<=[.!?])|(?<=[.!?][)\]\"]))\s+(?=[A-Z(\[\"*0-9]|\w+\.md|\w_)", plainer)
             found += [part for part in parts if len(part.split()) > 1]
     return found
@@ -168,9 +180,7 @@ def deck_prose(source: str) -> str:
 def faulty() -> dict[str, set[str]]:
     """Files of the package with words of the left column, by path."""
     texts = {path: strings(path.read_text(encoding="utf-8")) for path in files()}
-    found = {
-        path: {word for text in there if text not in STORED for word in words(text)} for path, there in texts.items()
-    }
+    found = {path: {word for text in there if text not in STORED for word in words(text)} for path, there in texts.items()}
     return {path.relative_to(ROOT).as_posix(): there for path, there in found.items() if there}
 
 

@@ -57,9 +57,8 @@ def others(python: Path, pins: list[str]) -> list[str]:
 def copy_sources() -> None:
     """The sources in their present state, also uncommitted changes; environment and build of an earlier run stay."""
     listed = subprocess.run(
-        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT, check=True, capture_output=True, text=True,
-    ).stdout.split("\0")  # fmt: skip
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout.split("\0")
     ROOM.mkdir(parents=True, exist_ok=True)
     for old in ROOM.iterdir():
         if old.name not in (".venv", "build"):
@@ -90,10 +89,7 @@ def main() -> int:
         print(f"not the oldest after all: {', '.join(wrong)}", file=sys.stderr)
         return 1
     return subprocess.run(
-        [python, "-m", "pytest", "-q", "-n", "auto", "--maxprocesses", "8", "--dist", "worksteal", *TESTS],
-        cwd=ROOM,
-        env=env,
-        check=False,
+        [python, "-m", "pytest", "-q", "-n", "auto", "--maxprocesses", "8", "--dist", "worksteal", *TESTS], cwd=ROOM, env=env, check=False
     ).returncode
 
 

@@ -28,9 +28,7 @@ def save(picture: Image.Image, name: str, width: int) -> None:
         picture = picture.resize((width, round(picture.height * width / picture.width)), Image.Resampling.LANCZOS)
     PLACE.mkdir(exist_ok=True)
     place = PLACE / f"{name}.png"
-    picture.convert("RGB").quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(
-        place, optimize=True
-    )
+    picture.convert("RGB").quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(place, optimize=True)
     print(f"{place.relative_to(ROOT)}: {place.stat().st_size / 1e3:.0f} kB")
 
 

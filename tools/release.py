@@ -54,9 +54,7 @@ def prepare(root: Path, version: str, date: str, released: bool = True) -> list[
     (root / "CHANGELOG.md").write_text(log.replace(found[0], heading + found["news"], 1), encoding="utf-8")
     for name, (left, right) in PLACES.items():
         text = (root / name).read_text(encoding="utf-8")
-        made, count = re.subn(
-            rf"({left}){re.escape(before)}({right})", rf"\g<1>{version}\g<2>", text, count=1, flags=re.M
-        )
+        made, count = re.subn(rf"({left}){re.escape(before)}({right})", rf"\g<1>{version}\g<2>", text, count=1, flags=re.M)
         if count != 1:
             raise Refused(f"{name} lacks {before}")
         (root / name).write_text(made, encoding="utf-8")

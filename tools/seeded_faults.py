@@ -46,11 +46,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
         ("unit/test_motion_core.py", "unit/test_block.py", "unit/test_mechanism.py", "unit/test_statistics.py"),
         "rocking/ or arch/",
     ),
-    "fortran/arch": (
-        ("test_four_hinge",),
-        ("unit/test_mechanism.py", "verification/test_arch_rocking.py", "unit/test_border.py"),
-        "arch/",
-    ),
+    "fortran/arch": (("test_four_hinge",), ("unit/test_mechanism.py", "verification/test_arch_rocking.py", "unit/test_border.py"), "arch/"),
     "fortran/mechanism": (
         ("test_mechanism",),
         ("unit/test_mechanism.py", "unit/test_impact.py", "unit/test_restraints.py", "verification/test_vault_rocking.py"),
@@ -58,18 +54,34 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     ),
     "fortran/rocking": (
         ("test_rocking",),
-        ("unit/test_block.py", "unit/test_soft_base.py", "unit/test_stack.py", "unit/test_restraints.py",
-         "verification/test_rocking_reference.py", "unit/test_statistics.py", "unit/test_fragility.py"),
+        (
+            "unit/test_block.py",
+            "unit/test_soft_base.py",
+            "unit/test_stack.py",
+            "unit/test_restraints.py",
+            "verification/test_rocking_reference.py",
+            "unit/test_statistics.py",
+            "unit/test_fragility.py",
+        ),
         "rocking/ or arch/",
     ),
     "fortran/motion": (("test_motion",), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "fortran/dem": (
         ("test_dem",),
-        ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_nonsmooth.py", "unit/test_dem_analysis.py",
-         "unit/test_dem_ties.py"),
+        (
+            "unit/test_dem_core.py",
+            "unit/test_dem_rules.py",
+            "unit/test_dem_nonsmooth.py",
+            "unit/test_dem_analysis.py",
+            "unit/test_dem_ties.py",
+        ),
         "dem/",
     ),
-    "fortran/dem3": ((), ("unit/test_dem3_core.py", "unit/test_dem3_nonsmooth.py", "unit/test_dem_solids.py", "unit/test_dem_ties.py"), "solid/dem"),
+    "fortran/dem3": (
+        (),
+        ("unit/test_dem3_core.py", "unit/test_dem3_nonsmooth.py", "unit/test_dem_solids.py", "unit/test_dem_ties.py"),
+        "solid/dem",
+    ),
     "fortran/nonsmooth": ((), ("unit/test_dem_nonsmooth.py", "unit/test_dem3_nonsmooth.py"), "solid/dem-nonsmooth"),
     "fortran/limit": (
         (),
@@ -78,21 +90,37 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     ),
     "fortran/sla": (
         ("test_sla", "test_sla_margin"),
-        ("unit/test_sla_elements.py", "unit/test_sla_teeth.py", "unit/test_sla_joints.py", "unit/test_sla_events.py",
-         "unit/test_sla_stones.py", "unit/test_sla_walls.py"),
+        (
+            "unit/test_sla_elements.py",
+            "unit/test_sla_teeth.py",
+            "unit/test_sla_joints.py",
+            "unit/test_sla_events.py",
+            "unit/test_sla_stones.py",
+            "unit/test_sla_walls.py",
+        ),
         "sla/",
     ),
     "fortran/shell": (
         ("test_shell",),
-        ("unit/test_shell_elements.py", "unit/test_shell_events.py", "unit/test_shell_vaults.py", "unit/test_floors.py",
-         "unit/test_vault_shells.py", "unit/test_shell_joints.py"),
+        (
+            "unit/test_shell_elements.py",
+            "unit/test_shell_events.py",
+            "unit/test_shell_vaults.py",
+            "unit/test_floors.py",
+            "unit/test_vault_shells.py",
+            "unit/test_shell_joints.py",
+        ),
         "shell/ or building/one-way",
     ),
-    "fortran/frame": ((), ("unit/test_frame_elements.py", "unit/test_frame_view.py", "unit/test_frame_analyses.py", "unit/test_frame_fragility.py"), "frame/"),
+    "fortran/frame": (
+        (),
+        ("unit/test_frame_elements.py", "unit/test_frame_view.py", "unit/test_frame_analyses.py", "unit/test_frame_fragility.py"),
+        "frame/",
+    ),
     "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "c/sparse": (("test_sparse", "test_sla"), ("unit/test_sla_events.py", "unit/test_vertex.py"), "sla/"),
     "c/common": (("test_handles", "test_threads", "test_blas"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),
-}  # fmt: skip
+}
 
 #: kind -> (pattern of the changed part, its replacements)
 FAULTS = {
@@ -108,41 +136,133 @@ IN_PYTHON = {
     "sign": [(r"(?<=[\w)\]]) \+ (?=[\w(\[])", " - "), (r"(?<=[\w)\]]) - (?=[\w(\[])", " + "), (r"(?<=[=(,] )-(?=[a-z(])", "")],
     "key": [(r", (?!strict\b)\w+=[\w.]+(?=[,)])", "")],
     "filter": [(r"(?<=.) if (?:(?!\belse\b)[^\[\]{}:])+(?=[\]})])", ""), (r"(?<=[)\]]) & (?=\()", " | ")],
-    "set": [(r"\bmin\(", "max("), (r"\bmax\(", "min("), (r"\[0\]", "[-1]"), (r"\[-1\]", "[0]"), (r"\ball\(", "any("), (r"\bany\(", "all("),
-            (r"\.a\b(?! ?=)", ".b"), (r"\.b\b(?! ?=)", ".a")],
-    "unit": [(r" / GRAVITY", ""), (r" \* GRAVITY", ""), (r"\b1e3\b", "1e6"), (r"\.depth\b(?! ?=)", ".depth * 2.0"), (r"radians\(", "degrees("), (r"degrees\(", "radians(")],
-}  # fmt: skip
+    "set": [
+        (r"\bmin\(", "max("),
+        (r"\bmax\(", "min("),
+        (r"\[0\]", "[-1]"),
+        (r"\[-1\]", "[0]"),
+        (r"\ball\(", "any("),
+        (r"\bany\(", "all("),
+        (r"\.a\b(?! ?=)", ".b"),
+        (r"\.b\b(?! ?=)", ".a"),
+    ],
+    "unit": [
+        (r" / GRAVITY", ""),
+        (r" \* GRAVITY", ""),
+        (r"\b1e3\b", "1e6"),
+        (r"\.depth\b(?! ?=)", ".depth * 2.0"),
+        (r"radians\(", "degrees("),
+        (r"degrees\(", "radians("),
+    ],
+}
 #: Outcomes and their replacements; these are texts
 OUTCOMES = {
-    '"stands"': '"collapses"', '"collapses"': '"stands"', '"cannot-stand"': '"open"', '"open"': '"stands"', '"collapse"': '"recovery"',
-    '"recovery"': '"no-hinging"', '"upper"': '"lower"', '"holds"': '"fails"', '"fails"': '"holds"', '"no-sliding"': '"sliding"', '"left"': '"right"',
-}  # fmt: skip
+    '"stands"': '"collapses"',
+    '"collapses"': '"stands"',
+    '"cannot-stand"': '"open"',
+    '"open"': '"stands"',
+    '"collapse"': '"recovery"',
+    '"recovery"': '"no-hinging"',
+    '"upper"': '"lower"',
+    '"holds"': '"fails"',
+    '"fails"': '"holds"',
+    '"no-sliding"': '"sliding"',
+    '"left"': '"right"',
+}
 #: Joins of strategies: makers of models of a building, calls of the core, makers of verdicts from its results
 JOINS = (
-    "analyses/conclude.py", "analyses/sequence.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
-    "analyses/assess/words.py", "analyses/assess/reasons.py", "analyses/codes/kinematics.py", "analyses/codes/local_mechanism.py",
-    "analyses/codes/mechanisms.py", "analyses/codes/ntc.py", "analyses/codes/walls.py", "analyses/dem/measures.py",
-    "analyses/dem/model.py", "analyses/dem/history.py", "analyses/dem/job.py", "analyses/dem/solid_model.py", "analyses/dem/standing.py", "analyses/dem/tilt.py",
-    "analyses/limit/applied.py", "analyses/limit/asked.py", "analyses/limit/common.py", "analyses/limit/moving_load.py", "analyses/limit/solids.py",
-    "analyses/limit/supports.py", "analyses/limit/thrust.py", "analyses/limit/tilt.py", "analyses/rocking/block.py", "analyses/rocking/driver.py",
-    "analyses/rocking/failure_domain.py", "analyses/rocking/mechanism.py", "analyses/rocking/stack.py", "analyses/statistics/fragility.py", "analyses/statistics/levels.py",
-    "analyses/statistics/summaries.py", "views/building.py", "model/properties.py", "model/ties.py", "model/geometry/assembly.py", "model/geometry/chains.py",
-    "model/geometry/compas.py", "model/geometry/contacts.py", "model/geometry/polygons.py", "views/rigid.py",
-    "model/geometry/solids/assembly.py", "model/geometry/solids/contacts.py", "model/geometry/solids/sections.py", "views/rockers/arch.py",
-    "views/rockers/block.py", "views/rockers/frame.py", "views/rockers/mechanism.py", "views/rockers/rocker.py", "views/rockers/stack.py",
-    "model/structures/arch.py", "model/structures/block.py", "model/structures/brickwork.py", "model/structures/masonry.py", "model/structures/stack.py",
-    "results/verdict.py", "results/codes.py", "results/dem.py", "results/rocking.py", "results/statistics.py", "running/survey.py",
-)  # fmt: skip
+    "analyses/conclude.py",
+    "analyses/sequence.py",
+    "analyses/left_out.py",
+    "analyses/motion_source.py",
+    "analyses/assess/asking.py",
+    "analyses/assess/words.py",
+    "analyses/assess/reasons.py",
+    "analyses/codes/kinematics.py",
+    "analyses/codes/local_mechanism.py",
+    "analyses/codes/mechanisms.py",
+    "analyses/codes/ntc.py",
+    "analyses/codes/walls.py",
+    "analyses/dem/measures.py",
+    "analyses/dem/model.py",
+    "analyses/dem/history.py",
+    "analyses/dem/job.py",
+    "analyses/dem/solid_model.py",
+    "analyses/dem/standing.py",
+    "analyses/dem/tilt.py",
+    "analyses/limit/applied.py",
+    "analyses/limit/asked.py",
+    "analyses/limit/common.py",
+    "analyses/limit/moving_load.py",
+    "analyses/limit/solids.py",
+    "analyses/limit/supports.py",
+    "analyses/limit/thrust.py",
+    "analyses/limit/tilt.py",
+    "analyses/rocking/block.py",
+    "analyses/rocking/driver.py",
+    "analyses/rocking/failure_domain.py",
+    "analyses/rocking/mechanism.py",
+    "analyses/rocking/stack.py",
+    "analyses/statistics/fragility.py",
+    "analyses/statistics/levels.py",
+    "analyses/statistics/summaries.py",
+    "views/building.py",
+    "model/properties.py",
+    "model/ties.py",
+    "model/geometry/assembly.py",
+    "model/geometry/chains.py",
+    "model/geometry/compas.py",
+    "model/geometry/contacts.py",
+    "model/geometry/polygons.py",
+    "views/rigid.py",
+    "model/geometry/solids/assembly.py",
+    "model/geometry/solids/contacts.py",
+    "model/geometry/solids/sections.py",
+    "views/rockers/arch.py",
+    "views/rockers/block.py",
+    "views/rockers/frame.py",
+    "views/rockers/mechanism.py",
+    "views/rockers/rocker.py",
+    "views/rockers/stack.py",
+    "model/structures/arch.py",
+    "model/structures/block.py",
+    "model/structures/brickwork.py",
+    "model/structures/masonry.py",
+    "model/structures/stack.py",
+    "results/verdict.py",
+    "results/codes.py",
+    "results/dem.py",
+    "results/rocking.py",
+    "results/statistics.py",
+    "running/survey.py",
+)
 #: Kernels at the joins, and the modules of the core that hand them their numbers
 KERNELS = {
-    "fortran/api/api_arch.f90": "arch", "fortran/api/api_dem.f90": "dem", "fortran/api/api_dem3.f90": "dem3",
-    "fortran/api/api_dem_run.f90": "dem", "fortran/api/api_limit.f90": "limit", "fortran/api/api_mechanism.f90": "mechanism",
-    "fortran/api/api_rocking.f90": "rocking", "fortran/api/api_stack.f90": "stack", "fortran/api/api_soft_base.f90": "soft_base",
-    "fortran/mechanism/blow.f90": "mechanism", "fortran/mechanism/impact.f90": "mechanism", "fortran/mechanism/linkage.f90": "mechanism",
-    "fortran/mechanism/table.f90": "mechanism", "fortran/dem/contacts.f90": "dem", "fortran/dem/joint.f90": "dem", "fortran/dem/law.f90": "dem",
-    "fortran/dem/moreau.f90": "dem", "fortran/dem/rigid.f90": "dem", "fortran/dem/loading.f90": "dem", "fortran/dem3/patch.f90": "dem3", "fortran/dem3/law.f90": "dem3",
-    "fortran/dem3/moreau.f90": "dem3", "fortran/nonsmooth/impulses.f90": "dem", "fortran/limit/vertex.f90": "limit",
-}  # fmt: skip
+    "fortran/api/api_arch.f90": "arch",
+    "fortran/api/api_dem.f90": "dem",
+    "fortran/api/api_dem3.f90": "dem3",
+    "fortran/api/api_dem_run.f90": "dem",
+    "fortran/api/api_limit.f90": "limit",
+    "fortran/api/api_mechanism.f90": "mechanism",
+    "fortran/api/api_rocking.f90": "rocking",
+    "fortran/api/api_stack.f90": "stack",
+    "fortran/api/api_soft_base.f90": "soft_base",
+    "fortran/mechanism/blow.f90": "mechanism",
+    "fortran/mechanism/impact.f90": "mechanism",
+    "fortran/mechanism/linkage.f90": "mechanism",
+    "fortran/mechanism/table.f90": "mechanism",
+    "fortran/dem/contacts.f90": "dem",
+    "fortran/dem/joint.f90": "dem",
+    "fortran/dem/law.f90": "dem",
+    "fortran/dem/moreau.f90": "dem",
+    "fortran/dem/rigid.f90": "dem",
+    "fortran/dem/loading.f90": "dem",
+    "fortran/dem3/patch.f90": "dem3",
+    "fortran/dem3/law.f90": "dem3",
+    "fortran/dem3/moreau.f90": "dem3",
+    "fortran/nonsmooth/impulses.f90": "dem",
+    "fortran/limit/vertex.f90": "limit",
+}
 PACKAGE = "python/extrados"
 #: Faults that change no result, by `Fault.change`, and why
 EQUIVALENT: dict[str, str] = {
@@ -238,9 +358,11 @@ def python_faults_of(path: Path) -> list[Fault]:
                 left, right = start if number == first else 0, end if number == last else len(line)
                 bare[number - 1] = line[:left] + "\0" * (right - left) + line[right:]
     inside = {
-        number for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)
+        number
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.FunctionDef)
         for number in range(node.body[0].lineno, (node.end_lineno or 0) + 1)
-    }  # fmt: skip
+    }
     found = []
     for number in sorted(inside):
         line, code = lines[number - 1], bare[number - 1]
@@ -312,15 +434,7 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
     """Commands for a package, in order, each with its name if it names no test of its own."""
     native, python, cases = ROOMS[room]
     pytest = [apart.python(place), "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
-    meson = [
-        str(Path(sys.executable).with_name("meson")),
-        "test",
-        "-C",
-        str(place / "build"),
-        "--no-rebuild",
-        "-t",
-        "20",
-    ]
+    meson = [str(Path(sys.executable).with_name("meson")), "test", "-C", str(place / "build"), "--no-rebuild", "-t", "20"]
     return [
         *([([*meson, *native], "native tests")] if native else []),
         ([*pytest, *(f"tests/{test}" for test in python)], ""),
@@ -344,9 +458,7 @@ def _read(kept: Path) -> list[dict[str, Any]]:
 
 def rows_of(kept: Path) -> list[Row]:
     """The tests noted in a file, the quickest first."""
-    found = [
-        Row(r["test"], r["seconds"], r["results"], frozenset((file, n) for file, n in r["lines"])) for r in _read(kept)
-    ]
+    found = [Row(r["test"], r["seconds"], r["results"], frozenset((file, n) for file, n in r["lines"])) for r in _read(kept)]
     return sorted(found, key=lambda row: row.seconds)
 
 
@@ -382,9 +494,19 @@ def touched(place: Path) -> list[Row]:
 
     # What an interrupted run has noted is kept
     words = [
-        apart.python(place), "-m", "pytest", "-q", "-n", "2", "--dist", "worksteal", "-p", "no:cacheprovider", "tests/properties",
+        apart.python(place),
+        "-m",
+        "pytest",
+        "-q",
+        "-n",
+        "2",
+        "--dist",
+        "worksteal",
+        "-p",
+        "no:cacheprovider",
+        "tests/properties",
         *(f"--deselect={test}" for test in keep()),
-    ]  # fmt: skip
+    ]
     environment = environment_of(half, EXTRADOS_LINES="1")
     run = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, errors="replace")
     broken = re.findall(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M)
@@ -417,32 +539,40 @@ def suite(place: Path, build: int) -> subprocess.Popen[str]:
     """The property suite, loaded with a build, which waits for the faults of Python and the tests to run."""
     words = [apart.python(place), "-m", "pytest", "-q", "-s", "-n", "0", "-p", "no:cacheprovider", "tests/properties"]
     environment = environment_of(place / "unused", EXTRADOS_FAULTS="1")
-    return subprocess.Popen(words, cwd=place, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace")  # fmt: skip
+    return subprocess.Popen(
+        words,
+        cwd=place,
+        env=environment,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        errors="replace",
+    )
 
 
-def asked_of(
-    place: Path, build: int, fault: Fault, tests: list[Row], share: float, patience: int
-) -> tuple[str, list[Row]]:
+def asked_of(place: Path, build: int, fault: Fault, tests: list[Row], share: float, patience: int) -> tuple[str, list[Row]]:
     """The first of some tests that fails with a fault, or one of the `NOT_CAUGHT`, and the notes of the tests before."""
     limits = {row.test: max(patience, SLOWER * row.seconds * share / float(SHARE)) for row in tests}
     kept, failed, process = place / "results.jsonl", place / "failed.txt", suite(place, build)
     kept.unlink(missing_ok=True)
     assert process.stdin is not None and process.stdout is not None
     question = {
-        "file": fault.file.removeprefix(f"{PACKAGE}/"), "line": fault.line, "new": fault.new if fault.in_python else "", "tests": limits,
-        "share": share, "limit": 8 * patience, "kept": str(kept), "failed": str(failed),
-    }  # fmt: skip
+        "file": fault.file.removeprefix(f"{PACKAGE}/"),
+        "line": fault.line,
+        "new": fault.new if fault.in_python else "",
+        "tests": limits,
+        "share": share,
+        "limit": 8 * patience,
+        "kept": str(kept),
+        "failed": str(failed),
+    }
     process.stdin.write(json.dumps(question) + "\n")
     process.stdin.flush()
     code = next((int(text.split()[1]) for text in process.stdout if text.startswith("ended: ")), None)
     if code is None or code == BROKE:
         raise RuntimeError(f"the property suite did not run with {fault}")
-    by = {
-        0: MISSED,
-        -signal.SIGPROF: "a test that does not end",
-        -signal.SIGXCPU: UNDECIDED,
-        -signal.SIGKILL: UNDECIDED,
-    }
+    by = {0: MISSED, -signal.SIGPROF: "a test that does not end", -signal.SIGXCPU: UNDECIDED, -signal.SIGKILL: UNDECIDED}
     if code == 1:
         return failed.read_text(encoding="utf-8"), rows_of(kept)
     return by.get(code, f"exit {code}"), rows_of(kept)
@@ -472,9 +602,14 @@ def failing(place: Path, room: str, patience: int) -> str:
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     for command, name in commands(place, room):
         run = subprocess.run(
-            command, cwd=place, env=environment, capture_output=True, text=True, errors="replace",
+            command,
+            cwd=place,
+            env=environment,
+            capture_output=True,
+            text=True,
+            errors="replace",
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (patience, patience)),
-        )  # fmt: skip
+        )
         if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             return "a test that does not end"
         if run.returncode:
@@ -505,27 +640,20 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=80)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
-        "--patience",
-        type=int,
-        default=300,
-        help="seconds of a processor that the tests of a package, or one relation, may take",
+        "--patience", type=int, default=300, help="seconds of a processor that the tests of a package, or one relation, may take"
     )
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
     parser.add_argument("--again", action="store_true", help="the faults anew that were not caught")
     parser.add_argument("--package", choices=list(ROOMS), help="faults of one package of the core alone")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
     parser.add_argument("--suite", choices=["quick", "properties"], default="quick", help="which tests are to see them")
-    parser.add_argument(
-        "--python", action="store_true", help="faults in Python at the joins, seen by the property suite"
-    )
+    parser.add_argument("--python", action="store_true", help="faults in Python at the joins, seen by the property suite")
     parser.add_argument("--list", action="store_true", help="print the faults, and plant none")
     options = parser.parse_args()
     properties = options.suite == "properties"
     if options.python and not properties:
         parser.error("--python needs --suite properties")
-    chosen = draw(
-        options.count, options.seed, [options.package] if options.package else ROOMS, options.python, properties
-    )
+    chosen = draw(options.count, options.seed, [options.package] if options.package else ROOMS, options.python, properties)
     if options.only:
         file, line = options.only.split(":")
         every = python_faults_of if file.endswith(".py") else faults_of
@@ -554,10 +682,7 @@ def main() -> int:
         begin = time.monotonic()
         by = fates[str(fault)] = caught_by(place, fault, options.patience, properties)
         seconds = time.monotonic() - begin
-        print(
-            f"{k}/{len(todo)} {f'caught by {by}' if by not in NOT_CAUGHT else f'NOT CAUGHT {by}'} ({seconds:.0f} s) {fault}",
-            flush=True,
-        )
+        print(f"{k}/{len(todo)} {f'caught by {by}' if by not in NOT_CAUGHT else f'NOT CAUGHT {by}'} ({seconds:.0f} s) {fault}", flush=True)
         kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
     loose = [fault for fault in chosen if fates[str(fault)] in NOT_CAUGHT]
     equal = [fault for fault in loose if fault.change in EQUIVALENT]

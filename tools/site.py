@@ -29,37 +29,80 @@ THUMBNAIL = 900
 #: Decks of the gallery by topic, each with its analysis and figure (default: the first); together they take about three minutes
 SHOWN: dict[str, list[tuple[str, ...]]] = {
     "Arches": [
-        ("arch/oppenheim", "tilt"), ("arch/readme", "rocking"), ("limit/oppenheim", "thrust"), ("limit/oppenheim", "supports"), ("limit/arch-120", "tilt"),
-        ("limit/loads", "thrust"), ("limit/tied-arch", "sweep", "sweep-mechanisms"), ("limit/lintel", "tilt"), ("arch/oppenheim-domain", "failure-domain"),
-        ("arch/figure-5-4", "failure-curves"), ("dem/oppenheim", "dem"), ("sla/stones-arch", "sla", "sla-cracks"),
+        ("arch/oppenheim", "tilt"),
+        ("arch/readme", "rocking"),
+        ("limit/oppenheim", "thrust"),
+        ("limit/oppenheim", "supports"),
+        ("limit/arch-120", "tilt"),
+        ("limit/loads", "thrust"),
+        ("limit/tied-arch", "sweep", "sweep-mechanisms"),
+        ("limit/lintel", "tilt"),
+        ("arch/oppenheim-domain", "failure-domain"),
+        ("arch/figure-5-4", "failure-curves"),
+        ("dem/oppenheim", "dem"),
+        ("sla/stones-arch", "sla", "sla-cracks"),
     ],
     "Bridges": [
-        ("bridge/road", "moving-load"), ("bridge/bridgemill", "moving-load"), ("bridge/viaduct", "moving-load"), ("bridge/viaduct", "tilt"), ("bridge/barlae", "moving-load"),
+        ("bridge/road", "moving-load"),
+        ("bridge/bridgemill", "moving-load"),
+        ("bridge/viaduct", "moving-load"),
+        ("bridge/viaduct", "tilt"),
+        ("bridge/barlae", "moving-load"),
     ],
     "Vaults and churches": [
-        ("limit/church", "tilt"), ("limit/church", "imperfections"), ("vault/vezelay-like", "tilt"), ("vault/flyers", "tilt"), ("vault/dejong-a", "tilt"),
-        ("vault/settlement", "supports"), ("vault/colombier-sweep", "sweep"), ("sla/stones-vault", "sla", "sla-cracks"), ("strengthen/nave", "strengthen"),
+        ("limit/church", "tilt"),
+        ("limit/church", "imperfections"),
+        ("vault/vezelay-like", "tilt"),
+        ("vault/flyers", "tilt"),
+        ("vault/dejong-a", "tilt"),
+        ("vault/settlement", "supports"),
+        ("vault/colombier-sweep", "sweep"),
+        ("sla/stones-vault", "sla", "sla-cracks"),
+        ("strengthen/nave", "strengthen"),
         ("shell/barrel-spread", "pushover", "pushover-space"),
     ],
     "Free-standing blocks, columns and frames": [
-        ("rocking/housner", "rocking"), ("rocking/stack", "rocking", "rocking-shapes"), ("rocking/tendon", "rocking"), ("rocking/frame", "tilt"),
-        ("rocking/soft-base", "rocking", "rocking-base"), ("rocking/el-centro-block", "rocking-spectrum"), ("rocking/el-centro-block", "harmonic-map"),
-        ("rocking/overturning-rectangle", "failure-domain"), ("rocking/resonance", "resonance"), ("solid/column", "tilt"), ("solid/dem-nonsmooth", "dem"),
+        ("rocking/housner", "rocking"),
+        ("rocking/stack", "rocking", "rocking-shapes"),
+        ("rocking/tendon", "rocking"),
+        ("rocking/frame", "tilt"),
+        ("rocking/soft-base", "rocking", "rocking-base"),
+        ("rocking/el-centro-block", "rocking-spectrum"),
+        ("rocking/el-centro-block", "harmonic-map"),
+        ("rocking/overturning-rectangle", "failure-domain"),
+        ("rocking/resonance", "resonance"),
+        ("solid/column", "tilt"),
+        ("solid/dem-nonsmooth", "dem"),
     ],
     "Walls": [
-        ("sla/yi-wall-1", "sla", "sla-cracks"), ("sla/j4d", "sla", "sla-cracks"), ("sla/pier", "sla", "sla-cracks"), ("limit/wall-lourenco", "tilt"),
-        ("limit/wall-magenes", "tilt"), ("limit/panel", "tilt"), ("sla/stones-brickwork", "sla", "sla-cracks"), ("codes/facade", "local-mechanism"),
-        ("strengthen/wall", "strengthen"), ("rocking/facade", "rocking"),
+        ("sla/yi-wall-1", "sla", "sla-cracks"),
+        ("sla/j4d", "sla", "sla-cracks"),
+        ("sla/pier", "sla", "sla-cracks"),
+        ("limit/wall-lourenco", "tilt"),
+        ("limit/wall-magenes", "tilt"),
+        ("limit/panel", "tilt"),
+        ("sla/stones-brickwork", "sla", "sla-cracks"),
+        ("codes/facade", "local-mechanism"),
+        ("strengthen/wall", "strengthen"),
+        ("rocking/facade", "rocking"),
     ],
     "Buildings, domes and chimneys": [
-        ("assess/facade", "assess"), ("shell/room", "pushover", "pushover-space"), ("building/flange-joint", "pushover", "pushover-space"), ("solid/cross-vault", "tilt"),
-        ("solid/dome", "tilt"), ("solid/chimney", "tilt"), ("codes/triumphal-arch", "local-mechanism"),
+        ("assess/facade", "assess"),
+        ("shell/room", "pushover", "pushover-space"),
+        ("building/flange-joint", "pushover", "pushover-space"),
+        ("solid/cross-vault", "tilt"),
+        ("solid/dome", "tilt"),
+        ("solid/chimney", "tilt"),
+        ("codes/triumphal-arch", "local-mechanism"),
     ],
     "Ground motions and probability": [
-        ("motion/el-centro", "motion"), ("motion/compatible", "motion", "motion-spectra"), ("motion/generated", "motion"), ("fragility/annual-rate", "fragility"),
+        ("motion/el-centro", "motion"),
+        ("motion/compatible", "motion", "motion-spectra"),
+        ("motion/generated", "motion"),
+        ("fragility/annual-rate", "fragility"),
         ("fragility/cloud", "fragility", "fragility-cloud"),
     ],
-}  # fmt: skip
+}
 FORD = """project: extrados
 summary: The Fortran core
 src_dir: {root}/fortran
@@ -77,8 +120,7 @@ parallel: 0
 """
 #: Parts of the pages of FORD that load from the network, and parts that depend on them
 FROM_AFAR = re.compile(
-    r"<!-- Bootstrap -->.*?(?=<!-- Font Awesome)|<!-- MathJax -->.*?(?=<!-- Other scripts)|<script>\s*// Enable Bootstrap.*?</script>",
-    re.S,
+    r"<!-- Bootstrap -->.*?(?=<!-- Font Awesome)|<!-- MathJax -->.*?(?=<!-- Other scripts)|<script>\s*// Enable Bootstrap.*?</script>", re.S
 )
 
 
@@ -127,11 +169,7 @@ def redrawn() -> None:
     from drawings import KEPT, draw
 
     slow: set[str] = set()
-    lines = [
-        "# Redrawn now",
-        "",
-        "Made by running the decks that the pages of the chapters name, as this site was built.",
-    ]
+    lines = ["# Redrawn now", "", "Made by running the decks that the pages of the chapters name, as this site was built."]
     for figure, shows, by, *_ in dissertation.rows():
         for case, names in dissertation.redrawn_by(by):
             expected = (ROOT / "cases" / f"{case}.toml").with_suffix(".expect.toml")
@@ -209,9 +247,7 @@ def main() -> None:
         gallery()
         redrawn()
     shutil.rmtree(SITE, ignore_errors=True)
-    subprocess.run(
-        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", ROOT / "docs", SITE], check=True
-    )
+    subprocess.run([sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", ROOT / "docs", SITE], check=True)
     if not quick:
         fortran()
         if wrong := broken(SITE):

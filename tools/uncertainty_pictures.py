@@ -9,12 +9,7 @@ from extrados.results.uncertainty import ModelUncertainty, read_uncertainties
 
 #: A one-sided quantile of the normal distribution: 95 %
 Z95 = 1.6449
-COMPARISONS = {
-    "exact": "exact solutions",
-    "peer": "other programs and methods",
-    "thesis": "the dissertation",
-    "experiment": "experiments",
-}
+COMPARISONS = {"exact": "exact solutions", "peer": "other programs and methods", "thesis": "the dissertation", "experiment": "experiments"}
 COLOURS = {"exact": "#6c757d", "peer": "#2a6f97", "thesis": "#c9a66b", "experiment": "#b02a1e"}
 
 
@@ -72,10 +67,7 @@ def deviations() -> Figure:
 
 def table() -> str:
     """Rows of the experiments: bias, scatter, and the factor that a computed value has to be divided by for a 5 % fractile."""
-    lines = [
-        "| strategy | quantity | tests | bias | scatter | 5 % fractile / computed | worst case |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    lines = ["| strategy | quantity | tests | bias | scatter | 5 % fractile / computed | worst case |", "|---|---|---|---|---|---|---|"]
     for row in read_uncertainties():
         if row.comparison == "experiment":
             fractile = math.exp(-Z95 * row.scatter) / row.bias

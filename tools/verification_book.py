@@ -61,9 +61,11 @@ LONG = 60.0
 OLDER = "*"
 #: Quantity compared by a row of a measured curve
 COMPARED = {
-    "peak_ratio": "peak", "tail_ratios[0]": "tail at 75 % of the peak", "tail_ratios[1]": "tail at 50 %",
+    "peak_ratio": "peak",
+    "tail_ratios[0]": "tail at 75 % of the peak",
+    "tail_ratios[1]": "tail at 50 %",
     "tail_ratios[2]": "tail at 25 %",
-}  # fmt: skip
+}
 
 
 #: Tables of tested walls, predicted by one fixed rule (tools/wall_tests.py), the method of each strategy, and the analysis that it uses
@@ -116,13 +118,7 @@ def line(found: Found) -> str:
     change = ", ".join(f"{k} = {v}" for k, v in row.change)
     verdict = f"{OLDER if found.older else ''}{' **differs**' if found.wrong else ''}"
     allowed = "" if isinstance(row.value, str) or found.series else f" ± {row.allowed:.2g}"
-    tests = (
-        f"; tests ± {100 * row.scatter:.2g} %"
-        if isinstance(row.scatter, float)
-        else f"; {row.scatter}"
-        if row.scatter
-        else ""
-    )
+    tests = f"; tests ± {100 * row.scatter:.2g} %" if isinstance(row.scatter, float) else f"; {row.scatter}" if row.scatter else ""
     note = f" ({row.note})" if row.note else ""
     origin = origin_of(row)
     return (
@@ -168,14 +164,19 @@ def by_quantity(rows: list[Found]) -> list[str]:
         picture = f"[{quantity}](verification/{slug(quantity)}.svg)" if plotted(of) else quantity
         lines.append(f"| {picture} | {agreement(of)} |")
     return [
-        "## Quantity by quantity", "",
+        "## Quantity by quantity",
+        "",
         "Rows of each quantity, by the kind of comparison. Exact solutions and other programs: the greatest deviation;",
         "the dissertation and experiments: bias (mean of found over expected, less one) and scatter (standard deviation).",
         "Zeros and words have no ratio: they are in the tables of the strategies. Bounds are one-sided; sizes of inferred rows",
         "and factors of calibrated ones were chosen to come out, and regressions compare the program with itself: none of these",
-        "enters bias or scatter. Crack paths are compared by eye (docs/sla.md): no number of a path is in print.", "",
-        f"| quantity | {HEAD}", "|---|---|---|---|---|---|---|---|---|", *lines, "",
-    ]  # fmt: skip
+        "enters bias or scatter. Crack paths are compared by eye (docs/sla.md): no number of a path is in print.",
+        "",
+        f"| quantity | {HEAD}",
+        "|---|---|---|---|---|---|---|---|---|",
+        *lines,
+        "",
+    ]
 
 
 @cache
@@ -200,12 +201,20 @@ def by_strategy(rows: list[Found]) -> list[str]:
         lines.append(f"| [{strategy['name']}]({page}.md) | {agreement(of)} |")
         pages.append(page)
     return [
-        "## Strategy by strategy", "",
+        "## Strategy by strategy",
+        "",
         "Each strategy has a page with a plot, the worst case and its reason, the conditions that it does not cover, and all rows.",
-        "`extrados.results.uncertainty` reads bias and scatter of each strategy from the package.", "",
-        f"| strategy | {HEAD}", "|---|---|---|---|---|---|---|---|---|", *lines, "",
-        "```{toctree}\n:hidden:\n", *pages, "```", "",
-    ]  # fmt: skip
+        "`extrados.results.uncertainty` reads bias and scatter of each strategy from the package.",
+        "",
+        f"| strategy | {HEAD}",
+        "|---|---|---|---|---|---|---|---|---|",
+        *lines,
+        "",
+        "```{toctree}\n:hidden:\n",
+        *pages,
+        "```",
+        "",
+    ]
 
 
 def worst(rows: list[Found]) -> Found | None:
@@ -220,12 +229,7 @@ def worst(rows: list[Found]) -> Found | None:
 def page_of(strategy: dict[str, Any], rows: list[Found]) -> str:
     """The page of a strategy."""
     name = strategy["name"]
-    parts = [
-        f"# {name[0].upper()}{name[1:]}: verification",
-        "",
-        "Written by `make verify` from `cases/`; do not edit.",
-        "",
-    ]
+    parts = [f"# {name[0].upper()}{name[1:]}: verification", "", "Written by `make verify` from `cases/`; do not edit.", ""]
     analyses = ", ".join(f"`{analysis}`" for analysis in strategy["analyses"])
     parts += [f"Analyses: {analyses}. {len(rows)} rows.", ""]
     if plotted(rows):
@@ -237,8 +241,9 @@ def page_of(strategy: dict[str, Any], rows: list[Found]) -> str:
             reason = f"one test of a series ({far.row.note}); strengths are assumed by one rule for the whole series"
         parts += [
             f"**Worst case** ({far.row.kind}): {far.case}, `{far.row.quantity}`, found {shown(far.value)} for {shown(far.row.value)}, "
-            f"{percent((far.ratio or 1.0) - 1.0)}. {reason[0].upper()}{reason[1:]}.", "",
-        ]  # fmt: skip
+            f"{percent((far.ratio or 1.0) - 1.0)}. {reason[0].upper()}{reason[1:]}.",
+            "",
+        ]
     parts += ["## Not covered", "", *(f"- {text}" for text in strategy["not_covered"]), ""]
     for kind, title in TITLES.items():
         of = [found for found in rows if found.row.kind == kind]
@@ -257,18 +262,27 @@ def statistics_of(rows: list[Found]) -> list[dict[str, Any]]:
         for quantity in QUANTITIES:
             for proof in PROOFS:
                 of = [
-                    found for found in rows
+                    found
+                    for found in rows
                     if (strategy_of(found.row), found.quantity, found.row.kind) == (strategy["name"], quantity, proof)
                     and (found.ratio or 0.0) > 0.0
-                ]  # fmt: skip
+                ]
                 if len(of) > 1:
                     logs = [math.log(found.ratio or 1.0) for found in of]
                     far = max(of, key=lambda found: abs(math.log(found.ratio or 1.0)))
-                    lines.append({
-                        "strategy": strategy["name"], "analyses": " ".join(strategy["analyses"]), "quantity": quantity,
-                        "comparison": proof, "count": len(of), "bias": f"{math.exp(mean(logs)):.4f}",
-                        "scatter": f"{stdev(logs):.4f}", "worst_case": far.case, "worst_ratio": f"{far.ratio:.4f}",
-                    })  # fmt: skip
+                    lines.append(
+                        {
+                            "strategy": strategy["name"],
+                            "analyses": " ".join(strategy["analyses"]),
+                            "quantity": quantity,
+                            "comparison": proof,
+                            "count": len(of),
+                            "bias": f"{math.exp(mean(logs)):.4f}",
+                            "scatter": f"{stdev(logs):.4f}",
+                            "worst_case": far.case,
+                            "worst_ratio": f"{far.ratio:.4f}",
+                        }
+                    )
     return lines
 
 
@@ -290,10 +304,15 @@ def who_computed(rows: list[Found]) -> list[str]:
             f"| {origin['name']} | {TITLES[origin['kind']].split(':')[0]} | {count} | {origin['who']} | {origin['basis']} | {origin['when']} | {origin['repeated']} |"
         )
     return [
-        "## Who computed the other number", "",
-        "The last column of the tables of each strategy names one of these.", "",
-        "| origin | kind | rows | who | basis | when | repeated by |", "|---|---|---|---|---|---|---|", *lines, "",
-    ]  # fmt: skip
+        "## Who computed the other number",
+        "",
+        "The last column of the tables of each strategy names one of these.",
+        "",
+        "| origin | kind | rows | who | basis | when | repeated by |",
+        "|---|---|---|---|---|---|---|",
+        *lines,
+        "",
+    ]
 
 
 def slug(quantity: str) -> str:
@@ -329,15 +348,24 @@ def draw(rows: list[Found]) -> None:
             ratios = [found.ratio for found in shown_rows if found.row.kind == proof]
             if ratios:
                 axes.plot(
-                    range(first, first + len(ratios)), ratios, MARKS[proof], ms=4.5, mew=0.8, mfc="none",
-                    color=COLOURS[proof], label=f"{proof} ({len(ratios)})",
-                )  # fmt: skip
+                    range(first, first + len(ratios)),
+                    ratios,
+                    MARKS[proof],
+                    ms=4.5,
+                    mew=0.8,
+                    mfc="none",
+                    color=COLOURS[proof],
+                    label=f"{proof} ({len(ratios)})",
+                )
             first += len(ratios)
         low, high = axes.get_ylim()
         axes.set(
-            xlim=(0.0, first), ylim=(min(low, 1.0 - 1.5 * LOOSE), max(high, 1.0 + 1.5 * LOOSE)), title=quantity,
-            xlabel="row, by its kind of comparison", ylabel="found over expected",
-        )  # fmt: skip
+            xlim=(0.0, first),
+            ylim=(min(low, 1.0 - 1.5 * LOOSE), max(high, 1.0 + 1.5 * LOOSE)),
+            title=quantity,
+            xlabel="row, by its kind of comparison",
+            ylabel="found over expected",
+        )
         axes.xaxis.get_major_locator().set_params(integer=True)
         figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=3)
         figure.savefig(PLOTS / f"{slug(quantity)}.svg", metadata={"Date": None})
@@ -357,24 +385,18 @@ def draw_strategies(rows: list[Found]) -> None:
         figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 4.2), layout="constrained")
         nearest = next(proof for proof in reversed(PROOFS) if any(f.row.kind == proof for f in of))
         for proof in PROOFS:
-            some = sorted(
-                (f for f in of if f.row.kind == proof and (f.ratio or 0.0) > 0.0), key=lambda f: f.ratio or 0.0
-            )
+            some = sorted((f for f in of if f.row.kind == proof and (f.ratio or 0.0) > 0.0), key=lambda f: f.ratio or 0.0)
             if not some:
                 continue
             look = {"ms": 4.5, "mew": 0.8, "mfc": "none", "color": COLOURS[proof], "ls": "none", "marker": MARKS[proof]}
-            left.plot(
-                [abs(f.row.value) for f in some], [abs(f.value) for f in some], label=f"{proof} ({len(some)})", **look
-            )
+            left.plot([abs(f.row.value) for f in some], [abs(f.value) for f in some], label=f"{proof} ({len(some)})", **look)
             if proof == nearest:
                 for place, f in enumerate(some, 1):
                     if isinstance(f.row.scatter, float):
                         band = [1.0 - f.row.scatter, 1.0 + f.row.scatter]
                         right.plot([place, place], band, color="0.8", lw=4, solid_capstyle="butt")
                 right.plot(range(1, len(some) + 1), [f.ratio for f in some], **look)
-        left.set(
-            xscale="log", yscale="log", xlabel="expected: measured, printed or exact [SI]", ylabel="predicted [SI]"
-        )
+        left.set(xscale="log", yscale="log", xlabel="expected: measured, printed or exact [SI]", ylabel="predicted [SI]")
         for axis in (left.xaxis, left.yaxis):  # numbers of minor ticks overlap
             axis.set_minor_formatter(NullFormatter())
         ends = [min(abs(f.row.value) for f in of), max(abs(f.row.value) for f in of)]
@@ -382,9 +404,7 @@ def draw_strategies(rows: list[Found]) -> None:
         right.axhline(1.0, color="0.3", lw=0.8, zorder=0)
         low, high = right.get_ylim()
         note = "; grey: scatter of the tests" if nearest == "experiment" else ""
-        right.set(
-            ylim=(min(low, 0.9), max(high, 1.1)), xlabel=f"row ({nearest}){note}", ylabel="predicted over expected"
-        )
+        right.set(ylim=(min(low, 0.9), max(high, 1.1)), xlabel=f"row ({nearest}){note}", ylabel="predicted over expected")
         right.xaxis.get_major_locator().set_params(integer=True)
         figure.suptitle(strategy["name"])
         figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=4)
@@ -408,39 +428,49 @@ def of_curves(rows: list[Found]) -> list[str]:
     if not lines:
         return []
     return [
-        "Computed over measured, of whole measured curves (bias: mean less one; scatter: standard deviation):", "",
-        "| | tests | bias | scatter | each |\n|---|---|---|---|---|", *lines, "",
-    ]  # fmt: skip
+        "Computed over measured, of whole measured curves (bias: mean less one; scatter: standard deviation):",
+        "",
+        "| | tests | bias | scatter | each |\n|---|---|---|---|---|",
+        *lines,
+        "",
+    ]
 
 
 def trials(book: str) -> list[str]:
     """Failures found by the trials of tests/trials and tools/seeded_faults.py; the entry of a trial that has not run
     since stays in the book."""
     section = book.partition(f"{TRIALS}\n")[2]
-    lines = {
-        row.split(" | ")[0]: row for row in section.split("\n") if row.startswith("| ") and "looked for" not in row
-    }
+    lines = {row.split(" | ")[0]: row for row in section.split("\n") if row.startswith("| ") and "looked for" not in row}
     kept = [json.loads(p.read_text(encoding="utf-8")) for p in sorted(NOTES.glob("*.json"))]
-    if asked := {
-        p.stem: json.loads(p.read_text(encoding="utf-8")) for p in sorted((NOTES / "relations").glob("*.json"))
-    }:
+    if asked := {p.stem: json.loads(p.read_text(encoding="utf-8")) for p in sorted((NOTES / "relations").glob("*.json"))}:
         broken = [name for name, one in asked.items() if one["broken"]]
-        kept.append({"what": "random buildings that break a relation between results", "tried": sum(one["asked"] for one in asked.values()),
-                     "failures": len(broken), "notes": [f"{len(asked)} relations", *broken]})  # fmt: skip
+        kept.append(
+            {
+                "what": "random buildings that break a relation between results",
+                "tried": sum(one["asked"] for one in asked.values()),
+                "failures": len(broken),
+                "notes": [f"{len(asked)} relations", *broken],
+            }
+        )
     for r in kept:
         row = f"| {r['what']} | {r['tried']:,} | {r['failures']} | {'; '.join(r['notes'])} |".replace("\n", " ")
         lines[row.split(" | ")[0]] = row
     if not lines:
         return []
-    return [TRIALS, "", "From fixed seeds; the first column defines a failure.", "",
-            "| looked for | tried | found | |\n|---|---|---|---|", *sorted(lines.values()), ""]  # fmt: skip
+    return [
+        TRIALS,
+        "",
+        "From fixed seeds; the first column defines a failure.",
+        "",
+        "| looked for | tried | found | |\n|---|---|---|---|",
+        *sorted(lines.values()),
+        "",
+    ]
 
 
 def relations() -> list[str]:
     """The relations of the property suite: each with the analyses that it runs, and its exception."""
-    sys.path[:0] = [
-        str(ROOT / "tests" / name) for name in ("properties", "trials") if str(ROOT / "tests" / name) not in sys.path
-    ]
+    sys.path[:0] = [str(ROOT / "tests" / name) for name in ("properties", "trials") if str(ROOT / "tests" / name) not in sys.path]
     from test_properties import RELATIONS as REGISTRY
     from test_properties import most_of
 
@@ -451,26 +481,32 @@ def relations() -> list[str]:
     ]
     whole = sum(most_of(r) for r in REGISTRY.values() if not r.awaits)
     return [
-        RELATIONS, "",
+        RELATIONS,
+        "",
         f"{len(REGISTRY)} relations hold between the results of different analyses of one random building, or of two buildings of which one",
-        f"follows from the other. `make verify` draws about {whole:,} buildings of all kinds; the last count is in the table of trials.", "",
-        "| relation | statement | analyses | tolerance | exception |\n|---|---|---|---|---|", *rows, "",
-    ]  # fmt: skip
+        f"follows from the other. `make verify` draws about {whole:,} buildings of all kinds; the last count is in the table of trials.",
+        "",
+        "| relation | statement | analyses | tolerance | exception |\n|---|---|---|---|---|",
+        *rows,
+        "",
+    ]
 
 
 def long_cases(kept: dict[str, Any]) -> list[str]:
     """Cases that take more than a minute, which `make verify` runs and the quick suite does not."""
-    lines = [
-        (seconds, f"| {name} | {seconds:.0f} |")
-        for name, was in kept.items() if (seconds := was.get("seconds", 0.0)) > LONG
-    ]  # fmt: skip
+    lines = [(seconds, f"| {name} | {seconds:.0f} |") for name, was in kept.items() if (seconds := was.get("seconds", 0.0)) > LONG]
     if not lines:
         return []
     return [
-        "## Cases of more than a minute", "",
-        f"Time of all changes of the case on two threads of the machine of the last run. {len(lines)} cases.", "",
-        "| case | seconds |", "|---|---|", *(line for _, line in sorted(lines, reverse=True)), "",
-    ]  # fmt: skip
+        "## Cases of more than a minute",
+        "",
+        f"Time of all changes of the case on two threads of the machine of the last run. {len(lines)} cases.",
+        "",
+        "| case | seconds |",
+        "|---|---|",
+        *(line for _, line in sorted(lines, reverse=True)),
+        "",
+    ]
 
 
 def with_trials_alone(book: str) -> str:
@@ -486,13 +522,18 @@ def overview(rows: list[Found], book: str, kept: dict[str, Any]) -> str:
         parts += [f"{older} values, marked {OLDER}, were found before the program's last change.", ""]
     loose = [found for found in rows if found.row.loose and not found.series]
     parts += [
-        f"## Rows that allow more than {100 * LOOSE:.0f} %", "", f"{len(loose)} rows prove less than the others.", "",
-        "| case | quantity | expected | found | why |", "|---|---|---|---|---|",
+        f"## Rows that allow more than {100 * LOOSE:.0f} %",
+        "",
+        f"{len(loose)} rows prove less than the others.",
+        "",
+        "| case | quantity | expected | found | why |",
+        "|---|---|---|---|---|",
         *(
             f"| {f.case} | `{f.row.quantity}` | {shown(f.row.value)} ± {f.row.allowed:.2g} | {shown(f.value)} | {f.row.wide} |"
             for f in loose
-        ), "",
-    ]  # fmt: skip
+        ),
+        "",
+    ]
     return "\n".join([*parts, *who_computed(rows), *long_cases(kept), *relations(), *trials(book)])
 
 
@@ -534,10 +575,7 @@ def data_beside(folder: Path) -> str:
 
 def asked_of(case: Case) -> dict[str, Any]:
     """Identity of the kept values of a case: its input, and the quantities of its rows."""
-    return {
-        "read": checksum([case.deck]) + data_beside(case.deck.parent),
-        "rows": [repr((row.quantity, row.change)) for row in case.rows],
-    }
+    return {"read": checksum([case.deck]) + data_beside(case.deck.parent), "rows": [repr((row.quantity, row.change)) for row in case.rows]}
 
 
 def from_kept(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found] | None:
@@ -591,8 +629,17 @@ def tested_walls(kept: dict[str, Any], computed_by: str, compute: bool) -> list[
         for wall, by in zip(walls, was["values"], strict=True):
             for name, analysis in WALL_METHODS.items():
                 if name in by:
-                    row = Row(f"{analysis}.peak_load_N", wall.peak, 0.1, True, "experiment", f"tests/verification/{table}", (),
-                              f"failure {wall.failure}", scatter="one test")  # fmt: skip
+                    row = Row(
+                        f"{analysis}.peak_load_N",
+                        wall.peak,
+                        0.1,
+                        True,
+                        "experiment",
+                        f"tests/verification/{table}",
+                        (),
+                        f"failure {wall.failure}",
+                        scatter="one test",
+                    )
                     rows.append(Found(f"wall {wall.name}", row, by[name], was["program"] != computed_by, series=True))
     return rows
 

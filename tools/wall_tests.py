@@ -106,16 +106,25 @@ def read_walls(file: Path) -> list[Wall]:
         cohesion = 1e6 * number.get("shear_strength_initial_MPa", math.nan)
         walls.append(
             Wall(
-                name=f"{row['n']} {row['name']}", height=number["height_m"], length=number["length_m"],
-                thickness=number["thickness_m"], unit_length=1e-3 * number.get("unit_length_mm", math.nan),
-                unit_height=1e-3 * number.get("unit_height_mm", math.nan), compressive=compressive,
+                name=f"{row['n']} {row['name']}",
+                height=number["height_m"],
+                length=number["length_m"],
+                thickness=number["thickness_m"],
+                unit_length=1e-3 * number.get("unit_length_mm", math.nan),
+                unit_height=1e-3 * number.get("unit_height_mm", math.nan),
+                compressive=compressive,
                 tensile=1e6 * number["masonry_tensile_diagonal_MPa"] if "masonry_tensile_diagonal_MPa" in number else cohesion,
-                young=1e6 * number.get("young_MPa", 1e-6 * MODULUS * compressive), cohesion=cohesion,
-                friction=number.get("friction", FRICTION), span=number["shear_span_over_height"],
-                pressure=1e6 * number["vertical_stress_MPa"], failure=row.get("failure", ""), peak=1e3 * sum(peaks) / len(peaks) if peaks else math.nan,
-                drift=1e-2 * sum(drifts) / len(drifts) if drifts else math.nan, ultimate=1e-2 * min(ends, default=math.nan),
+                young=1e6 * number.get("young_MPa", 1e-6 * MODULUS * compressive),
+                cohesion=cohesion,
+                friction=number.get("friction", FRICTION),
+                span=number["shear_span_over_height"],
+                pressure=1e6 * number["vertical_stress_MPa"],
+                failure=row.get("failure", ""),
+                peak=1e3 * sum(peaks) / len(peaks) if peaks else math.nan,
+                drift=1e-2 * sum(drifts) / len(drifts) if drifts else math.nan,
+                ultimate=1e-2 * min(ends, default=math.nan),
             )
-        )  # fmt: skip
+        )
     return walls
 
 
@@ -138,11 +147,7 @@ def by_limit_analysis(wall: Wall) -> dict[str, Predicted]:
     answer = _answer(deck)
     if isinstance(answer, Predicted):
         return {"limit": answer}
-    return {
-        "limit": Predicted(
-            answer["collapse_acceleration_g"] * wall.axial, "S" if answer.get("dilating_joints") else "F"
-        )
-    }
+    return {"limit": Predicted(answer["collapse_acceleration_g"] * wall.axial, "S" if answer.get("dilating_joints") else "F")}
 
 
 def _bricks(wall: Wall) -> list[dict[str, Any]]:
@@ -179,8 +184,16 @@ def _beam(wall: Wall) -> dict[str, Any]:
     if abs(centre(leg) - wall.span * wall.height) > 1e-6:
         raise ValueError(f"wall {wall.name}: no portal has its centre at the shear span")
     left, right, foot = -gap, wall.length + gap, wall.height - leg
-    points = [[left - width, foot], [left, foot], [left, wall.height], [right, wall.height], [right, foot],
-              [right + width, foot], [right + width, top], [left - width, top]]  # fmt: skip
+    points = [
+        [left - width, foot],
+        [left, foot],
+        [left, wall.height],
+        [right, wall.height],
+        [right, foot],
+        [right + width, foot],
+        [right + width, top],
+        [left - width, top],
+    ]
     return {"name": "beam", "points": points, "density": weight / area}
 
 
@@ -223,9 +236,11 @@ CODES = ("ASCE 41", "EN 1998-3", "Magenes-Calvi", "NTC")
 def by_membrane(wall: Wall) -> dict[str, Predicted]:
     """The wall as a membrane that cracks and crushes, its foot held, its top moved sideways under the constant axial load."""
     strengths = {
-        "tensile_strength": wall.tensile, "fracture_energy": CRACK_DUCTILITY * wall.tensile,
-        "compressive_strength": wall.compressive, "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
-    }  # fmt: skip
+        "tensile_strength": wall.tensile,
+        "fracture_energy": CRACK_DUCTILITY * wall.tensile,
+        "compressive_strength": wall.compressive,
+        "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
+    }
     return {"membrane": _followed(wall, _panel(wall, {}, strengths, {}, {"size": wall.length / 15.0}))}
 
 
@@ -235,18 +250,20 @@ def by_units(wall: Wall) -> dict[str, Predicted]:
     bond = {"unit_length": wall.length / count, "unit_height": wall.height / courses}
     tension, cracks = BOND_TENSION * wall.cohesion, UNIT_TENSION * wall.compressive
     joints = {
-        "friction": wall.friction, "cohesion": wall.cohesion, "shear_energy": SLIP_DUCTILITY * wall.cohesion,
-        "tension": tension, "fracture_energy": CRACK_DUCTILITY * tension,
-        "compressive_strength": wall.compressive, "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
-    }  # fmt: skip
+        "friction": wall.friction,
+        "cohesion": wall.cohesion,
+        "shear_energy": SLIP_DUCTILITY * wall.cohesion,
+        "tension": tension,
+        "fracture_energy": CRACK_DUCTILITY * tension,
+        "compressive_strength": wall.compressive,
+        "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
+    }
     units = {"tensile_strength": cracks, "fracture_energy": CRACK_DUCTILITY * cracks}
     mesh = {"size": 0.5 * bond["unit_length"], "joints": "interfaces"}
     return {"units": _followed(wall, _panel(wall, bond, units, joints, mesh))}
 
 
-def _panel(
-    wall: Wall, bond: dict[str, Any], strengths: dict[str, Any], joints: dict[str, Any], mesh: dict[str, Any]
-) -> dict[str, Any]:
+def _panel(wall: Wall, bond: dict[str, Any], strengths: dict[str, Any], joints: dict[str, Any], mesh: dict[str, Any]) -> dict[str, Any]:
     """The deck of a wall whose foot is held and whose top is moved sideways to a drift of 1 % under the constant axial load."""
     panel: dict[str, Any] = {"kind": "panel", "width": wall.length, "height": wall.height, "thickness": wall.thickness}
     if wall.span < 0.75:
@@ -275,11 +292,7 @@ def _followed(wall: Wall, deck: dict[str, Any]) -> Predicted:
     answer = _answer(deck)
     if isinstance(answer, Predicted):
         return answer
-    peak, drift, drop = (
-        answer["greatest_load_N"],
-        answer["greatest_load_displacement_m"] / wall.height,
-        answer.get("drop_drift"),
-    )
+    peak, drift, drop = (answer["greatest_load_N"], answer["greatest_load_displacement_m"] / wall.height, answer.get("drop_drift"))
     failure = "F" if peak >= 0.95 * wall.flexural else "S"
     return Predicted(peak, failure, "", drift, math.nan if drop is None else drop)
 
@@ -304,12 +317,21 @@ def _pier(wall: Wall, law: str) -> Predicted:
     double, diagonal = wall.span < 0.75, math.isnan(wall.cohesion)
     height = wall.height * max(wall.span, 1.0)
     pier = MacroElement(
-        (-1, -1, -1, 0, 1, -1 if double else 2), height, wall.length, wall.thickness, wall.young,
-        0.4 * wall.young * wall.length * wall.thickness / (1.2 * height), CRUSHES_AT * wall.compressive,
-        shear="turnsek-cacovic" if diagonal else law, cohesion=0.0 if diagonal else wall.cohesion, friction=wall.friction,
+        (-1, -1, -1, 0, 1, -1 if double else 2),
+        height,
+        wall.length,
+        wall.thickness,
+        wall.young,
+        0.4 * wall.young * wall.length * wall.thickness / (1.2 * height),
+        CRUSHES_AT * wall.compressive,
+        shear="turnsek-cacovic" if diagonal else law,
+        cohesion=0.0 if diagonal else wall.cohesion,
+        friction=wall.friction,
         tension=wall.tensile,
-        slenderness=min(max(wall.height / wall.length, 1.0), 1.5), second_order=False, drifts=LIMITS,
-    )  # fmt: skip
+        slenderness=min(max(wall.height / wall.length, 1.0), 1.5),
+        second_order=False,
+        drifts=LIMITS,
+    )
     n = 2 if double else 3
     weight, along = np.zeros(n), np.zeros(n)
     weight[1], along[0] = -wall.axial, 1.0
@@ -415,14 +437,24 @@ def main() -> None:
         )
         for wall, by in zip(walls, found, strict=True):
             for method, one in by.items():
-                table.writerow([wall.name, wall.failure, f"{wall.peak / 1e3:.2f}", method, f"{one.strength / 1e3:.2f}",
-                                one.failure, one.why_not, f"{wall.drift:.5f}", f"{one.drift:.5f}", f"{one.drop:.5f}"])  # fmt: skip
+                table.writerow(
+                    [
+                        wall.name,
+                        wall.failure,
+                        f"{wall.peak / 1e3:.2f}",
+                        method,
+                        f"{one.strength / 1e3:.2f}",
+                        one.failure,
+                        one.why_not,
+                        f"{wall.drift:.5f}",
+                        f"{one.drift:.5f}",
+                        f"{one.drop:.5f}",
+                    ]
+                )
     print_drifts(walls, found)
     print(f"{'method':16}{'all':>18}{'shear':>18}{'hybrid':>18}{'flexure':>18}{'right mode':>12}{'none':>6}")
     for method in sorted({name for by in found for name in by}):
-        pairs = [
-            (wall, by.get(method, Predicted(why_not="not predicted"))) for wall, by in zip(walls, found, strict=True)
-        ]
+        pairs = [(wall, by.get(method, Predicted(why_not="not predicted"))) for wall, by in zip(walls, found, strict=True)]
         cells = []
         for mode in ("", "S", "H", "F"):
             bias, scatter, count = statistics([(w, p) for w, p in pairs if mode in ("", w.mode)])

@@ -39,11 +39,7 @@ def deck(structure: Any = None, analysis: Any = None, *, folder: str | Path | No
 
 
 def run(
-    deck: "str | Path | dict[str, Any] | Deck",
-    out: str | Path | None = None,
-    *,
-    threads: int | None = None,
-    figures: bool = False,
+    deck: "str | Path | dict[str, Any] | Deck", out: str | Path | None = None, *, threads: int | None = None, figures: bool = False
 ) -> "Run":
     """Run a deck (a file, a dictionary of the same shape, or what `extrados.deck` made) in memory and return its results.
 

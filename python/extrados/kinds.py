@@ -87,36 +87,38 @@ NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushov
 
 
 def _stones(
-    table: str, *, piers: View = NO_PIERS, solids: View = SECTION, mesh: View = MESH_OF_STONES, shell: View = NO_SHELL,
+    table: str,
+    *,
+    piers: View = NO_PIERS,
+    solids: View = SECTION,
+    mesh: View = MESH_OF_STONES,
+    shell: View = NO_SHELL,
     handles: str | None = None,
-) -> StructureKind:  # fmt: skip
+) -> StructureKind:
     """A plane structure of blocks and joints."""
     return StructureKind(
-        f"model.structures.{table}", BLOCKS, piers, solids, RIGID, ROCKER, mesh, shell, NO_FRAME,
+        f"model.structures.{table}",
+        BLOCKS,
+        piers,
+        solids,
+        RIGID,
+        ROCKER,
+        mesh,
+        shell,
+        NO_FRAME,
         None if handles is None else f"explore.handles:{handles}",
-    )  # fmt: skip
+    )
 
 
 def _solids(table: str, shell: View = NO_SHELL) -> StructureKind:
     """Blocks in space, no plane section."""
     return StructureKind(
-        f"model.structures.{table}",
-        NO_SECTION,
-        NO_PIERS,
-        SPATIAL,
-        NO_SECTION,
-        NO_SECTION,
-        NO_SECTION,
-        shell,
-        NO_FRAME,
-        None,
+        f"model.structures.{table}", NO_SECTION, NO_PIERS, SPATIAL, NO_SECTION, NO_SECTION, NO_SECTION, shell, NO_FRAME, None
     )
 
 
 STRUCTURES: dict[str, StructureKind] = {
-    "arch": _stones(
-        "arch:Arch", solids="views.solids.arch:solids_of_arch", shell="views.shell.vaults:shell_of_arch", handles="ARCH"
-    ),
+    "arch": _stones("arch:Arch", solids="views.solids.arch:solids_of_arch", shell="views.shell.vaults:shell_of_arch", handles="ARCH"),
     "block": _stones("block:Block", handles="BLOCK"),
     "vault": _stones("vault:Vault", shell="views.shell.vaults:shell_of_vault", handles="VAULT"),
     "aisled-vault": _stones("aisled_vault:AisledVault", handles="AISLED_VAULT"),
@@ -126,8 +128,16 @@ STRUCTURES: dict[str, StructureKind] = {
     "blocks": _stones("blocks:Blocks", solids="views.solids.blocks:solids_of_blocks", handles="BLOCKS"),
     "panel": _stones("walls:Panel", piers=PIERS, mesh="views.mesh.panel:mesh_panel", handles="PANEL"),
     "mesh": StructureKind(
-        "model.structures.walls:MeshFile", NO_STONES, NO_PIERS, SECTION, RIGID, NO_STONES, "views.mesh.file:mesh_file",
-        "views.shell.file:shell_of_file", NO_FRAME, None,
+        "model.structures.walls:MeshFile",
+        NO_STONES,
+        NO_PIERS,
+        SECTION,
+        RIGID,
+        NO_STONES,
+        "views.mesh.file:mesh_file",
+        "views.shell.file:shell_of_file",
+        NO_FRAME,
+        None,
     ),
     "column": _stones("masonry:Column", solids="views.solids.column:solids_of_column", handles="COLUMN"),
     "brickwork": _stones("brickwork:Brickwork", piers=PIERS, handles="BRICKWORK"),
@@ -135,18 +145,24 @@ STRUCTURES: dict[str, StructureKind] = {
     "stack": _stones("stack:Stack", handles="STACK"),
     "building": StructureKind(
         "model.structures.plan:Plan",
-        Lacks("a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "
-              "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`"),
-        NO_PIERS, SECTION, RIGID,
+        Lacks(
+            "a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "
+            "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`"
+        ),
+        NO_PIERS,
+        SECTION,
+        RIGID,
         Lacks("a building on a plan does not rock as one body: draw one of its walls"),
         Lacks("the walls of a building form a structure in space: its analysis is `pushover`; draw one of them as `panel`"),
-        "views.shell.plan:shell_of_plan", "views.frame.plan:frame_of_plan", None,
+        "views.shell.plan:shell_of_plan",
+        "views.frame.plan:frame_of_plan",
+        None,
     ),
     "wall": _solids("wall:Wall"),
     "dome": _solids("dome:Dome", shell="views.shell.vaults:shell_of_dome"),
     "chimney": _solids("chimney:Chimney", shell="views.shell.chimney:shell_of_chimney"),
     "cross-vault": _solids("cross_vault:CrossVault", shell="views.shell.vaults:shell_of_cross_vault"),
-}  # fmt: skip
+}
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
     "step-pulse": "motions.tables:StepPulse",
@@ -162,15 +178,27 @@ MOTIONS: dict[str, str] = {
 
 
 def _analysis(
-    package: str, table: str, driver: str, figures: str, page: str, example: str, strategies: tuple[str, ...] = (),
+    package: str,
+    table: str,
+    driver: str,
+    figures: str,
+    page: str,
+    example: str,
+    strategies: tuple[str, ...] = (),
     results: str | None = None,
-) -> AnalysisKind:  # fmt: skip
+) -> AnalysisKind:
     """The results of a kind are called as its table is and so is its validity."""
     return AnalysisKind(
-        f"analyses.{package}.tables:{table}", f"analyses.{package}.needs:needs", f"analyses.{package}.{driver}:run",
-        f"results.{results or f'{package}:{table}'}", f"results.validity:{table}", f"show.{figures}", f"show.charts:Shown.{page}",
-        f"{example}.toml", strategies,
-    )  # fmt: skip
+        f"analyses.{package}.tables:{table}",
+        f"analyses.{package}.needs:needs",
+        f"analyses.{package}.{driver}:run",
+        f"results.{results or f'{package}:{table}'}",
+        f"results.validity:{table}",
+        f"show.{figures}",
+        f"show.charts:Shown.{page}",
+        f"{example}.toml",
+        strategies,
+    )
 
 
 ANALYSES: dict[str, AnalysisKind] = {
@@ -182,15 +210,35 @@ ANALYSES: dict[str, AnalysisKind] = {
     "supports": _analysis("limit", "MovingSupports", "supports", "limit.supports:draw", "supports", "limit/oppenheim"),
     "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "moving_load", "limit/oppenheim"),
     "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "rocking", "arch/oppenheim", ("rocking",)),
-    "failure-domain": _analysis("rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "failure_domain", "arch/oppenheim-domain"),
-    "failure-curves": _analysis("rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "failure_curves", "arch/figure-5-4"),
+    "failure-domain": _analysis(
+        "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "failure_domain", "arch/oppenheim-domain"
+    ),
+    "failure-curves": _analysis(
+        "rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "failure_curves", "arch/figure-5-4"
+    ),
     "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "assessment", "arch/readme", ("assessment",)),
-    "fragility": _analysis("statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility", "fragility/pga-curve", ("probability",)),
+    "fragility": _analysis(
+        "statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility", "fragility/pga-curve", ("probability",)
+    ),
     "resonance": _analysis("statistics", "Resonance", "resonance", "statistics:draw_resonance", "others", "rocking/resonance"),
-    "rocking-spectrum": _analysis("statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "others", "rocking/el-centro-block"),
-    "harmonic-map": _analysis("statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "others", "rocking/el-centro-block"),
-    "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "others", "rocking/el-centro-block", ("code-checks",)),
-    "local-mechanism": _analysis("codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "local_mechanism", "codes/facade", results="codes:LocalMechanisms"),
+    "rocking-spectrum": _analysis(
+        "statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "others", "rocking/el-centro-block"
+    ),
+    "harmonic-map": _analysis(
+        "statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "others", "rocking/el-centro-block"
+    ),
+    "code-checks": _analysis(
+        "codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "others", "rocking/el-centro-block", ("code-checks",)
+    ),
+    "local-mechanism": _analysis(
+        "codes",
+        "LocalMechanism",
+        "local_mechanism",
+        "codes:draw_local_mechanism",
+        "local_mechanism",
+        "codes/facade",
+        results="codes:LocalMechanisms",
+    ),
     "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "others", "motion/el-centro"),
     "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "others", "motion/appendix-c"),
     "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla", "sla/beam", ("sla",)),
@@ -205,7 +253,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "others", "assess/readme-arch"),
     "strengthen": _analysis("strengthen", "Strengthen", "driver", "strengthen:draw_strengthen", "strengthen", "strengthen/nave"),
     "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "others", "dem/rocking-block"),
-}  # fmt: skip
+}
 
 #: Section of a deck -> its kinds, each with the place of its table
 TABLES: dict[str, dict[str, str]] = {

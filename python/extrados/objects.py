@@ -12,9 +12,7 @@ from typing import Any
 from extrados import kinds
 
 #: Class of a table -> its section and kind
-_NAMED = {
-    place.split(":")[1]: (section, kind) for section, there in kinds.TABLES.items() for kind, place in there.items()
-}
+_NAMED = {place.split(":")[1]: (section, kind) for section, there in kinds.TABLES.items() for kind, place in there.items()}
 
 
 class Maker:
@@ -54,20 +52,21 @@ class Maker:
         from extrados.decks.explain import table_facts
 
         told = table_facts(self.section, self.kind, self.table)
-        rows = [
-            f"{name} : {key.facts or 'see its own keys'}\n    {key.about}"
-            for name, key in told.keys.items()
-            if "." not in name
-        ]
+        rows = [f"{name} : {key.facts or 'see its own keys'}\n    {key.about}" for name, key in told.keys.items() if "." not in name]
         return f"{told.summary}\n\nKeys\n----\n" + "\n".join(rows)
 
     @property
     def __signature__(self) -> inspect.Signature:
         fields = self.table.model_fields.items()
-        return inspect.Signature([
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=inspect.Parameter.empty if f.is_required() else f.get_default())
-            for name, f in sorted(fields, key=lambda pair: not pair[1].is_required()) if name != "kind"
-        ])  # fmt: skip
+        return inspect.Signature(
+            [
+                inspect.Parameter(
+                    name, inspect.Parameter.KEYWORD_ONLY, default=inspect.Parameter.empty if f.is_required() else f.get_default()
+                )
+                for name, f in sorted(fields, key=lambda pair: not pair[1].is_required())
+                if name != "kind"
+            ]
+        )
 
 
 def _plain() -> dict[str, tuple[str, Any]]:

@@ -42,9 +42,7 @@ def four_bar(model: ArchModel):
         v3 = 1j * w3 * (p / (c - d)) * (centroid[2] - d)
         spins = (-1.0, w2, w3)
         velocities = (v1, v2, v3)
-        total = sum(
-            k * (v.real**2 + v.imag**2) + i * w * w for k, i, v, w in zip(mass, inertia, velocities, spins, strict=True)
-        )
+        total = sum(k * (v.real**2 + v.imag**2) + i * w * w for k, i, v, w in zip(mass, inertia, velocities, spins, strict=True))
         gravity = GRAVITY * sum(k * v.imag for k, v in zip(mass, velocities, strict=True))
         return total, gravity, sum(k * v.real for k, v in zip(mass, velocities, strict=True))
 
@@ -120,15 +118,22 @@ def domains(size: int = 100) -> None:
                 mapper = Mapper(body, pulse, durations.tolist(), settle, threads)
                 found = failure_curves(mapper, durations, amplitudes, 1e-4 * GRAVITY)
                 wall, cpu = min(wall, time.perf_counter() - begin[0]), min(cpu, time.process_time() - begin[1])
-            print(f"failure domain {size} x {size} with both curves, {pulse} pulses, {name}, {threads} thread(s): {wall:.2f} s ({cpu:.2f} s of processor)")  # fmt: skip
+            print(
+                f"failure domain {size} x {size} with both curves, {pulse} pulses, {name}, {threads} thread(s): {wall:.2f} s ({cpu:.2f} s of processor)"
+            )
         some = slice(5, None, size // 8)
         wrong = 0
         edges = found.mode_i[some]
         for side, below in ((1.0, False), (1.0 - 1.1e-4 * GRAVITY / edges, True)):
             e = rocking.ensemble(
-                [body], [unit_pulse(pulse, float(t)).ground for t in durations[some]], 0 * np.arange(len(edges)), np.arange(len(edges)),
-                np.nan_to_num(edges * side, nan=1.0), durations[some] * 3.0 + settle, tolerance=1e-12,
-            )  # fmt: skip
+                [body],
+                [unit_pulse(pulse, float(t)).ground for t in durations[some]],
+                0 * np.arange(len(edges)),
+                np.arange(len(edges)),
+                np.nan_to_num(edges * side, nan=1.0),
+                durations[some] * 3.0 + settle,
+                tolerance=1e-12,
+            )
             wrong += int(((e.outcome == 2) == below)[np.isfinite(edges)].sum())
         print(f"  of {np.isfinite(edges).sum()} edges {wrong} half sides have another outcome at a tolerance of 1e-12")
 
@@ -148,16 +153,12 @@ def main() -> None:
     for tolerance in (1e-3, 1e-5, 1e-8):
 
         def run(tol: float = tolerance):
-            return rocking.ensemble(
-                [model.body], [motion.ground], index, index, 1.0, end, tolerance=tol, stop_when_safe=False
-            )
+            return rocking.ensemble([model.body], [motion.ground], index, index, 1.0, end, tolerance=tol, stop_when_safe=False)
 
         rate, used = n / seconds(run), processor(run)
         error = abs(abs(run().peak[0]) / exact - 1)
         ours.append((error, rate))
-        print(
-            f"  extrados, tolerance {tolerance:g}: {rate:9.1f} runs/s ({n / used:.0f} a second of processor)  error {error:.1e}"
-        )
+        print(f"  extrados, tolerance {tolerance:g}: {rate:9.1f} runs/s ({n / used:.0f} a second of processor)  error {error:.1e}")
     for rtol in (1e-5, 1e-8, 1e-10):
         begin = time.perf_counter()
         top = scipy_run(model, axis, values, rtol, end)
@@ -201,9 +202,7 @@ def main() -> None:
     print(
         f"tilt, 36 voussoirs: {1e3 * took:.2f} ms with assembly and mechanism, SciPy's full programme {1e3 * theirs:.2f} ms, ratio {theirs / took:.1f}"
     )
-    print(
-        f"  duality gap {abs(state.gamma - mechanism.upper_bound):.1e}, difference from SciPy {abs(state.gamma - full()):.1e}"
-    )
+    print(f"  duality gap {abs(state.gamma - mechanism.upper_bound):.1e}, difference from SciPy {abs(state.gamma - full()):.1e}")
 
 
 if __name__ == "__main__":

@@ -70,28 +70,17 @@ CASES = {
     "arch of 7": Case(make_arch(10.0, 1.5, 157.5, 7), PULSE, 3, 3.0, 0.4, 0.5, 1.5e11, 3e-3, rigid_steps=RIGID),
     "arch of 60": Case(make_arch(10.0, 1.5, 157.5, 60), PULSE, 30, 0.6, 0.4, 0.1, 1e10, 3e-3, rigid_steps=RIGID),
     # At 1e-3 s MuJoCo's wall falls apart; half of that is its largest step that does not.
-    "wall of 420": Case(
-        make_brickwork(Bond(0.5, 0.25), 5.0, 10.0, (), 2000.0, 1.0), PULSE, 409, 0.3, 0.3, 0.01, 6e10, 3e-3, (5e-4,)
-    ),
+    "wall of 420": Case(make_brickwork(Bond(0.5, 0.25), 5.0, 10.0, (), 2000.0, 1.0), PULSE, 409, 0.3, 0.3, 0.01, 6e10, 3e-3, (5e-4,)),
 }
 
 
-def ours(
-    case: Case, end: float, stiffness: float, beta: float, fraction: float, rigid_step: float = 0.0
-) -> tuple[float, dem.Run]:
+def ours(case: Case, end: float, stiffness: float, beta: float, fraction: float, rigid_step: float = 0.0) -> tuple[float, dem.Run]:
     """Wall time of the motion alone (settling is timed by a run of one step and taken off), and the run."""
     bodies = case.bodies(stiffness, beta)
     times = np.linspace(0.0, end, 401)
 
     def go(length: float) -> tuple[float, dem.Run]:
-        options = dem.Options(
-            length,
-            fraction=fraction,
-            settle_tolerance=1e-4,
-            residual_limit=0.5,
-            rigid=rigid_step > 0.0,
-            step=rigid_step,
-        )
+        options = dem.Options(length, fraction=fraction, settle_tolerance=1e-4, residual_limit=0.5, rigid=rigid_step > 0.0, step=rigid_step)
         begin = time.perf_counter()
         run = dem.run(bodies, options, case.ground, times=times[times <= length])
         return time.perf_counter() - begin, run
@@ -150,11 +139,7 @@ def one(name: str, case: Case) -> None:
             return error(axis, moved, reference, case.window)
 
     def told(answer: dem_peers.Answer) -> str:
-        return (
-            f"{wrong(answer.time, answer.moved):.1e}"
-            if answer.time[-1] > 0.99 * case.window
-            else "- (too slow to run that far)"
-        )
+        return f"{wrong(answer.time, answer.moved):.1e}" if answer.time[-1] > 0.99 * case.window else "- (too slow to run that far)"
 
     mine = wrong(run.time, displacement(run, case.follow))
     print(f"{name}: {n} blocks")
@@ -196,16 +181,7 @@ def sizes() -> None:
     """Cost per block and step over the size of a wall, as it settles and shakes."""
     print("cost over size: walls of units in running bond, 1 thread")
     for rows in (5, 10, 20, 44):
-        case = Case(
-            make_brickwork(Bond(0.5, 0.25), 0.5 * rows, 0.25 * rows, (), 2000.0, 1.0),
-            SHAKE,
-            0,
-            0.1,
-            0.1,
-            0.0,
-            5e9,
-            1e-3,
-        )
+        case = Case(make_brickwork(Bond(0.5, 0.25), 0.5 * rows, 0.25 * rows, (), 2000.0, 1.0), SHAKE, 0, 0.1, 0.1, 0.0, 5e9, 1e-3)
         bodies = case.bodies(5e9, 1e-3)
         n = len(case.assembly.mass)
         end = 40.0 / n

@@ -54,10 +54,14 @@ def solids_of(assembly: SolidAssembly, law: dem3.Law) -> dem3.Solids:
     middle = np.reshape([part.vertices.mean(axis=0) for part in below], (-1, 3))
     parts = [*assembly.parts, *below]
     return dem3.Solids(
-        np.concatenate([assembly.centroid, middle]), np.concatenate([assembly.mass, np.zeros(n)]),
-        np.concatenate([assembly.inertia, np.tile(np.eye(3), (n, 1, 1))]), [p.vertices for p in parts], [p.faces for p in parts],
-        [*assembly.owner.tolist(), *range(len(assembly.mass), len(assembly.mass) + n)], [law],
-    )  # fmt: skip
+        np.concatenate([assembly.centroid, middle]),
+        np.concatenate([assembly.mass, np.zeros(n)]),
+        np.concatenate([assembly.inertia, np.tile(np.eye(3), (n, 1, 1))]),
+        [p.vertices for p in parts],
+        [p.faces for p in parts],
+        [*assembly.owner.tolist(), *range(len(assembly.mass), len(assembly.mass) + n)],
+        [law],
+    )
 
 
 @dataclass(frozen=True)
@@ -83,22 +87,30 @@ class Case:
 
 CASES = {
     "column of 12 drums": Case(
-        lambda: drums(1.0, [0.5] * 12, None, 16), sine(0.35 * GRAVITY, 0.8), 0.6, 1e10, 1e-3, 1e11,
-        rigid_steps=(32e-3, 16e-3, 4e-3, 5e-4),
+        lambda: drums(1.0, [0.5] * 12, None, 16), sine(0.35 * GRAVITY, 0.8), 0.6, 1e10, 1e-3, 1e11, rigid_steps=(32e-3, 16e-3, 4e-3, 5e-4)
     ),
     "arch of 30": Case(
-        lambda: drawn_out(make_arch(10.0, 1.5, 157.5, 30)), sine(0.6 * GRAVITY, 0.6), 0.4, 2e10, 1e-3, 2e11,
+        lambda: drawn_out(make_arch(10.0, 1.5, 157.5, 30)),
+        sine(0.6 * GRAVITY, 0.6),
+        0.4,
+        2e10,
+        1e-3,
+        2e11,
         rigid_steps=(32e-3, 16e-3, 4e-3, 5e-4),
     ),
     # Out of its plane
     "wall of 500": Case(
-        lambda: make_wall(Bond(0.4, 0.2), 0.2, 3.2, [(12.6, False, [])]), sine(0.3 * GRAVITY, 0.6), 0.3, 2e9, 1e-3, 2e10,
-        way=1, peer_steps=(1e-3,),
+        lambda: make_wall(Bond(0.4, 0.2), 0.2, 3.2, [(12.6, False, [])]),
+        sine(0.3 * GRAVITY, 0.6),
+        0.3,
+        2e9,
+        1e-3,
+        2e10,
+        way=1,
+        peer_steps=(1e-3,),
     ),
-    "dome of 600": Case(
-        lambda: make_dome(5.0, 0.5, 180.0, 25, 24), sine(0.8 * GRAVITY, 0.6), 0.3, 2e9, 1e-3, 2e10, peer_steps=(1e-3,)
-    ),
-}  # fmt: skip
+    "dome of 600": Case(lambda: make_dome(5.0, 0.5, 180.0, 25, 24), sine(0.8 * GRAVITY, 0.6), 0.3, 2e9, 1e-3, 2e10, peer_steps=(1e-3,)),
+}
 
 
 def run_of(solids: dem3.Solids, case: Case, rigid: bool = False, **keys: float) -> tuple[float, dem3.Run]:
@@ -125,9 +137,7 @@ def run_of(solids: dem3.Solids, case: Case, rigid: bool = False, **keys: float) 
 
 def error(time_axis: np.ndarray, moved: np.ndarray, exact: np.ndarray, times: np.ndarray) -> float:
     """Greatest RMS distance of a block (t, n, 3) from the refined one over the greatest displacement of any."""
-    found = np.stack(
-        [[np.interp(times, time_axis, moved[:, b, i]) for i in range(3)] for b in range(moved.shape[1])]
-    ).transpose(2, 0, 1)
+    found = np.stack([[np.interp(times, time_axis, moved[:, b, i]) for i in range(3)] for b in range(moved.shape[1])]).transpose(2, 0, 1)
     rms = np.sqrt(((found - exact) ** 2).sum(axis=2).mean(axis=0))
     return float(rms.max() / np.linalg.norm(exact, axis=2).max())
 
@@ -138,7 +148,7 @@ def lmgc90(name: str, dt: float) -> tuple[solid_peers.Answer | None, str]:
         out = Path(folder) / "answer.npz"
         run = subprocess.run(
             [sys.executable, solid_peers.__file__, name, str(dt), str(out)], capture_output=True, text=True, errors="replace", check=False
-        )  # fmt: skip
+        )
         if not out.exists():
             return None, " ".join(f"{run.stdout} {run.stderr}".split())[-200:] or f"ended with {run.returncode}"
         data = np.load(out)
@@ -170,10 +180,7 @@ def one(name: str, case: Case) -> None:
         off = error(run.time, moved(run), exact, fine.time)
         ahead = case.seconds / spent
         told = f"{ahead:9.2f} times real time" if ahead else 25 * " "
-        print(
-            f"  extrados  {told}  step {run.step:.1e} s  error {off:.1e}  energy residual {run.residual:.1e}  {solver}",
-            flush=True,
-        )
+        print(f"  extrados  {told}  step {run.step:.1e} s  error {off:.1e}  energy residual {run.residual:.1e}  {solver}", flush=True)
         if ahead:
             aheads[f"{solver} at {run.step:.2g} s"] = ahead
 
@@ -183,18 +190,13 @@ def one(name: str, case: Case) -> None:
         if peer.time[-1] > 0.99 * case.seconds:
             off = f"{error(peer.time, peer.moved, exact, fine.time):.1e}"
         faster = ", ".join(f"{solver} {ahead / rate:.1f}" for solver, ahead in aheads.items())
-        print(
-            f"  {program}    {rate:9.2g} times real time  step {dt:.0e} s  error {off}  times as fast: {faster}",
-            flush=True,
-        )
+        print(f"  {program}    {rate:9.2g} times real time  step {dt:.0e} s  error {off}  times as fast: {faster}", flush=True)
 
     if not has("mujoco"):
         print("  MuJoCo    not installed")
     for dt in case.peer_steps if has("mujoco") else ():
         grounds = (STILL, case.ground) if case.way else (case.ground, STILL)
-        runs_of_peer = [
-            solid_peers.mujoco(solids(case.stiffness, 0.0), *grounds, case.seconds, dt) for _ in range(case.tries)
-        ]
+        runs_of_peer = [solid_peers.mujoco(solids(case.stiffness, 0.0), *grounds, case.seconds, dt) for _ in range(case.tries)]
         beside("MuJoCo", min(runs_of_peer, key=lambda run: run.processor), dt)
     if not has("compas_lmgc90"):
         print("  LMGC90    not installed")
@@ -263,10 +265,7 @@ def threads() -> None:
                         took[count].append(time.perf_counter() - begin)
             ratio = statistics.median(took[cores]) / statistics.median(took[1])
             held = "" if not others else f" (goal {WITHIN}: {'met' if ratio <= WITHIN else 'missed'})"
-            print(
-                f"  {n:5d} blocks, {others} processes beside it: {ratio:.2f} times the time of one thread{held}",
-                flush=True,
-            )
+            print(f"  {n:5d} blocks, {others} processes beside it: {ratio:.2f} times the time of one thread{held}", flush=True)
 
 
 def main() -> None:

@@ -58,9 +58,7 @@ class Busy:
         self.last = self.total()
 
     def total(self) -> float:
-        return next(
-            m["value"] for m in self.link.send("Performance.getMetrics")["metrics"] if m["name"] == "TaskDuration"
-        )
+        return next(m["value"] for m in self.link.send("Performance.getMetrics")["metrics"] if m["name"] == "TaskDuration")
 
     def since(self) -> float:
         """What it was since the last look."""

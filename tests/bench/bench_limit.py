@@ -66,8 +66,10 @@ def scipy_full(a: Assembly, friction: float | None = None) -> float:
         column.append((3 * held[:, None, None] + np.arange(3)[:, None]).repeat(3, axis=2).ravel())
         value.append(sign * wrench[held].ravel())
     live = (loads.live / unit).ravel()
-    entries = (np.concatenate([*value, live]), (np.concatenate([*row, np.arange(len(live))]),
-               np.concatenate([*column, np.full(len(live), 3 * m)])))  # fmt: skip
+    entries = (
+        np.concatenate([*value, live]),
+        (np.concatenate([*row, np.arange(len(live))]), np.concatenate([*column, np.full(len(live), 3 * m)])),
+    )
     matrix = sparse.csr_array(entries, shape=(3 * len(a.mass), 3 * m + 1))
     cost = np.zeros(3 * m + 1)
     cost[-1] = -1.0
@@ -75,16 +77,28 @@ def scipy_full(a: Assembly, friction: float | None = None) -> float:
     if friction is not None:
         j = np.arange(m)
         one = np.ones(m)
-        cone = sparse.vstack([
-            sparse.csr_array(
-                (np.concatenate([-friction * one, -friction * one, s * one]), (np.tile(j, 3), np.concatenate([3 * j, 3 * j + 1, 3 * j + 2]))),
-                shape=(m, 3 * m + 1),
-            )
-            for s in (1.0, -1.0)
-        ])  # fmt: skip
+        cone = sparse.vstack(
+            [
+                sparse.csr_array(
+                    (
+                        np.concatenate([-friction * one, -friction * one, s * one]),
+                        (np.tile(j, 3), np.concatenate([3 * j, 3 * j + 1, 3 * j + 2])),
+                    ),
+                    shape=(m, 3 * m + 1),
+                )
+                for s in (1.0, -1.0)
+            ]
+        )
     bounds = [(0, None), (0, None), (None, None)] * m + [(None, None)]
-    found = linprog(cost, A_ub=cone, b_ub=None if cone is None else np.zeros(2 * m), A_eq=matrix,
-                    b_eq=-(loads.dead / unit).ravel(), bounds=bounds, method="highs")  # fmt: skip
+    found = linprog(
+        cost,
+        A_ub=cone,
+        b_ub=None if cone is None else np.zeros(2 * m),
+        A_eq=matrix,
+        b_eq=-(loads.dead / unit).ravel(),
+        bounds=bounds,
+        method="highs",
+    )
     return -found.fun
 
 
@@ -100,10 +114,22 @@ def warm_highs(a: Assembly) -> Callable[[], float]:
     lower = np.zeros(n)
     lower[2::3] = lower[-1] = -highspy.kHighsInf
     solver.passModel(
-        n, rows.shape[0], rows.nnz, int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
-        np.zeros(n), lower, np.full(n, highspy.kHighsInf), system.right, system.right, rows.indptr.astype(np.int32),
-        rows.indices.astype(np.int32), rows.data, np.zeros(n, dtype=np.int32),
-    )  # fmt: skip
+        n,
+        rows.shape[0],
+        rows.nnz,
+        int(highspy.MatrixFormat.kRowwise),
+        int(highspy.ObjSense.kMinimize),
+        0.0,
+        np.zeros(n),
+        lower,
+        np.full(n, highspy.kHighsInf),
+        system.right,
+        system.right,
+        rows.indptr.astype(np.int32),
+        rows.indices.astype(np.int32),
+        rows.data,
+        np.zeros(n, dtype=np.int32),
+    )
     sense = [1.0]
 
     def solve() -> float:
@@ -149,15 +175,9 @@ def walls_without_dilatancy() -> None:
 
 def main() -> None:
     print("limit analysis (whole answer: capacity both ways, mechanism, thrust range, most central line, polygons)")
-    for name, make, goal in (
-        ("arch of 36 voussoirs", lambda: make_arch(10.0, 1.5, 157.5, 36), 2.0),
-        ("three-aisle section", church, 15.0),
-    ):
+    for name, make, goal in (("arch of 36 voussoirs", lambda: make_arch(10.0, 1.5, 157.5, 36), 2.0), ("three-aisle section", church, 15.0)):
         answer = whole_answer(make())
-        mine, alone = (
-            seconds(lambda make=make: whole_answer(make())),
-            processor(lambda make=make: whole_answer(make()), 15),
-        )
+        mine, alone = (seconds(lambda make=make: whole_answer(make())), processor(lambda make=make: whole_answer(make()), 15))
         peer = seconds(lambda make=make: scipy_full(make()))
         print(
             f"  {name}: {1e3 * mine:.2f} ms for all of it with geometry, {1e3 * alone:.2f} ms of processor (goal {goal:g} "
@@ -184,22 +204,13 @@ def main() -> None:
         if with_peer:
             peer_value = scipy_full(assembly, friction)
             peer = seconds(lambda a=assembly, f=friction: scipy_full(a, f), 1)
-            text += (
-                f"; SciPy {1e3 * peer:.1f} ms, ratio {peer / mine:.1f}, difference {abs(state.gamma - peer_value):.1e}"
-            )
+            text += f"; SciPy {1e3 * peer:.1f} ms, ratio {peer / mine:.1f}, difference {abs(state.gamma - peer_value):.1e}"
         print(text, flush=True)
     for name, structure, span in (
         ("vaults", {"kind": "vault", "preset": "dejong-a"}, (4.0, 8.0)),
         ("three-aisle sections", {"kind": "aisled-vault", "preset": "vezelay-like"}, (1.2, 3.0)),
     ):
-        analysis = {
-            "kind": "sweep",
-            "vary": "buttress_width",
-            "start": span[0],
-            "stop": span[1],
-            "count": 200,
-            "locate": False,
-        }
+        analysis = {"kind": "sweep", "vary": "buttress_width", "start": span[0], "stop": span[1], "count": 200, "locate": False}
         deck = make_deck({"structure": structure, "analysis": analysis})
         begin = time.process_time()
         result = run_analyses(Context(deck, threads=1))[0]

@@ -63,10 +63,7 @@ def _spectra() -> None:
     print(f"  {'extrados, 1 thread':32} {1e3 * ours[0]:9.1f} ms")
     print(f"  {f'extrados, {THREADS} threads':32} {1e3 * ours[1]:9.1f} ms")
     fine = PERIODS >= 2.0 * core.POINTS_PER_CYCLE * STEP / 2
-    peers = {
-        "pyRotd": lambda: [_pyrotd(a, PERIODS, d) for d in DAMPINGS],
-        "eqsig": lambda: [_eqsig(a, PERIODS, d) for d in DAMPINGS],
-    }
+    peers = {"pyRotd": lambda: [_pyrotd(a, PERIODS, d) for d in DAMPINGS], "eqsig": lambda: [_eqsig(a, PERIODS, d) for d in DAMPINGS]}
     for name, run in peers.items():
         try:
             took, other = seconds(run, 3), run()[1]
@@ -91,9 +88,7 @@ def _line(name: str, took: float, ours: list[float], other: np.ndarray, psa: np.
 
 def _generated() -> None:
     made = generated(7, 7.5, seed=1)
-    print(
-        f"generated motions: {made.end_time:g} s at {made.step:g} s, {len(made.lines)} lines, 10,000 streamed in batches"
-    )
+    print(f"generated motions: {made.end_time:g} s at {made.step:g} s, {len(made.lines)} lines, 10,000 streamed in batches")
     for threads in (1, THREADS):
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         begin = time.perf_counter()
@@ -106,9 +101,7 @@ def _generated() -> None:
     t, phases = made.step * np.arange(made.points), core.phases(1, 123, len(made.lines))
     begin = time.perf_counter()
     for _ in range(200):
-        one = made.window * (
-            made.amplitude[:, None] * np.sin(2 * np.pi * made.lines[:, None] * t + phases[:, None])
-        ).sum(axis=0)
+        one = made.window * (made.amplitude[:, None] * np.sin(2 * np.pi * made.lines[:, None] * t + phases[:, None])).sum(axis=0)
     plain = 200 / (time.perf_counter() - begin)
     error = np.abs(one - made.motion(123)).max() / np.abs(one).max()
     print(f"  plain numpy: {plain:9.0f} motions/s; differs by {error:.1e} of the peak")

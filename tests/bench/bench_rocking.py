@@ -93,16 +93,7 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
 
     def ours(tolerance: float):
         return rocking.ensemble(
-            bodies,
-            grounds,
-            zero,
-            each,
-            1.0,
-            END,
-            start_rotation=start,
-            tolerance=tolerance,
-            stop_when_safe=False,
-            threads=THREADS,
+            bodies, grounds, zero, each, 1.0, END, start_rotation=start, tolerance=tolerance, stop_when_safe=False, threads=THREADS
         )
 
     def error(peaks: np.ndarray) -> str:

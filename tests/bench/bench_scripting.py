@@ -34,9 +34,7 @@ def main() -> None:
     )
     for workers, called in ((1, "one process"), (2, "two processes")):
         wall, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
-        made = subprocess.run(
-            [sys.executable, "-c", SCRIPT.replace("WORKERS", str(workers))], check=True, capture_output=True, text=True
-        )
+        made = subprocess.run([sys.executable, "-c", SCRIPT.replace("WORKERS", str(workers))], check=True, capture_output=True, text=True)
         wall, after = time.perf_counter() - wall, resource.getrusage(resource.RUSAGE_CHILDREN)
         spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         start, sweep, table = map(float, made.stdout.split())

@@ -25,14 +25,11 @@ def shell(n: int, events: int) -> tuple[float, int, int]:
     xyz = np.column_stack([wall.xy[:, 0], 0.0 * wall.xy[:, 0], wall.xy[:, 1]])
     connect = wall.group.connect
     frames, flat = node_frames(xyz, [connect])
-    shells = core.Shells(
-        "Q4", connect, 0.2, 6.9e9, 0.25, wall.group.band, wall.group.tension, frames=frames, flat=flat, layers=LAYERS
-    )
-    constant = spread(
-        len(xyz), connect, nodal_areas(xyz, connect), np.tile([0.0, 0.0, -1.92e4 * 0.2], (len(connect), 1))
-    )
-    constant[:, 2] += (wall.constant - core.body_force(
-        "Q4", (2, 2), wall.xy, connect, np.tile([0.0, -1.92e4 * 0.2], (len(connect), 1))))[:, 1]  # fmt: skip
+    shells = core.Shells("Q4", connect, 0.2, 6.9e9, 0.25, wall.group.band, wall.group.tension, frames=frames, flat=flat, layers=LAYERS)
+    constant = spread(len(xyz), connect, nodal_areas(xyz, connect), np.tile([0.0, 0.0, -1.92e4 * 0.2], (len(connect), 1)))
+    constant[:, 2] += (wall.constant - core.body_force("Q4", (2, 2), wall.xy, connect, np.tile([0.0, -1.92e4 * 0.2], (len(connect), 1))))[
+        :, 1
+    ]
     reference = np.zeros_like(constant)
     reference[:, 0], reference[:, 1] = wall.reference[:, 0], 0.02 * wall.reference[:, 0]
     base = np.flatnonzero(wall.xy[:, 1] < 1e-9)
@@ -48,9 +45,7 @@ def shell(n: int, events: int) -> tuple[float, int, int]:
 
 def main() -> None:
     print(f"\nshell: shells of {LAYERS} layers beside plane elements, per event and equation, one thread")
-    print(
-        f"{'plane eq.':>10} {'ns':>7} {'factor B':>9} {'shell eq.':>10} {'ns':>7} {'factor B':>9} {'ratio of ns':>12}"
-    )
+    print(f"{'plane eq.':>10} {'ns':>7} {'factor B':>9} {'shell eq.':>10} {'ns':>7} {'factor B':>9} {'ratio of ns':>12}")
     for n, m, events in SIZES:
         _, plane, of_plane, values = Wall(n).run(events)
         each, equations, doubles = shell(m, events)

@@ -22,30 +22,27 @@ from extrados.views.mesh.options import MeshOptions
 
 WHOLE = {
     "structure": {
-        "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "openings": [{"x": [1.0, 2.0], "y": [1.0, 2.0]}],
+        "kind": "panel",
+        "width": 3.0,
+        "height": 3.0,
+        "thickness": 0.2,
+        "openings": [{"x": [1.0, 2.0], "y": [1.0, 2.0]}],
         "regions": [{"y": [2.9, 3.0], "linear": True}],
     },
-    "material": {
-        "young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 2e5, "fracture_energy": 50.0,
-    },
-}  # fmt: skip
-UNITS = {
-    "structure": {
-        "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "unit_length": 0.5, "unit_height": 0.25,
-    },
-    "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0}, "mesh": {"joints": "interfaces"},
-}  # fmt: skip
-TORN = {
-    "tension": 1e5,
-    "fracture_energy": 20.0,
-    "normal_stiffness": 8e10,
-    "shear_stiffness": 3.6e10,
-    "friction": "no-sliding",
+    "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 2e5, "fracture_energy": 50.0},
 }
+UNITS = {
+    "structure": {"kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "unit_length": 0.5, "unit_height": 0.25},
+    "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0},
+    "mesh": {"joints": "interfaces"},
+}
+TORN = {"tension": 1e5, "fracture_energy": 20.0, "normal_stiffness": 8e10, "shear_stiffness": 3.6e10, "friction": "no-sliding"}
 PUSH = {
-    "kind": "sla", "ripple": 0.2, "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
+    "kind": "sla",
+    "ripple": 0.2,
+    "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
     "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}],
-}  # fmt: skip
+}
 #: elements a side -> events by update, by refactorisation
 SIZES = {52: (400, 40), 106: (200, 20), 212: (60, 8), 336: (30, 4)}
 
@@ -55,20 +52,14 @@ class Wall:
 
     def __init__(self, n: int):
         size = 3.0 / n
-        building = Building(
-            Panel(kind="panel", width=3.0, height=3.0, thickness=0.2, openings=[{"x": [1.0, 2.0], "y": [1.0, 2.0]}])
-        )
+        building = Building(Panel(kind="panel", width=3.0, height=3.0, thickness=0.2, openings=[{"x": [1.0, 2.0], "y": [1.0, 2.0]}]))
         mesh = building.mesh(MeshOptions(size=size))
         block = mesh.groups[0]
         high = mesh.xy[block.connect].mean(axis=1)[:, 1] > 3.0 - (n // 30 + 1) * size
         law = Softening(0.2e6, 50.0, ripple=0.2, exact=False)
         self.xy = mesh.xy
-        self.group = Plane(
-            "Q4", block.connect, 0.2, 6.9e9, 0.25, np.sqrt(2.0) * size, [None if top else law for top in high]
-        )
-        self.constant = body_force(
-            "Q4", (2, 2), mesh.xy, block.connect, np.tile([0.0, -1.92e4 * 0.2], (len(block.connect), 1))
-        )
+        self.group = Plane("Q4", block.connect, 0.2, 6.9e9, 0.25, np.sqrt(2.0) * size, [None if top else law for top in high])
+        self.constant = body_force("Q4", (2, 2), mesh.xy, block.connect, np.tile([0.0, -1.92e4 * 0.2], (len(block.connect), 1)))
         top = np.flatnonzero(mesh.xy[:, 1] > 3.0 - 1e-9)
         self.corner = int(top[mesh.xy[top, 0].argmax()])
         share = np.ones(len(top))
@@ -93,9 +84,7 @@ class Wall:
 def against_refactorisation() -> None:
     """Time per event of both at four sizes, the largest difference of the loads, the growth with the size."""
     print("\nsla: per event, one thread; update against supernodal refactorisation")
-    print(
-        f"{'equations':>10} {'update ms':>10} {'refactor ms':>12} {'ratio':>7} {'factor MB':>10} {'load difference':>16}"
-    )
+    print(f"{'equations':>10} {'update ms':>10} {'refactor ms':>12} {'ratio':>7} {'factor MB':>10} {'load difference':>16}")
     rows = []
     for n, (many, few) in SIZES.items():
         wall = Wall(n)
@@ -106,9 +95,7 @@ def against_refactorisation() -> None:
         same = min(len(peer[0]), len(ours[0][0]))
         gap = float(np.abs(ours[0][0].load[:same] / peer[0].load[:same] - 1.0).max())
         rows.append((equations, fast, values))
-        print(
-            f"{equations:10d} {1e3 * fast:10.3f} {1e3 * peer[1]:12.2f} {peer[1] / fast:7.1f} {values * 8 / 1e6:10.1f} {gap:16.1e}"
-        )
+        print(f"{equations:10d} {1e3 * fast:10.3f} {1e3 * peer[1]:12.2f} {peer[1] / fast:7.1f} {values * 8 / 1e6:10.1f} {gap:16.1e}")
         sys.stdout.flush()
     size, cost, memory = (np.log([row[k] for row in rows]) for k in range(3))
     print(
@@ -122,10 +109,11 @@ def rates() -> None:
     print("\nsla: time per event and equation; joints of no thickness, without sliding and until and as they slide")
     for size in (0.058, 0.028):
         for name, deck in {
-            "Q4": WHOLE, "Q8": WHOLE | {"mesh": {"element": "Q8"}, "coarser": 1.6},
+            "Q4": WHOLE,
+            "Q8": WHOLE | {"mesh": {"element": "Q8"}, "coarser": 1.6},
             "units, no sliding": UNITS | {"joints": TORN},
             "units, friction 0.7": UNITS | {"joints": TORN | {"friction": 0.7, "cohesion": 1.5e5, "shear_energy": 100.0}},
-        }.items():  # fmt: skip
+        }.items():
             deck = dict(deck)
             mesh = {"size": size * deck.pop("coarser", 1.0)} | deck.pop("mesh", {})
             context = Context(make_deck(deck | {"analysis": PUSH | {"mesh": mesh}}))

@@ -32,9 +32,7 @@ CASES = {
 
 def main() -> None:
     print("processor time of one core [s]; gap and residual certify the capacity")
-    print(
-        f"{'case':<18}{'stones':>7}{'contacts':>9}{'geometry':>9}{'one push':>9}{'gap [g]':>10}{'residual':>10}{'pyramids':>9}"
-    )
+    print(f"{'case':<18}{'stones':>7}{'contacts':>9}{'geometry':>9}{'one push':>9}{'gap [g]':>10}{'residual':>10}{'pyramids':>9}")
     for name, make in CASES.items():
         geometry = processor(make, runs=1)
         limit = SolidLimit(make(), 0.7)

@@ -81,10 +81,7 @@ def collapse(assembly: Assembly, small: bool) -> Callable[[], float]:
 
 def vertices() -> None:
     """fortran/limit/vertex.f90 against HiGHS on the same small programme."""
-    for name, assembly in (
-        ("arch of 36 voussoirs", make_arch(10.0, 1.5, 157.5, 36)),
-        ("three-aisle section", church()),
-    ):
+    for name, assembly in (("arch of 36 voussoirs", make_arch(10.0, 1.5, 157.5, 36)), ("three-aisle section", church())):
         ours, highs = collapse(assembly, True), collapse(assembly, False)
         own, peer = user(ours, 100), user(highs, 100)
         print(

@@ -117,8 +117,9 @@ def in_a_process() -> None:
     """What it costs that a process of its own reads a file of a foreign format, beside the reading itself."""
     options = {
         ".dxf": {"name": "a.dxf", "unit": None, "layers": None, "meaning": {}, "join_tolerance": 1e-3, "sagitta": 0.01},
-        ".obj": {"name": "a.obj", "sort": ".obj"}, ".msh": {},
-    }  # fmt: skip
+        ".obj": {"name": "a.obj", "sort": ".obj"},
+        ".msh": {},
+    }
     for name, (reader, libraries) in FOREIGN.items():
         path = README.parents[1] / name
         module, function = reader.split(":")

@@ -120,9 +120,7 @@ def lmgc90_of(
     for component, ground in zip(("Vx", "Vy"), grounds, strict=True):
         drives[component] = 0.0
         if ground is not None:
-            velocity = np.concatenate([[0.0], np.cumsum(acceleration(ground, fine + 0.05 * dt)) * 0.1 * dt])[
-                : len(fine)
-            ]
+            velocity = np.concatenate([[0.0], np.cumsum(acceleration(ground, fine + 0.05 * dt)) * 0.1 * dt])[: len(fine)]
             drives[component] = np.array([t, np.where(t < settle, 0.0, np.interp(t - settle, fine, velocity))])
     for k in np.flatnonzero(fixed):
         for component in ("Vx", "Vy", "Vz", "Rx", "Ry", "Rz"):

@@ -39,9 +39,14 @@ def entry(room: str, text: str) -> dict[str, Any]:
         ["git", "-C", str(HERE), "describe", "--always", "--dirty", "--exclude=*"], capture_output=True, text=True
     ).stdout.strip()
     return {
-        "at": datetime.now().astimezone().isoformat(timespec="seconds"), "commit": commit, "host": platform.node(),
-        "cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2), "bench": room, "told": parsed(text),
-    }  # fmt: skip
+        "at": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "commit": commit,
+        "host": platform.node(),
+        "cores": os.cpu_count(),
+        "load": round(os.getloadavg()[0], 2),
+        "bench": room,
+        "told": parsed(text),
+    }
 
 
 def append(room: str, text: str, path: Path = HISTORY) -> None:

@@ -29,7 +29,7 @@ class Answer:
     moved: np.ndarray
 
 
-def box_of(vertices: np.ndarray, faces: tuple[tuple[int, ...], ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:  # fmt: skip
+def box_of(vertices: np.ndarray, faces: tuple[tuple[int, ...], ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """Centre, axes in the columns and half sizes of a part that is a box; None of another."""
     if len(vertices) != 8 or any(len(face) != 4 for face in faces):
         return None
@@ -60,9 +60,7 @@ def model_text(solids: Solids, dt: float) -> str:
             geom = f'<geom type="mesh" mesh="m{k}"/>'
         else:
             centre, axes, half = found
-            geom = (
-                f'<geom type="box" size="{numbers(half)}" pos="{numbers(centre)}" xyaxes="{numbers(axes[:, :2].T)}"/>'
-            )
+            geom = f'<geom type="box" size="{numbers(half)}" pos="{numbers(centre)}" xyaxes="{numbers(axes[:, :2].T)}"/>'
         geoms.setdefault(owner, []).append(geom)
     world = []
     for b, parts in geoms.items():
@@ -138,15 +136,7 @@ def lmgc90(solids: Solids, along: Ground, across: Ground, end: float, dt: float)
         shapes.append(whole if len(parts) == 1 else hull_of(points))
     density = float(np.sum(solids.mass)) / volume
     seconds, times, moved = lmgc90_of(
-        shapes,
-        (solids.mass == 0.0).tolist(),
-        density,
-        solids.laws[0].friction,
-        (along, across),
-        end,
-        dt,
-        SETTLE / 2,
-        PATIENCE,
+        shapes, (solids.mass == 0.0).tolist(), density, solids.laws[0].friction, (along, across), end, dt, SETTLE / 2, PATIENCE
     )
     return Answer(seconds, seconds, times, moved[:, solids.mass > 0.0])
 

@@ -131,9 +131,8 @@ def test_the_deck_goes_out_and_in_again_with_the_numbers_of_a_run(page: Any, ser
     page.click("dialog button[type=submit]")
     until(page, "window.extrados.source.path === 'mine/vault.toml'")
     subprocess.run(
-        [sys.executable, "-m", "extrados", "run", "mine/vault.toml", "--quiet", "--no-figures"], cwd=served.folder,
-        check=True, timeout=300,
-    )  # fmt: skip
+        [sys.executable, "-m", "extrados", "run", "mine/vault.toml", "--quiet", "--no-figures"], cwd=served.folder, check=True, timeout=300
+    )
     run = extrados.load(served.folder / "results" / "vault")
     assert run["tilt"].collapse_acceleration_g == pytest.approx(shown, rel=1e-12)
     page.evaluate("window.extrados.open({ preset: 'limit/arch-120' })")
@@ -240,10 +239,13 @@ def test_the_line_follows_a_drag_from_the_stones_and_its_thrust_is_a_handle(page
 
 def test_what_was_asked_for_last_is_seen_last(page: Any) -> None:
     most = page.evaluate("window.extrados.scene.most_N")
-    page.evaluate("""most => {
+    page.evaluate(
+        """most => {
         const at = { joint: 24, share: 0.5 }; // the second waits for the answer to the first
         window.extrados.show({ through: at }); window.extrados.show({ through: at }); window.extrados.choose(most);
-    }""", most)  # fmt: skip
+    }""",
+        most,
+    )
     settled(page)
     assert page.evaluate("window.extrados.scene.chosen?.thrust_N") == pytest.approx(most, rel=1e-9)
     page.evaluate(
@@ -291,7 +293,9 @@ def test_what_stands_in_space_is_turned_and_pushed(page: Any) -> None:
 
 def test_what_holds_a_building_is_drawn(page: Any) -> None:
     open_text(page, HELD)
-    drawn = """name => { const box = document.querySelector(name).getBBox(); return [box.x, box.y, box.x + box.width, box.y + box.height]; }"""
+    drawn = (
+        """name => { const box = document.querySelector(name).getBBox(); return [box.x, box.y, box.x + box.width, box.y + box.height]; }"""
+    )
     x = page.evaluate("window.extrados.anchor[0]")
     assert page.evaluate(drawn, ".tie:not(.damper)")[2] + x == pytest.approx(2.0)
     assert page.evaluate(drawn, ".damper")[2] + x == pytest.approx(3.0)

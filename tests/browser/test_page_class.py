@@ -40,10 +40,7 @@ def test_a_class_from_both_sides(browser: Any, room: Served) -> None:
     pupils[2].evaluate("window.extrados.show({ gamma: 0.2 })")
     settled(pupils[2])
     teacher.click("[data-tab=class]")
-    until(
-        teacher,
-        "document.querySelectorAll('.pupil').length === 3 && document.querySelectorAll('.pupil.bad').length === 1",
-    )
+    until(teacher, "document.querySelectorAll('.pupil').length === 3 && document.querySelectorAll('.pupil.bad').length === 1")
     SHOTS.mkdir(parents=True, exist_ok=True)
     teacher.screenshot(path=SHOTS / "class-teacher.png")
     teacher.click("text=Freeze")
@@ -77,8 +74,11 @@ def test_an_address_of_the_internet_is_refused(tmp_path: Path) -> None:
     import sys
 
     done = subprocess.run(
-        [sys.executable, "-m", "extrados", "explore", "--no-browser", "--class", "--address", "0.0.0.0"], cwd=tmp_path,
-        capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+        [sys.executable, "-m", "extrados", "explore", "--no-browser", "--class", "--address", "0.0.0.0"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert done.returncode == 2
     assert "private network" in done.stderr.replace("\n", " ")

@@ -79,7 +79,5 @@ def test_a_drag_past_a_limit_holds_the_handle_there_and_says_which(page: Any) ->
 def test_no_collapse_of_what_stands(page: Any) -> None:
     settled(page)
     assert page.locator(".fall").is_hidden()
-    told = page.evaluate(
-        "new Promise(done => window.extrados.ask({ do: 'fall' }, { reply: words => done(words.bad) }))"
-    )
+    told = page.evaluate("new Promise(done => window.extrados.ask({ do: 'fall' }, { reply: words => done(words.bad) }))")
     assert "does not collapse" in told

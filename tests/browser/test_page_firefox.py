@@ -22,8 +22,10 @@ class Firefox:
         client = pytest.importorskip("websockets.sync.client")
         self.process = subprocess.Popen(
             [program, "--headless", "--no-remote", "--profile", str(profile), "--remote-debugging-port=0"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         found = next(filter(None, (re.search(r"listening on (ws://\S+)", line) for line in self.process.stderr)), None)
         assert found, "Firefox ended without a WebDriver"
         self.connection = client.connect(f"{found[1]}/session", max_size=None, open_timeout=60)
@@ -41,9 +43,7 @@ class Firefox:
 
     def evaluate(self, text: str) -> Any:
         """The value of an expression, by JSON."""
-        given = self.call(
-            "script.evaluate", expression=f"JSON.stringify({text})", target={"context": self.tab}, awaitPromise=False
-        )
+        given = self.call("script.evaluate", expression=f"JSON.stringify({text})", target={"context": self.tab}, awaitPromise=False)
         assert given["type"] == "success", given
         return json.loads(given["result"].get("value", "null"))
 

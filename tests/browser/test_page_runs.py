@@ -59,9 +59,8 @@ def test_results_are_looked_at_side_by_side(page: Any, served: Served) -> None:
     for name, text in (("one", ROCKING), ("two", ROCKING.replace("0.8 g", "0.6 g"))):
         (served.folder / f"{name}.toml").write_text(text)
         subprocess.run(
-            [sys.executable, "-m", "extrados", "run", f"{name}.toml", "--quiet", "--no-figures"], cwd=served.folder,
-            check=True, timeout=300,
-        )  # fmt: skip
+            [sys.executable, "-m", "extrados", "run", f"{name}.toml", "--quiet", "--no-figures"], cwd=served.folder, check=True, timeout=300
+        )
     page.click("[data-tab=results]")
     until(page, "window.extrados.welcome.runs.length === 2")
     page.select_option("select[aria-label='Run A']", "results/one")
@@ -140,9 +139,8 @@ def test_a_slowed_film_lasts_five_times_as_long(page: Any) -> None:
 def test_a_run_that_is_chosen_leaves_nothing_of_the_one_before(page: Any, served: Served) -> None:
     (served.folder / "one.toml").write_text(ROCKING)
     subprocess.run(
-        [sys.executable, "-m", "extrados", "run", "one.toml", "--quiet", "--no-figures"], cwd=served.folder,
-        check=True, timeout=300,
-    )  # fmt: skip
+        [sys.executable, "-m", "extrados", "run", "one.toml", "--quiet", "--no-figures"], cwd=served.folder, check=True, timeout=300
+    )
     page.click("[data-tab=results]")
     until(page, "window.extrados.welcome.runs.length === 1")
     page.select_option("select[aria-label='Run A']", "results/one")
@@ -151,5 +149,5 @@ def test_a_run_that_is_chosen_leaves_nothing_of_the_one_before(page: Any, served
         const { columns } = window.extrados.results, words = columns[0].words;
         columns[0].take({ path: words.path, title: words.title, analyses: words.analyses }, {});
         return document.querySelectorAll(".column .chart, .column .player:not([hidden]), .column .body-box:not([hidden])").length;
-    }""")  # fmt: skip
+    }""")
     assert left == 0

@@ -32,9 +32,7 @@ OVERFLOW = "[document.documentElement.scrollWidth - innerWidth, document.documen
 @pytest.fixture
 def screen(browser: Any, served: Served, request: pytest.FixtureRequest) -> Iterator[Any]:
     width, height, fingers = request.param
-    context = browser.new_context(
-        viewport={"width": width, "height": height}, has_touch=fingers, is_mobile=fingers, device_scale_factor=1
-    )
+    context = browser.new_context(viewport={"width": width, "height": height}, has_touch=fingers, is_mobile=fingers, device_scale_factor=1)
     page = context.new_page()
     troubles: list[str] = []
     page.on("pageerror", lambda error: troubles.append(str(error)))
@@ -136,9 +134,9 @@ def test_a_finger_drags_under_a_loupe_and_two_enlarge(screen: Any) -> None:
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
     def touch(kind: str, *points: tuple[float, float]) -> None:
-        link.send("Input.dispatchTouchEvent", {
-            "type": kind, "touchPoints": [{"x": px, "y": py, "id": k} for k, (px, py) in enumerate(points)],
-        })  # fmt: skip
+        link.send(
+            "Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": px, "y": py, "id": k} for k, (px, py) in enumerate(points)]}
+        )
 
     before = settled(page)
     touch("touchStart", (x, y))
@@ -192,16 +190,8 @@ def test_the_sheet_fits_and_is_drawn_on_by_finger(screen: Any) -> None:
         )
         assert small == []
         link = page.context.new_cdp_session(page)
-        for kind, points in (
-            ("Start", [(x, y)]),
-            ("Move", [(x + 20, y - 40)]),
-            ("Move", [(x + 60, y - 90)]),
-            ("End", []),
-        ):
-            link.send(
-                "Input.dispatchTouchEvent",
-                {"type": f"touch{kind}", "touchPoints": [{"x": px, "y": py} for px, py in points]},
-            )
+        for kind, points in (("Start", [(x, y)]), ("Move", [(x + 20, y - 40)]), ("Move", [(x + 60, y - 90)]), ("End", [])):
+            link.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": [{"x": px, "y": py} for px, py in points]})
     else:
         page.mouse.click(x, y)
         page.mouse.click(x + 60, y - 90)

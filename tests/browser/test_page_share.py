@@ -38,10 +38,7 @@ def test_a_link_holds_the_deck_and_opens_it_in_another_page(page: Any, served: S
         return window.extrados.openLink("#deck=" + btoa(letters));
     })()"""
     wrong = ["%%%", "AAAA", "____", "x" * 5000]
-    for opened in [
-        *(other.evaluate("link => window.extrados.openLink('#deck=' + link)", w) for w in wrong),
-        other.evaluate(bomb),
-    ]:
+    for opened in [*(other.evaluate("link => window.extrados.openLink('#deck=' + link)", w) for w in wrong), other.evaluate(bomb)]:
         assert opened is False
     assert "no deck" in other.locator(".status").inner_text()
     settled(other)
@@ -52,9 +49,12 @@ def test_a_link_holds_the_deck_and_opens_it_in_another_page(page: Any, served: S
 @pytest.mark.parametrize("preset", ["limit/arch-120", "vault/dejong-a"])
 def test_a_page_without_a_server_shows_what_a_run_gives(browser: Any, tmp_path: Path, preset: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "extrados", "explore", str(CASES / f"{preset}.toml"), "--standalone", "page.html"], cwd=tmp_path,
-        capture_output=True, text=True, timeout=300,
-    )  # fmt: skip
+        [sys.executable, "-m", "extrados", "explore", str(CASES / f"{preset}.toml"), "--standalone", "page.html"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
     assert done.returncode == 0, done.stderr
     file = tmp_path / "page.html"
     assert file.stat().st_size < 3_000_000

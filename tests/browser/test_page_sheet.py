@@ -10,9 +10,7 @@ from served import SHOTS
 import extrados
 
 #: One white pixel
-PNG = base64.b64decode(
-    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8/5+hHgAHggJ/PchI7wAAAABJRU5ErkJggg=="
-)
+PNG = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8/5+hHgAHggJ/PchI7wAAAABJRU5ErkJggg==")
 
 
 def blank(page: Any) -> None:
@@ -144,13 +142,7 @@ def test_the_deck_of_the_sheet_keeps_what_its_author_wrote(page: Any) -> None:
     stroke(page, (0.0, 2.0), (1.0, 3.0))
     settled(page)
     now = page.evaluate("window.extrados.text")
-    assert (
-        now.startswith("# mine")
-        and "80 cm" in now
-        and '"0 cm"' in now
-        and "density = 1800" in now
-        and "friction = 0.6" in now
-    )
+    assert now.startswith("# mine") and "80 cm" in now and '"0 cm"' in now and "density = 1800" in now and "friction = 0.6" in now
     assert len(blocks(page)) == 6
     page.click("[data-side=deck]")
     page.locator(".editor textarea").fill(text)

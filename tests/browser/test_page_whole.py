@@ -60,10 +60,17 @@ def test_the_ten_lessons(page: Any) -> None:
     page.click("[data-side=teach]")
     assert page.locator(".exercises li").count() == 10
     changes: list[dict[str, Any] | None] = [
-        {"structure.thickness": 0.54}, None, None, {"motion.amplitude": "0.6 g", "motion.duration": 0.45},
-        {"structure.width": 2.0, "structure.height": 8.0}, None, {"structure.thickness": 0.536},
-        {"structure.radius": 7.165, "structure.embrace": 74.36}, None, {"structure.width": 1.4},
-    ]  # fmt: skip
+        {"structure.thickness": 0.54},
+        None,
+        None,
+        {"motion.amplitude": "0.6 g", "motion.duration": 0.45},
+        {"structure.width": 2.0, "structure.height": 8.0},
+        None,
+        {"structure.thickness": 0.536},
+        {"structure.radius": 7.165, "structure.embrace": 74.36},
+        None,
+        {"structure.width": 1.4},
+    ]
     for k, given in enumerate(changes):
         page.click("[data-side=teach]")
         page.click(f".exercises button >> nth={k}")
@@ -88,10 +95,7 @@ def test_the_ten_lessons(page: Any) -> None:
         settled(page)
         page.click(".exercise .first")
         page.wait_for_selector(".told.good", timeout=20_000)
-        assert (
-            "prediction was right" in page.locator(".history").inner_text()
-            or "right is" in page.locator(".history").inner_text()
-        )
+        assert "prediction was right" in page.locator(".history").inner_text() or "right is" in page.locator(".history").inner_text()
         page.screenshot(path=SHOTS / f"lesson-{k + 1}.png")
 
 
@@ -164,9 +168,7 @@ def test_every_control_has_a_name(page: Any) -> None:
             .map(e => e.outerHTML.slice(0, 120))"""
     )
     assert nameless == []
-    sliders = page.evaluate(
-        "[...document.querySelectorAll('[role=slider]')].map(e => e.getAttribute('aria-valuetext'))"
-    )
+    sliders = page.evaluate("[...document.querySelectorAll('[role=slider]')].map(e => e.getAttribute('aria-valuetext'))")
     assert all(re.search(r"\d", text) for text in sliders)
 
 

@@ -52,9 +52,11 @@ class Row:
     def loose(self) -> bool:
         """Whether so much is allowed that the row proves little."""
         return (
-            self.kind in PROOFS and not isinstance(self.value, str)
-            and LOOSE * abs(self.value) * (1.0 + 1e-9) < self.allowed and bool(self.value)
-        )  # fmt: skip
+            self.kind in PROOFS
+            and not isinstance(self.value, str)
+            and LOOSE * abs(self.value) * (1.0 + 1e-9) < self.allowed
+            and bool(self.value)
+        )
 
     @property
     def allowed(self) -> float:
@@ -103,9 +105,7 @@ def read_row(row: dict[str, Any], path: Path) -> Row:
     """
     kind, own = row["kind"], set(row)
     origin = "why" if kind == "regression" else "source"
-    wrong = (
-        kind not in KINDS or own - _KEYS - _OF_KIND.get(kind, set()) or not row.get(origin) or {"why", "source"} <= own
-    )
+    wrong = kind not in KINDS or own - _KEYS - _OF_KIND.get(kind, set()) or not row.get(origin) or {"why", "source"} <= own
     bound = own & {"at_least", "at_most"}
     if kind == "bound":
         wrong = wrong or not bound or own & {"value", "tolerance", "relative_tolerance"}
@@ -114,9 +114,18 @@ def read_row(row: dict[str, Any], path: Path) -> Row:
     limits = (row.get("at_least", -math.inf), row.get("at_most", math.inf)) if bound else None
     value = row["value"] if limits is None else " and ".join(f"{k.replace('_', ' ')} {row[k]:g}" for k in sorted(bound))
     found = Row(
-        row["quantity"], value, row.get("relative_tolerance", row.get("tolerance", 0.0)), "relative_tolerance" in row,
-        kind, row[origin], tuple(sorted((k, _frozen(v)) for k, v in row.get("change", {}).items())), row.get("note", ""), limits, row.get("wide", ""), row.get("scatter", ""),
-    )  # fmt: skip
+        row["quantity"],
+        value,
+        row.get("relative_tolerance", row.get("tolerance", 0.0)),
+        "relative_tolerance" in row,
+        kind,
+        row[origin],
+        tuple(sorted((k, _frozen(v)) for k, v in row.get("change", {}).items())),
+        row.get("note", ""),
+        limits,
+        row.get("wide", ""),
+        row.get("scatter", ""),
+    )
     if found.loose != bool(found.wide):
         raise ValueError(f"{path}: `wide` gives the reason of a tolerance above {LOOSE:.0%}, and of no other: {row}")
     return found

@@ -25,6 +25,9 @@ def test_case(case: Case, change: tuple) -> None:
             continue
         found = pick(results, row.quantity)
         if not row.fits(found):
-            wrong.append(f"{row.quantity} = {found}, expected {row.value} +- {row.allowed} ({row.kind}: {row.source})"
-                         if not isinstance(row.value, str) else f"{row.quantity} = {found!r}, expected {row.value!r}")  # fmt: skip
+            wrong.append(
+                f"{row.quantity} = {found}, expected {row.value} +- {row.allowed} ({row.kind}: {row.source})"
+                if not isinstance(row.value, str)
+                else f"{row.quantity} = {found!r}, expected {row.value!r}"
+            )
     assert not wrong, "\n".join(wrong)

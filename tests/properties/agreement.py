@@ -19,12 +19,15 @@ from extrados.decks.reader import make_deck
 #: Outcomes of `rocking` in the words of `dem`
 ELEMENTS_SAY = {"no-hinging": "at-rest", "recovery": "rocked", "collapse": "collapse"}
 STANDING: dict[str, dict[str, Any]] = {
-    "rigid contacts": {"kind": "dem", "end_time": 1.0, **RIGID}, "springs": {"kind": "dem", "end_time": 1.0, "joints": {"normal_stiffness": 1e9}},
-    "rocking": {"kind": "rocking"}, "assessment": {"kind": "assessment", "impulses": 1}, "fragility": {"kind": "fragility", "count": 4, "bootstrap": 0},
+    "rigid contacts": {"kind": "dem", "end_time": 1.0, **RIGID},
+    "springs": {"kind": "dem", "end_time": 1.0, "joints": {"normal_stiffness": 1e9}},
+    "rocking": {"kind": "rocking"},
+    "assessment": {"kind": "assessment", "impulses": 1},
+    "fragility": {"kind": "fragility", "count": 4, "bootstrap": 0},
     "codes": {"kind": "local-mechanism", "mechanism": "building", "motion_spectrum": True},
     "failure domain": {"kind": "failure-domain", "durations": [0.5], "amplitudes": 2, "accuracy": 0.05},
     "stones with joints": {"kind": "sla", "events": 30},
-}  # fmt: skip
+}
 
 
 @st.composite
@@ -32,34 +35,18 @@ def certificates(draw: st.DrawFn) -> Deck:
     """Buildings that cannot stand by the proof of limit analysis: thin arches, and arches whose stones slide apart."""
     if draw(st.booleans()):
         return {"structure": draw(arches(thin=True)), "joints": {"friction": 0.7}}
-    structure = {
-        "kind": "arch",
-        "radius": draw(number(2.0, 10.0)),
-        "embrace": 180.0,
-        "voussoirs": draw(st.integers(7, 15)),
-    }
+    structure = {"kind": "arch", "radius": draw(number(2.0, 10.0)), "embrace": 180.0, "voussoirs": draw(st.integers(7, 15))}
     structure["thickness"] = round(structure["radius"] * draw(number(0.12, 0.2)), 4)
     return {"structure": structure, "joints": {"friction": draw(number(0.05, 0.15, 10))}}
 
 
-THIN = {
-    "structure": {"kind": "arch", "radius": 10.0, "thickness": 0.5, "embrace": 180.0, "voussoirs": 20},
-    "joints": {"friction": 0.7},
-}
+THIN = {"structure": {"kind": "arch", "radius": 10.0, "thickness": 0.5, "embrace": 180.0, "voussoirs": 20}, "joints": {"friction": 0.7}}
 
 
-SLIPPERY = {
-    "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7},
-    "joints": {"friction": 0.2},
-}
+SLIPPERY = {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}, "joints": {"friction": 0.2}}
 
 
-@relation(
-    "tilt dem rocking assessment fragility local-mechanism failure-domain sla",
-    certificates(),
-    0.0,
-    examples=(THIN, SLIPPERY),
-)
+@relation("tilt dem rocking assessment fragility local-mechanism failure-domain sla", certificates(), 0.0, examples=(THIN, SLIPPERY))
 def certificates_of_collapse(deck: Deck, within: float) -> None:
     """What cannot stand by limit analysis stands by no strategy, and is called so by all that could know."""
     if ask(deck, "tilt").outcome != "cannot-stand":
@@ -67,13 +54,9 @@ def certificates_of_collapse(deck: Deck, within: float) -> None:
     for name, table in STANDING.items():
         motion = WEAK_SET if name == "fragility" else WEAK
         answer = ask(changed(deck, motion=motion), **table)
+        must(answer.outcome not in ("stands", "open"), f"{name} says {answer.outcome}: {answer.verdict and answer.verdict.statement}")
         must(
-            answer.outcome not in ("stands", "open"),
-            f"{name} says {answer.outcome}: {answer.verdict and answer.verdict.statement}",
-        )
-        must(
-            answer.outcome in ("cannot-stand", "collapses", "not-applicable") or answer.status == "refused",
-            f"{name} says {answer.outcome}",
+            answer.outcome in ("cannot-stand", "collapses", "not-applicable") or answer.status == "refused", f"{name} says {answer.outcome}"
         )
 
 
@@ -83,17 +66,11 @@ def a_certificate_is_a_verdict(deck: Deck, within: float) -> None:
     answer = ask(deck, "tilt")
     if answer.outcome != "cannot-stand":
         reject()
-    must(
-        answer.status == "ok" and answer.verdict is not None and answer.verdict.ratio == 0.0,
-        f"{answer.status}: {answer.said}",
-    )
+    must(answer.status == "ok" and answer.verdict is not None and answer.verdict.ratio == 0.0, f"{answer.status}: {answer.said}")
 
 
 @relation(
-    "tilt dem",
-    st.tuples(decks("block", "column", "stack", "blocks", friction=number(0.3, 0.9, 12))).map(lambda t: t[0]),
-    0.03,
-    share=0.15,
+    "tilt dem", st.tuples(decks("block", "column", "stack", "blocks", friction=number(0.3, 0.9, 12))).map(lambda t: t[0]), 0.03, share=0.15
 )
 def a_slow_tilt(deck: Deck, within: float) -> None:
     """Rigid contacts tilted slowly fall between the least state without dilatancy and the associated limit."""
@@ -105,9 +82,7 @@ def a_slow_tilt(deck: Deck, within: float) -> None:
         at_most("rigid contacts", least.capacity, found.capacity, within, 0.3)
 
 
-@relation(
-    "tilt thrust dem rocking failure-domain local-mechanism fragility code-checks sla", RECTANGLES, 2e-3, share=0.5
-)
+@relation("tilt thrust dem rocking failure-domain local-mechanism fragility code-checks sla", RECTANGLES, 2e-3, share=0.5)
 def one_block_by_every_strategy(width: float, height: float, within: float) -> None:
     """A block on ground that does not slip begins to rock at b/h g."""
     deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": 1.0}}
@@ -116,19 +91,12 @@ def one_block_by_every_strategy(width: float, height: float, within: float) -> N
     with tempfile.TemporaryDirectory() as folder:  # drawn out, pushed along x
         (Path(folder) / "stones.json").write_text(extrados.export({**deck, "analysis": [{"kind": "tilt"}]}, "compas"))
         solid = ask(
-            {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}},
-            "tilt",
-            Path(folder),
-            direction=0.0,
-            rose=4,
+            {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}}, "tilt", Path(folder), direction=0.0, rose=4
         )
     near("in space", solid.capacity, [want, want], 1e-5)
     opened = solid.results.opening_contacts[0]
     near("opening of the base", opened.opening, width / math.hypot(width, height), within)
-    must(
-        (solid.results.moving_blocks, opened.sliding < within) == (1, True),
-        f"{solid.results.moving_blocks} blocks, {opened}",
-    )
+    must((solid.results.moving_blocks, opened.sliding < within) == (1, True), f"{solid.results.moving_blocks} blocks, {opened}")
     for name, keys in (
         ("rigid contacts", SLOW),
         ("springs", {"test": "tilt", "joints": {"normal_stiffness": 1e10}, "tilt_accuracy": 0.002}),
@@ -142,12 +110,7 @@ def one_block_by_every_strategy(width: float, height: float, within: float) -> N
         want,
         within,
     )
-    near(
-        "fragility",
-        ask(changed(deck, motion=WEAK_SET), "fragility", count=2, bootstrap=0).results.uplift_acceleration_g,
-        want,
-        within,
-    )
+    near("fragility", ask(changed(deck, motion=WEAK_SET), "fragility", count=2, bootstrap=0).results.uplift_acceleration_g, want, within)
     codes = ask(deck, "local-mechanism", mechanism="building").results
     near("codes", codes.multiplier, want, within)
     near("M* of one block", codes.participating_part, 1.0, within)
@@ -156,10 +119,7 @@ def one_block_by_every_strategy(width: float, height: float, within: float) -> N
     near("weight", ask(deck, "tilt").results.weight_N, mass * GRAVITY, within)
     near("Housner", ask(moving, "rocking").results.restitution, 1.0 - 1.5 * width**2 / (width**2 + height**2), within)
     near(
-        "p",
-        ask(moving, "rocking").results.frequency_parameter_rad_s,
-        math.sqrt(0.75 * GRAVITY / (0.5 * math.hypot(width, height))),
-        within,
+        "p", ask(moving, "rocking").results.frequency_parameter_rad_s, math.sqrt(0.75 * GRAVITY / (0.5 * math.hypot(width, height))), within
     )
 
 
@@ -215,8 +175,11 @@ def rocking_by_two_strategies(size: tuple, ratio: float, period: float, within: 
     """A block under one sine by its equation of motion and by rigid contacts."""
     width, height = size
     amplitude = (1.5 + ratio) * width / height
-    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": "no-sliding"},
-            "motion": {"kind": "sine-pulse", "amplitude": f"{amplitude:.4g} g", "period": period}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "block", "width": width, "height": height},
+        "joints": {"friction": "no-sliding"},
+        "motion": {"kind": "sine-pulse", "amplitude": f"{amplitude:.4g} g", "period": period},
+    }
     one = ask(deck, "rocking")
     ok(one)
     if one.results.decided_by_last_digits or not 1e-3 < abs(one.results.peak_rotation_ratio) < 0.7:
@@ -226,8 +189,7 @@ def rocking_by_two_strategies(size: tuple, ratio: float, period: float, within: 
     peak = max(abs(v) for v in other.results.peak_rotation_rad.values())
     near("peak rotation", abs(one.results.peak_rotation_rad), peak, within, 0.05 * one.results.critical_rotation_rad)
     must(
-        ELEMENTS_SAY[one.results.outcome] == other.results.outcome,
-        f"{one.results.outcome} by rocking, {other.results.outcome} by elements",
+        ELEMENTS_SAY[one.results.outcome] == other.results.outcome, f"{one.results.outcome} by rocking, {other.results.outcome} by elements"
     )
     weak = changed(deck, motion={"amplitude": f"{0.9 * width / height:.4g} g"})
     quiet = [ask(weak, "rocking"), ask(weak, "dem", end_time=period, time_step=1e-3, **RIGID)]
@@ -245,9 +207,7 @@ def domains_and_single_runs(deck: Deck, period: float, within: float) -> None:
     if (least := domain.results.mode_I.amplitudes_g[0]) is None:
         reject()
     for amplitude, falls in ((least + 1e-3, True), (0.9 * least - 1e-3, False)):
-        run_ = ask(
-            changed(deck, motion={"kind": "sine-pulse", "amplitude": f"{amplitude!r} g", "period": period}), "rocking"
-        )
+        run_ = ask(changed(deck, motion={"kind": "sine-pulse", "amplitude": f"{amplitude!r} g", "period": period}), "rocking")
         ok(run_)
         if not run_.results.decided_by_last_digits:
             must((run_.results.outcome == "collapse") == falls, f"{amplitude} g of {least} g: {run_.results.outcome}")
@@ -267,13 +227,19 @@ def ensembles_and_single_runs(deck: Deck, motion: Deck, within: float) -> None:
     uplifted = sum(r.results.outcome != "no-hinging" for r in runs)
     peaks = [r.results.peak_ground_acceleration_g for r in runs]
     near("median peak acceleration", whole.results.median_pga_g, np.median(peaks), 1e-6)
-    must((whole.results.collapsed, whole.results.uplifted) == (collapsed, uplifted),
-         f"{whole.results.collapsed} collapse and {whole.results.uplifted} rock, run one by one {collapsed} and {uplifted}")  # fmt: skip
+    must(
+        (whole.results.collapsed, whole.results.uplifted) == (collapsed, uplifted),
+        f"{whole.results.collapsed} collapse and {whole.results.uplifted} rock, run one by one {collapsed} and {uplifted}",
+    )
 
 
-@relation("rocking dem", st.tuples(decks("vault"), number(2.0, 4.0), number(0.7, 1.5)), 0.0, share=0.05, examples=(
-    ({"structure": {"kind": "vault", "preset": "dejong-a"}, "joints": {"friction": 0.7}}, 3.0, 1.1),
-))  # fmt: skip
+@relation(
+    "rocking dem",
+    st.tuples(decks("vault"), number(2.0, 4.0), number(0.7, 1.5)),
+    0.0,
+    share=0.05,
+    examples=(({"structure": {"kind": "vault", "preset": "dejong-a"}, "joints": {"friction": 0.7}}, 3.0, 1.1),),
+)
 def hinges_elsewhere(deck: Deck, ratio: float, period: float, within: float) -> None:
     """A vault on buttresses that recovers by its one mechanism recovers by rigid contacts."""
     base = ask(deck, "tilt")
@@ -329,17 +295,19 @@ def maps_and_single_runs(deck: Deck, frequency: float, within: float) -> None:
     motion = {"kind": "harmonic", "amplitude": f"{least!r} g", "frequency": frequency, "duration": 2.0 / frequency}
     one = ask(changed(deck, motion=motion), "rocking")
     ok(one)
-    must(
-        one.results.outcome == "collapse" or one.results.decided_by_last_digits, f"at {least} g: {one.results.outcome}"
-    )
+    must(one.results.outcome == "collapse" or one.results.decided_by_last_digits, f"at {least} g: {one.results.outcome}")
 
 
 @relation("rocking", st.tuples(RECTANGLES, number(0.1, 0.9)), 1e-5)
 def free_rocking(size: tuple, ratio: float, within: float) -> None:
     """A slender block let go falls back in acosh(1/(1 - r))/p, and loses 1 - c^2 of its energy (Housner 1963)."""
     width, height = size
-    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": 2.0},
-            "initial": {"rotation_ratio": ratio}, "motion": {"kind": "constant", "amplitude": "0 g"}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "block", "width": width, "height": height},
+        "joints": {"friction": 2.0},
+        "initial": {"rotation_ratio": ratio},
+        "motion": {"kind": "constant", "amplitude": "0 g"},
+    }
     answer = ask(deck, "rocking", form="linear")
     ok(answer)
     r = answer.results
@@ -365,9 +333,11 @@ def springs_under_a_slow_push(width: float, slenderness: float, depth: float, st
     """A block that stays on its base turns on the springs at its two corners by M/(k d b^3/4)."""
     height = round(width * slenderness, 4)
     amplitude = 0.1 * width / height
-    deck = {"structure": {"kind": "block", "width": width, "height": height, "depth": depth},
-            "joints": {"friction": 2.0, "normal_stiffness": stiffness},
-            "motion": {"kind": "harmonic", "amplitude": f"{amplitude:.5g} g", "frequency": 0.5, "duration": 2.0}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "block", "width": width, "height": height, "depth": depth},
+        "joints": {"friction": 2.0, "normal_stiffness": stiffness},
+        "motion": {"kind": "harmonic", "amplitude": f"{amplitude:.5g} g", "frequency": 0.5, "duration": 2.0},
+    }
     answer = ask(deck, "dem", end_time=2.0)
     ok(answer)
     moment = 2000.0 * width * height * depth * amplitude * GRAVITY * 0.5 * height
@@ -379,8 +349,12 @@ def springs_under_a_slow_push(width: float, slenderness: float, depth: float, st
 def impacts_of_a_free_block(width: float, slenderness: float, ratio: float, within: float) -> None:
     """Rigid contacts lose at an impact what Housner's block loses, swing by swing."""
     height = round(width * slenderness, 4)
-    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": "no-sliding"},
-            "initial": {"rotation_ratio": ratio}, "motion": {"kind": "constant", "amplitude": "0 g"}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "block", "width": width, "height": height},
+        "joints": {"friction": "no-sliding"},
+        "initial": {"rotation_ratio": ratio},
+        "motion": {"kind": "constant", "amplitude": "0 g"},
+    }
     answer, rocks = ask(deck, "dem", end_time=3.0, time_step=5e-4, **RIGID), ask(deck, "rocking", end_time=3.0)
     ok(answer, rocks)
     if answer.results.restitution_measured is None:
@@ -406,10 +380,7 @@ def ties_by_codes_and_limit_analysis(deck: Deck, force: float, within: float) ->
     ok(codes, limit)
     near("alpha_0", codes.results.multiplier, limit.capacity.min(), within)
     endless = ask({**section, "ties": [tie]}, "local-mechanism", mechanism="building")
-    must(
-        endless.status == "refused" or endless.results.multiplier >= codes.results.multiplier - within,
-        f"{endless.said}",
-    )
+    must(endless.status == "refused" or endless.results.multiplier >= codes.results.multiplier - within, f"{endless.said}")
 
 
 def drawn_joints(deck: Deck) -> list[str]:
@@ -422,10 +393,7 @@ def drawn_joints(deck: Deck) -> list[str]:
 def openings_of_moving_supports(deck: Deck, movement: float, within: float) -> None:
     """Joints open in proportion to a small movement, and no farther than a small multiple of it."""
     joint = drawn_joints(deck)[-1]
-    one, other = (
-        ask(changed(deck, initial={"movements": [{"joint": joint, "dx": m}]}), "supports")
-        for m in (movement, 2.0 * movement)
-    )
+    one, other = (ask(changed(deck, initial={"movements": [{"joint": joint, "dx": m}]}), "supports") for m in (movement, 2.0 * movement))
     same("movement", one, other)
     ok(one, other)
     first, second = (a.results.openings for a in (one, other))
@@ -454,14 +422,14 @@ def frames_that_rock(deck: Deck, within: float) -> None:
     near("restitution", r.restitution, after, within)
 
 
-@relation(
-    "tilt dem", st.tuples(number(0.5, 2.0), number(2.0, 6.0), st.integers(1, 4), st.sampled_from([4, 6, 8, 12])), 1e-4
-)
+@relation("tilt dem", st.tuples(number(0.5, 2.0), number(2.0, 6.0), st.integers(1, 4), st.sampled_from([4, 6, 8, 12])), 1e-4)
 def round_columns(width: float, slenderness: float, drums: int, sides: int, within: float) -> None:
     """Drums of flat facets overturn about their lowest facet or corner, whichever way they are pushed."""
     height = round(width * slenderness, 4)
-    deck = {"structure": {"kind": "column", "width": width, "height": height, "drums": drums, "section": "round", "sides": sides},
-            "joints": {"friction": 2.0}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "column", "width": width, "height": height, "drums": drums, "section": "round", "sides": sides},
+        "joints": {"friction": 2.0},
+    }
     answer = ask(deck, "tilt", direction=0.0, rose=2 * sides)
     ok(answer)
     r = answer.results
@@ -492,41 +460,38 @@ def drawn_arches(deck: Deck, within: float) -> None:
 WEIGHTLESS = st.sampled_from(["tilt", "thrust", "dem", "rocking", "local-mechanism"])
 
 
-DRUM = {"structure": {"kind": "blocks", "block": [{"name": "drum", "points": [[-0.15, 0.0], [0.15, 0.0], [0.15, 0.45], [-0.15, 0.45]]}],
-                      "ground": [[-0.15, 0.0, 0.15, 0.0]]}}  # fmt: skip
+DRUM = {
+    "structure": {
+        "kind": "blocks",
+        "block": [{"name": "drum", "points": [[-0.15, 0.0], [0.15, 0.0], [0.15, 0.45], [-0.15, 0.45]]}],
+        "ground": [[-0.15, 0.0, 0.15, 0.0]],
+    }
+}
 
 
 @relation(
-    "tilt thrust dem rocking local-mechanism", st.tuples(sections("column", "brickwork", "arch"), WEIGHTLESS), 0.0,
+    "tilt thrust dem rocking local-mechanism",
+    st.tuples(sections("column", "brickwork", "arch"), WEIGHTLESS),
+    0.0,
     examples=((DRUM, "local-mechanism"),),
-)  # fmt: skip
+)
 def stones_without_weight(deck: Deck, kind: str, within: float) -> None:
     """A stone without a weight is refused in words by all that weigh it."""
     made = changed(deck, material={"density": 0.0}, motion=WEAK)
     for k, block in enumerate(made["structure"]["block"]):
         block.pop("density", None) if k == 0 else None
-    keys: dict[str, Any] = (
-        {"mechanism": "building"} if kind == "local-mechanism" else {**RIGID, "end_time": 0.1} if kind == "dem" else {}
-    )
+    keys: dict[str, Any] = {"mechanism": "building"} if kind == "local-mechanism" else {**RIGID, "end_time": 0.1} if kind == "dem" else {}
     answer = ask(made, kind, **keys)
     must(answer.status == "refused" and "density" in answer.said, f"{kind}: {answer.status} {answer.said}")
 
 
 WALLS = st.tuples(
-    st.integers(4, 8),
-    st.integers(4, 8),
-    number(0.3, 0.6),
-    number(0.15, 0.3),
-    number(0.1, 0.9),
-    number(0.1, 0.9),
-    number(0.2, 0.6),
+    st.integers(4, 8), st.integers(4, 8), number(0.3, 0.6), number(0.15, 0.3), number(0.1, 0.9), number(0.1, 0.9), number(0.2, 0.6)
 )
 
 
 @relation("tilt", WALLS, 1e-9)
-def laid_walls_are_full(
-    units: int, courses: int, length: float, height: float, x: float, y: float, size: float, within: float
-) -> None:
+def laid_walls_are_full(units: int, courses: int, length: float, height: float, x: float, y: float, size: float, within: float) -> None:
     """A wall of units around an opening weighs what its outline less the opening weighs."""
     wide, high = units * length, courses * height
     left, low = round(x * 0.5 * wide, 3), round(y * 0.5 * high, 3)
@@ -549,9 +514,7 @@ def verdicts_between_points_of_a_curve(deck: Deck, period: float, share: float, 
     durations = [round(period, 4), round(1.2 * period, 4)]
     asked = round(durations[0] + share * (durations[1] - durations[0]), 5)
     motion = {"kind": "sine-pulse", "amplitude": "0.2 g", "period": asked}
-    answer = ask(
-        changed(deck, motion=motion), "failure-domain", pulse="sine", durations=durations, amplitudes=10, accuracy=1e-3
-    )
+    answer = ask(changed(deck, motion=motion), "failure-domain", pulse="sine", durations=durations, amplitudes=10, accuracy=1e-3)
     ok(answer)
     ends = answer.results.mode_I.amplitudes_g
     if None in ends:

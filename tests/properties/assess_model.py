@@ -53,20 +53,37 @@ def rows(draw: st.DrawFn) -> StrategyVerdict:
     elif outcome == "cannot-stand":
         margin = 0.0
     return StrategyVerdict(
-        strategy=strategy.name, label=strategy.label, part=None, status=status, reason="" if status == "ok" else "no wish", axis=strategy.axis,
-        demand=0.2 if status == "ok" else None, capacity=draw(FACTORS) if status == "ok" else None, unit="g", outcome=outcome,
-        bound=None, violated=[], margin=margin, margin_at_least=low, margin_below=high, parameters="", assumes="",
+        strategy=strategy.name,
+        label=strategy.label,
+        part=None,
+        status=status,
+        reason="" if status == "ok" else "no wish",
+        axis=strategy.axis,
+        demand=0.2 if status == "ok" else None,
+        capacity=draw(FACTORS) if status == "ok" else None,
+        unit="g",
+        outcome=outcome,
+        bound=None,
+        violated=[],
+        margin=margin,
+        margin_at_least=low,
+        margin_below=high,
+        parameters="",
+        assumes="",
         statement=f"The verdict of {strategy.label}.",
-    )  # fmt: skip
+    )
 
 
 TABLES = st.lists(rows(), max_size=9, unique_by=lambda row: row.strategy)
 
 
-DECK = make_deck({
-    "structure": {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 9},
-    "motion": {"kind": "sine-pulse", "amplitude": "0.2 g", "period": 0.4}, "analysis": [{"kind": "assess"}],
-})  # fmt: skip
+DECK = make_deck(
+    {
+        "structure": {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 9},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.2 g", "period": 0.4},
+        "analysis": [{"kind": "assess"}],
+    }
+)
 
 
 CONTEXT = Context(DECK, 1)
@@ -87,10 +104,7 @@ def checks(draw: st.DrawFn) -> dict[str, Check]:
     """Rules of codes, some of them alternatives, some without a demand or beyond their scope."""
     names = draw(
         st.lists(
-            st.sampled_from(["NTC linear", "NTC activation", "NTC", "slenderness", "overturning", "q"]),
-            min_size=1,
-            max_size=6,
-            unique=True,
+            st.sampled_from(["NTC linear", "NTC activation", "NTC", "slenderness", "overturning", "q"]), min_size=1, max_size=6, unique=True
         )
     )
     found = {}
@@ -99,9 +113,19 @@ def checks(draw: st.DrawFn) -> dict[str, Check]:
         code = draw(st.sampled_from(["NTC 2018", "NTC 2018", "ASCE 41", "EN 1998-1", ""]))
         verdict = "" if demand is None else "holds" if capacity > demand else "fails"
         found[name] = Check(
-            capacity=capacity, demand=demand, unit=draw(st.sampled_from(["g", "m"])), verdict=draw(st.sampled_from([verdict] * 4 + ["not-applicable"])),
-            source="", note="", code=code, quantity="", limit_state="", scope="", alternative=draw(st.sampled_from(["", "SLV"])), reason="",
-        )  # fmt: skip
+            capacity=capacity,
+            demand=demand,
+            unit=draw(st.sampled_from(["g", "m"])),
+            verdict=draw(st.sampled_from([verdict] * 4 + ["not-applicable"])),
+            source="",
+            note="",
+            code=code,
+            quantity="",
+            limit_state="",
+            scope="",
+            alternative=draw(st.sampled_from(["", "SLV"])),
+            reason="",
+        )
     return found
 
 
@@ -117,6 +141,4 @@ def stated(found: Reason) -> None:
 def decided(verdict: Verdict, outcome: str, violated: list[str]) -> None:
     """An outcome that no violated condition stands beside."""
     want = "open" if violated and outcome in ("stands", "collapses") else outcome
-    assert (verdict.outcome, verdict.violated) == (want, violated) and all(
-        text in verdict.statement for text in violated
-    )
+    assert (verdict.outcome, verdict.violated) == (want, violated) and all(text in verdict.statement for text in violated)

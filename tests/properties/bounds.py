@@ -11,8 +11,14 @@ from hypothesis import strategies as st
 from relations import CRACKS, MASONRY, PUSH, RECTANGLES, RIGID, STONES, WEAK, ok, relation, statics
 
 #: What makes a structure of a kind stouter
-STOUT = {"arch": ("thickness",), "pointed-arch": ("thickness",), "elliptical-arch": ("thickness",), "block": ("width",),
-         "column": ("width", "top_width"), "brickwork": ("unit_length",)}  # fmt: skip
+STOUT = {
+    "arch": ("thickness",),
+    "pointed-arch": ("thickness",),
+    "elliptical-arch": ("thickness",),
+    "block": ("width",),
+    "column": ("width", "top_width"),
+    "brickwork": ("unit_length",),
+}
 
 
 @relation("tilt", st.tuples(decks(*STOUT), number(1.01, 1.5)), 2e-3)
@@ -39,23 +45,29 @@ def hung(draw: st.DrawFn) -> Deck:
     """A stone between two piers, which friction alone carries; sizes of all differ."""
     left, right, held = (draw(number(0.3, 1.5)) for _ in range(3))
     tall, drop = draw(number(0.5, 2.0)), draw(number(0.1, 0.5))
-    boxes = {"left": (0.0, 0.0, left, tall), "right": (left + held, 0.0, right, tall * draw(number(0.8, 1.2))),
-             "held": (left, 0.5 * tall, held, 0.3 * tall * (1.0 + drop))}  # fmt: skip
-    blocks = [
-        {"name": name, "points": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]}
-        for name, (x, y, w, h) in boxes.items()
-    ]
+    boxes = {
+        "left": (0.0, 0.0, left, tall),
+        "right": (left + held, 0.0, right, tall * draw(number(0.8, 1.2))),
+        "held": (left, 0.5 * tall, held, 0.3 * tall * (1.0 + drop)),
+    }
+    blocks = [{"name": name, "points": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]} for name, (x, y, w, h) in boxes.items()]
     return {"structure": {"kind": "blocks", "block": blocks}, "joints": {"friction": draw(number(0.4, 0.9))}}
 
 
 #: Seed 109 of the trial of friction: a wall with a window and no lintel, of which one unit hangs between two others
 WINDOW = {
     "structure": {
-        "kind": "brickwork", "unit_length": 0.4174968996, "unit_height": 0.2651099460, "units": 4, "courses": 8, "begins": "half",
-        "lintels": False, "openings": [{"x": [0.5341465752, 0.8478716508], "y": [0.1237541100, 0.8685346457]}],
+        "kind": "brickwork",
+        "unit_length": 0.4174968996,
+        "unit_height": 0.2651099460,
+        "units": 4,
+        "courses": 8,
+        "begins": "half",
+        "lintels": False,
+        "openings": [{"x": [0.5341465752, 0.8478716508], "y": [0.1237541100, 0.8685346457]}],
     },
     "joints": {"friction": 0.8903153421},
-}  # fmt: skip
+}
 
 
 @relation("tilt", hung(), 1e-9, examples=(WINDOW,))
@@ -64,8 +76,10 @@ def rest_has_no_sense(deck: Deck, within: float) -> None:
     found = ask(deck, "tilt", friction_rule="non-associated")
     if not found.answers:
         reject()
-    names = [f"hangs between its neighbours by friction alone, and slides out of them at any load in a state without dilatancy: {way}"
-             for way in ("to +x", "to -x")]  # fmt: skip
+    names = [
+        f"hangs between its neighbours by friction alone, and slides out of them at any load in a state without dilatancy: {way}"
+        for way in ("to +x", "to -x")
+    ]
     told = [name in found.warnings for name in names]
     must(told[0] == told[1] == bool((found.capacity == 0.0).all()), f"{told}, {found.capacity}")
 
@@ -85,10 +99,7 @@ def a_stronger_tie(deck: Deck, force: float, factor: float, within: float) -> No
     ok(bare)
     weight = bare.results.weight_N
     tie = {"start": ends[0], "end": ends[1], "works_in": "tension"}
-    found = [
-        bare,
-        *(ask({**section, "ties": [{**tie, "yield_force": f * weight}]}, "tilt") for f in (force, force * factor)),
-    ]
+    found = [bare, *(ask({**section, "ties": [{**tie, "yield_force": f * weight}]}, "tilt") for f in (force, force * factor))]
     for less, most in itertools.pairwise(found):
         at_most("a tie", less.capacity, most.capacity, within)
 
@@ -101,9 +112,7 @@ def stronger_stone(deck: Deck, strength: float, factor: float, within: float) ->
     stones = drawn(deck)["structure"]
     length = sum(math.dist(row[:2], row[2:]) for row in stones["ground"])
     pressure = bare.results.weight_N / (length * stones["depth"])
-    weak, strong = (
-        ask(changed(deck, material={"compressive_strength": strength * f * pressure}), "tilt") for f in (1.0, factor)
-    )
+    weak, strong = (ask(changed(deck, material={"compressive_strength": strength * f * pressure}), "tilt") for f in (1.0, factor))
     for less, most in ((weak, strong), (strong, bare)):
         if less.answers or less.outcome == "cannot-stand":
             at_most("stronger", less.capacity, most.capacity, within)
@@ -153,10 +162,7 @@ def equilibrium_at_collapse(deck: Deck, within: float) -> None:
     at_most("gap of the bounds", r.duality_gap, 1e-6, 0.0)
     for gamma, stands in ((0.98 * r.collapse_acceleration_g, True), (1.02 * r.collapse_acceleration_g + 1e-3, False)):
         there = ask(deck, "thrust", gamma=gamma)
-        must(
-            (there.outcome == "stands") == stands,
-            f"a thrust line at {gamma} g of {r.collapse_acceleration_g}: {there.outcome}",
-        )
+        must((there.outcome == "stands") == stands, f"a thrust line at {gamma} g of {r.collapse_acceleration_g}: {there.outcome}")
 
 
 @relation("rocking dem", st.tuples(decks("block", "column", "stack"), pulses(0.1, 0.8)), 1e-3)
@@ -193,10 +199,16 @@ def dissipation(deck: Deck, within: float) -> None:
         at_most("displacement at the peak", abs(r.peak_displacement_m), 0.1 * size, 0.0)
 
 
-@relation("sla tilt", arches().map(lambda s: {"structure": s}), 0.02, share=0.3, examples=(
-    {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.07, "embrace": 180.0, "voussoirs": 40}},
-    {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.05, "embrace": 180.0, "voussoirs": 40}},
-))  # fmt: skip
+@relation(
+    "sla tilt",
+    arches().map(lambda s: {"structure": s}),
+    0.02,
+    share=0.3,
+    examples=(
+        {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.07, "embrace": 180.0, "voussoirs": 40}},
+        {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.05, "embrace": 180.0, "voussoirs": 40}},
+    ),
+)
 def dry_stones_by_elements(deck: Deck, within: float) -> None:
     """Stones with dry joints bear no more by elements than by limit analysis."""
     most = ask(deck, "tilt").capacity[0]
@@ -210,15 +222,35 @@ def dry_stones_by_elements(deck: Deck, within: float) -> None:
 MORTAR = {"cohesion": 1e3, "shear_energy": 10.0, "tension": 1e3, "fracture_energy": 5.0}
 
 
-SOLE = {"structure": {"kind": "building", "storeys": [3.0], "beds": [{"name": "sole", "storey": 1, "z": 0.0}], "walls": [
-    {"name": name, "start": start, "end": end, "thickness": 0.4} for name, start, end in (
-        ("south", [0.0, 0.0], [4.0, 0.0]), ("east", [4.0, 0.0], [4.0, 4.0]), ("north", [4.0, 4.0], [0.0, 4.0]), ("west", [0.0, 4.0], [0.0, 0.0]))]},
-    "joints": {"friction": 0.4, **MORTAR}, "material": CRACKS}  # fmt: skip
+SOLE = {
+    "structure": {
+        "kind": "building",
+        "storeys": [3.0],
+        "beds": [{"name": "sole", "storey": 1, "z": 0.0}],
+        "walls": [
+            {"name": name, "start": start, "end": end, "thickness": 0.4}
+            for name, start, end in (
+                ("south", [0.0, 0.0], [4.0, 0.0]),
+                ("east", [4.0, 0.0], [4.0, 4.0]),
+                ("north", [4.0, 4.0], [0.0, 4.0]),
+                ("west", [0.0, 4.0], [0.0, 0.0]),
+            )
+        ],
+    },
+    "joints": {"friction": 0.4, **MORTAR},
+    "material": CRACKS,
+}
 
 
-@relation("pushover", decks("building", friction=number(0.2, 0.6), material=MASONRY).map(
-    lambda d: changed(d, structure={"beds": [{"name": "sole"}]}, joints=MORTAR)
-), 0.02, share=0.2, examples=(SOLE,))  # fmt: skip
+@relation(
+    "pushover",
+    decks("building", friction=number(0.2, 0.6), material=MASONRY).map(
+        lambda d: changed(d, structure={"beds": [{"name": "sole"}]}, joints=MORTAR)
+    ),
+    0.02,
+    share=0.2,
+    examples=(SOLE,),
+)
 def no_more_than_coulomb(deck: Deck, within: float) -> None:
     """On a weak sole the building slides: its capacity stays below friction times the weight and cohesion times the area. A model that
     carries more says that this is an upper bound."""
@@ -239,13 +271,14 @@ def no_more_than_coulomb(deck: Deck, within: float) -> None:
 def a_stiff_base(size: tuple, foundation: str, within: float) -> None:
     """A very stiff base is a rigid one; a softer one bears less."""
     width, height = size
-    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": 2.0},
-            "motion": {"kind": "sine-pulse", "amplitude": "0.05 g", "period": 0.5}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "block", "width": width, "height": height},
+        "joints": {"friction": 2.0},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.05 g", "period": 0.5},
+    }
     capacity = []
     for stiffness in (1e9, 1e13):
-        answer = ask(
-            changed(deck, supports={"stiffness": stiffness, "foundation": foundation}), "rocking", end_time=0.02
-        )
+        answer = ask(changed(deck, supports={"stiffness": stiffness, "foundation": foundation}), "rocking", end_time=0.02)
         ok(answer)
         capacity.append(answer.results.soft_base.capacity_g)
     near("stiff", capacity[1], width / height, within)

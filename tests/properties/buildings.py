@@ -34,18 +34,23 @@ def arches(draw: st.DrawFn, thin: bool = False) -> Deck:
     if thin:
         embrace, least = max(embrace, 150.0), 0.04 if embrace < 165.0 else 0.07
     return {
-        "kind": "arch", "radius": radius, "thickness": float(f"{least * share * radius:.4g}"), "embrace": embrace,
+        "kind": "arch",
+        "radius": radius,
+        "thickness": float(f"{least * share * radius:.4g}"),
+        "embrace": embrace,
         "voussoirs": draw(st.integers(10, 24)) if thin else draw(st.integers(5, 20)),
-    }  # fmt: skip
+    }
 
 
 @st.composite
 def vaults(draw: st.DrawFn) -> Deck:
     """Barrel vaults on buttresses, near the shape of the presets."""
     return {
-        "kind": "vault", "preset": draw(st.sampled_from(["dejong-a", "dejong-b"])),
-        "buttress_width": draw(number(2.0, 4.0)), "voussoirs": draw(st.sampled_from([8, 12, 16])),
-    }  # fmt: skip
+        "kind": "vault",
+        "preset": draw(st.sampled_from(["dejong-a", "dejong-b"])),
+        "buttress_width": draw(number(2.0, 4.0)),
+        "voussoirs": draw(st.sampled_from([8, 12, 16])),
+    }
 
 
 @st.composite
@@ -53,9 +58,12 @@ def pointed(draw: st.DrawFn) -> Deck:
     """Pointed arches between a semicircle and an equilateral one."""
     span = draw(number(2.0, 12.0))
     return {
-        "kind": "pointed-arch", "span": span, "radius": float(f"{span * draw(number(0.55, 0.9)):.5g}"),
-        "thickness": float(f"{span * draw(number(0.1, 0.2)):.4g}"), "voussoirs": 2 * draw(st.integers(3, 8)),
-    }  # fmt: skip
+        "kind": "pointed-arch",
+        "span": span,
+        "radius": float(f"{span * draw(number(0.55, 0.9)):.5g}"),
+        "thickness": float(f"{span * draw(number(0.1, 0.2)):.4g}"),
+        "voussoirs": 2 * draw(st.integers(3, 8)),
+    }
 
 
 @st.composite
@@ -63,9 +71,12 @@ def elliptical(draw: st.DrawFn) -> Deck:
     """Elliptical arches, flat and thick."""
     span = draw(number(2.0, 12.0))
     return {
-        "kind": "elliptical-arch", "span": span, "rise": float(f"{span * draw(number(0.25, 0.4)):.5g}"),
-        "thickness": float(f"{span * draw(number(0.1, 0.2)):.4g}"), "voussoirs": draw(st.integers(6, 16)),
-    }  # fmt: skip
+        "kind": "elliptical-arch",
+        "span": span,
+        "rise": float(f"{span * draw(number(0.25, 0.4)):.5g}"),
+        "thickness": float(f"{span * draw(number(0.1, 0.2)):.4g}"),
+        "voussoirs": draw(st.integers(6, 16)),
+    }
 
 
 @st.composite
@@ -73,9 +84,11 @@ def bridges(draw: st.DrawFn) -> Deck:
     """Bridges of one or two spans, with or without backing and fill."""
     span = draw(number(3.0, 12.0))
     one = {
-        "span": span, "rise": float(f"{span * draw(number(0.25, 0.45)):.4g}"),
-        "thickness": float(f"{span * draw(number(0.08, 0.14)):.4g}"), "voussoirs": draw(st.integers(6, 14)),
-    }  # fmt: skip
+        "span": span,
+        "rise": float(f"{span * draw(number(0.25, 0.45)):.4g}"),
+        "thickness": float(f"{span * draw(number(0.08, 0.14)):.4g}"),
+        "voussoirs": draw(st.integers(6, 14)),
+    }
     deck: Deck = {"kind": "bridge", "spans": [one], "depth": draw(number(1.0, 4.0, 6))}
     if draw(st.booleans()):
         deck["fill"] = {"cover": draw(number(0.1, 0.6)), "passive": 0.0}
@@ -89,9 +102,12 @@ def bridges(draw: st.DrawFn) -> Deck:
 def brickwork(draw: st.DrawFn) -> Deck:
     """Walls in running bond."""
     return {
-        "kind": "brickwork", "unit_length": draw(number(0.3, 0.8)), "unit_height": draw(number(0.15, 0.4)),
-        "units": draw(st.integers(2, 4)), "courses": draw(st.integers(2, 6)),
-    }  # fmt: skip
+        "kind": "brickwork",
+        "unit_length": draw(number(0.3, 0.8)),
+        "unit_height": draw(number(0.15, 0.4)),
+        "units": draw(st.integers(2, 4)),
+        "courses": draw(st.integers(2, 6)),
+    }
 
 
 @st.composite
@@ -116,9 +132,12 @@ def piers(draw: st.DrawFn) -> Deck:
     """Columns of drums, straight or tapered."""
     width = draw(number(0.3, 2.0))
     return {
-        "kind": "column", "width": width, "height": float(f"{width * draw(number(1.5, 7.0)):.4g}"),
-        "drums": draw(st.integers(1, 5)), "top_width": float(f"{width * draw(st.sampled_from([1.0, 0.8, 0.6])):.4g}"),
-    }  # fmt: skip
+        "kind": "column",
+        "width": width,
+        "height": float(f"{width * draw(number(1.5, 7.0)):.4g}"),
+        "drums": draw(st.integers(1, 5)),
+        "top_width": float(f"{width * draw(st.sampled_from([1.0, 0.8, 0.6])):.4g}"),
+    }
 
 
 @st.composite
@@ -126,9 +145,13 @@ def panels(draw: st.DrawFn) -> Deck:
     """Panels of a given unit, with or without a window."""
     width, height = 0.6 * draw(st.integers(2, 5)), 0.4 * draw(st.integers(3, 6))
     deck = {
-        "kind": "panel", "width": round(width, 3), "height": round(height, 3), "thickness": draw(number(0.2, 0.6)),
-        "unit_length": 0.6, "unit_height": 0.4,
-    }  # fmt: skip
+        "kind": "panel",
+        "width": round(width, 3),
+        "height": round(height, 3),
+        "thickness": draw(number(0.2, 0.6)),
+        "unit_length": 0.6,
+        "unit_height": 0.4,
+    }
     if width >= 1.8 and height >= 1.6 and draw(st.booleans()):
         deck["openings"] = [{"x": [0.6, 1.2], "y": [0.4, 1.2]}]
     return deck
@@ -158,14 +181,15 @@ def legs(draw: st.DrawFn) -> Deck:
     """Walls around a corner, or a straight one, in space."""
     unit = draw(number(0.4, 0.6, 4))
     deck: Deck = {
-        "kind": "wall", "unit_length": unit, "unit_height": float(f"{0.5 * unit:.4g}"), "thickness": float(f"{0.5 * unit:.4g}"),
+        "kind": "wall",
+        "unit_length": unit,
+        "unit_height": float(f"{0.5 * unit:.4g}"),
+        "thickness": float(f"{0.5 * unit:.4g}"),
         "height": float(f"{0.5 * unit * draw(st.integers(2, 4)):.5g}"),
         "legs": [{"length": float(f"{unit * draw(st.integers(2, 3)):.5g}")}],
-    }  # fmt: skip
+    }
     if draw(st.booleans()):
-        deck["legs"].append(
-            {"length": float(f"{unit * draw(st.integers(2, 3)):.5g}"), "turn": draw(st.sampled_from(["left", "right"]))}
-        )
+        deck["legs"].append({"length": float(f"{unit * draw(st.integers(2, 3)):.5g}"), "turn": draw(st.sampled_from(["left", "right"]))})
     return deck
 
 
@@ -174,9 +198,13 @@ def domes(draw: st.DrawFn) -> Deck:
     """Domes of few stones."""
     radius = draw(number(2.0, 10.0))
     return {
-        "kind": "dome", "radius": radius, "thickness": float(f"{radius * draw(number(0.1, 0.2)):.4g}"), "rings": draw(st.integers(2, 4)),
-        "lunes": draw(st.sampled_from([6, 8])), "oculus": draw(st.sampled_from([0.0, 40.0])),
-    }  # fmt: skip
+        "kind": "dome",
+        "radius": radius,
+        "thickness": float(f"{radius * draw(number(0.1, 0.2)):.4g}"),
+        "rings": draw(st.integers(2, 4)),
+        "lunes": draw(st.sampled_from([6, 8])),
+        "oculus": draw(st.sampled_from([0.0, 40.0])),
+    }
 
 
 @st.composite
@@ -184,9 +212,12 @@ def groins(draw: st.DrawFn) -> Deck:
     """Cross-vaults of few courses."""
     radius = draw(number(2.0, 8.0))
     return {
-        "kind": "cross-vault", "radius": radius, "thickness": float(f"{radius * draw(number(0.12, 0.2)):.4g}"),
-        "embrace": draw(number(110.0, 160.0, 10)), "voussoirs": draw(st.sampled_from([4, 6])),
-    }  # fmt: skip
+        "kind": "cross-vault",
+        "radius": radius,
+        "thickness": float(f"{radius * draw(number(0.12, 0.2)):.4g}"),
+        "embrace": draw(number(110.0, 160.0, 10)),
+        "voussoirs": draw(st.sampled_from([4, 6])),
+    }
 
 
 @st.composite
@@ -195,10 +226,15 @@ def chimneys(draw: st.DrawFn) -> Deck:
     width = draw(number(1.0, 3.0))
     blocks = draw(st.sampled_from([1, 1, 4]))
     return {
-        "kind": "chimney", "width": width, "height": float(f"{width * draw(number(3.0, 6.0)):.4g}"),
-        "thickness": float(f"{width * draw(number(0.15, 0.3)):.4g}"), "rings": draw(st.integers(2, 4)), "blocks": blocks,
-        "top_width": float(f"{width * draw(st.sampled_from([1.0, 0.8])):.4g}"), "facets": 8,
-    }  # fmt: skip
+        "kind": "chimney",
+        "width": width,
+        "height": float(f"{width * draw(number(3.0, 6.0)):.4g}"),
+        "thickness": float(f"{width * draw(number(0.15, 0.3)):.4g}"),
+        "rings": draw(st.integers(2, 4)),
+        "blocks": blocks,
+        "top_width": float(f"{width * draw(st.sampled_from([1.0, 0.8])):.4g}"),
+        "facets": 8,
+    }
 
 
 #: Two elements of a wall as an Abaqus file, written beside decks of kind `mesh`
@@ -225,7 +261,9 @@ KINDS: dict[str, Callable[[], Strategy]] = {
     "block": lambda: table("block", width=number(0.3, 2.0), height=number(2.5, 6.0), depth=st.sampled_from([1.0, 0.5])),
     "vault": vaults,
     "aisled-vault": lambda: table(
-        "aisled-vault", preset=st.sampled_from(["vezelay-like", "colombier-like"]), voussoirs=st.sampled_from([10, 14]),
+        "aisled-vault",
+        preset=st.sampled_from(["vezelay-like", "colombier-like"]),
+        voussoirs=st.sampled_from([10, 14]),
         aisle_voussoirs=st.just(8),
     ),
     "pointed-arch": pointed,
@@ -237,23 +275,38 @@ KINDS: dict[str, Callable[[], Strategy]] = {
     "column": piers,
     "brickwork": brickwork,
     "frame": lambda: table(
-        "frame", columns=st.integers(2, 4), width=number(0.3, 1.0), height=number(2.5, 5.0), spacing=number(2.0, 3.0),
+        "frame",
+        columns=st.integers(2, 4),
+        width=number(0.3, 1.0),
+        height=number(2.5, 5.0),
+        spacing=number(2.0, 3.0),
         lintel_height=number(0.3, 1.0),
     ),
     "stack": lambda: table(
-        "stack", lower_width=number(0.6, 1.0), lower_height=number(0.5, 2.0), upper_width=number(0.3, 0.6), upper_height=number(0.8, 2.0),
+        "stack", lower_width=number(0.6, 1.0), lower_height=number(0.5, 2.0), upper_width=number(0.3, 0.6), upper_height=number(0.8, 2.0)
     ),
     "building": houses,
     "wall": legs,
     "dome": domes,
     "chimney": chimneys,
     "cross-vault": groins,
-}  # fmt: skip
+}
 #: Those with a plane section of stones, those whose stones have none, those that are one rocking body or a mechanism
 SECTIONS = (
-    "block", "column", "brickwork", "stack", "blocks", "arch", "frame", "panel", "pointed-arch", "elliptical-arch", "bridge", "vault",
+    "block",
+    "column",
+    "brickwork",
+    "stack",
+    "blocks",
+    "arch",
+    "frame",
+    "panel",
+    "pointed-arch",
+    "elliptical-arch",
+    "bridge",
+    "vault",
     "aisled-vault",
-)  # fmt: skip
+)
 SOLIDS = ("wall", "dome", "chimney", "cross-vault")
 ROCKING = ("block", "column", "arch", "frame", "brickwork", "pointed-arch", "elliptical-arch", "vault")
 SMALL = ("block", "column", "brickwork", "stack", "blocks")
@@ -265,9 +318,7 @@ def structures(*kinds: str) -> Strategy:
 
 
 @st.composite
-def decks(
-    draw: st.DrawFn, *kinds: str, friction: st.SearchStrategy | None = None, material: st.SearchStrategy | None = None
-) -> Deck:
+def decks(draw: st.DrawFn, *kinds: str, friction: st.SearchStrategy | None = None, material: st.SearchStrategy | None = None) -> Deck:
     """A building of one of these kinds: its structure, joints and material."""
     deck = {"structure": draw(structures(*kinds))}
     mu = draw(number(0.6, 0.9, 6) if friction is None else friction)
@@ -382,8 +433,17 @@ def in_words(deck: Deck) -> Deck:
     from extrados import kinds
     from extrados.decks.reader import PROPERTIES
 
-    other = {"m": (100.0, "cm"), "Pa": (1e-6, "MPa"), "N": (1e-3, "kN"), "kg/m^3": (1e-3, "t/m^3"), "s": (1e3, "ms"),
-             "deg": (math.pi / 180.0, "rad"), "N/m": (1e-3, "kN/m"), "kg": (1e-3, "t"), "Pa/m": (1e-6, "MPa/m")}  # fmt: skip
+    other = {
+        "m": (100.0, "cm"),
+        "Pa": (1e-6, "MPa"),
+        "N": (1e-3, "kN"),
+        "kg/m^3": (1e-3, "t/m^3"),
+        "s": (1e3, "ms"),
+        "deg": (math.pi / 180.0, "rad"),
+        "N/m": (1e-3, "kN/m"),
+        "kg": (1e-3, "t"),
+        "Pa/m": (1e-6, "MPa/m"),
+    }
 
     def change(value: float, unit: str) -> Any:
         factor, word = other.get(unit, (1.0, ""))
@@ -423,10 +483,7 @@ def cut(deck: Deck, number: int, share: float) -> Deck:
     if not convex(points) or min(len(left), len(right)) < 3:
         return made
     blocks.remove(block)
-    blocks += [
-        {**block, "name": f"{block['name']} {side}", "points": part.tolist()}
-        for side, part in (("left", left), ("right", right))
-    ]
+    blocks += [{**block, "name": f"{block['name']} {side}", "points": part.tolist()} for side, part in (("left", left), ("right", right))]
     return made
 
 
@@ -461,9 +518,7 @@ def shaken(deck: Deck, deviation: float, seed: int) -> Deck:
     strays: dict[tuple, np.ndarray] = {}
 
     def stray(points: np.ndarray) -> np.ndarray:
-        return np.array(
-            [p + strays.setdefault(tuple(np.round(p, 9)), rng.uniform(-1, 1, 2) * deviation) for p in points]
-        )
+        return np.array([p + strays.setdefault(tuple(np.round(p, 9)), rng.uniform(-1, 1, 2) * deviation) for p in points])
 
     made = copy.deepcopy(deck)
     for block in made["structure"]["block"]:

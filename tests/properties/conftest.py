@@ -86,7 +86,9 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
 
 def answer_of(result: Result) -> bytes:
     """All that a result holds, but how long it took and where its files lie."""
-    held = json.dumps([result.status, result.reason, result.answer, result.warnings, result.results.as_json(), repr(result.verdict)], default=str)  # fmt: skip
+    held = json.dumps(
+        [result.status, result.reason, result.answer, result.warnings, result.results.as_json(), repr(result.verdict)], default=str
+    )
     held = re.sub(r'"[^"]*seconds[^"]*": [^,}]*|/tmp/[^\s"]*', "", held)
     arrays = [np.asarray(a.data).tobytes() for _, a in sorted(result.arrays.items())]
     columns = [repr(np.asarray(c).tolist()) for _, t in sorted(result.tables.items()) for c in t.columns.values()]
@@ -94,9 +96,7 @@ def answer_of(result: Result) -> bytes:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(
-    item: pytest.Item, call: pytest.CallInfo
-) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Keeps whether a test itself has passed."""
     report = yield
     if call.when == "call":
@@ -145,7 +145,13 @@ def _noted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> I
     callspec = getattr(request.node, "callspec", None)
     relation = callspec.params.get("relation") if callspec else None
     chapter = Path(relation.holds.__code__.co_filename if relation else request.node.path)
-    row = {"test": request.node.nodeid, "chapter": chapter.name, "source": hashlib.sha256(chapter.read_bytes()).hexdigest(),
-           "seconds": time.process_time() - begin, "answers": digest.hexdigest(), "lines": found}  # fmt: skip
+    row = {
+        "test": request.node.nodeid,
+        "chapter": chapter.name,
+        "source": hashlib.sha256(chapter.read_bytes()).hexdigest(),
+        "seconds": time.process_time() - begin,
+        "answers": digest.hexdigest(),
+        "lines": found,
+    }
     with open(place, "a", encoding="utf-8") as file:
         file.write(json.dumps(row) + "\n")

@@ -24,9 +24,7 @@ def building(deck: Deck) -> Building:
 
 
 #: Kinds whose thickness is called depth
-DEEP = tuple(
-    k for k in SECTIONS if "depth" in kinds.table("structure", k).model_fields and k not in ("blocks", "bridge")
-)
+DEEP = tuple(k for k in SECTIONS if "depth" in kinds.table("structure", k).model_fields and k not in ("blocks", "bridge"))
 
 
 @relation("tilt", st.tuples(decks(*DEEP), number(0.2, 3.0), number(500.0, 3000.0)), 5e-3)
@@ -88,12 +86,7 @@ def solids_hold_what_their_parts_do(deck: Deck, within: float) -> None:
             volume += share.sum()
             first += share @ whole / 4.0
             second += (
-                np.einsum(
-                    "t,tij->ij",
-                    share,
-                    (np.einsum("tki,tkj->tij", corner, corner) + np.einsum("ti,tj->tij", whole, whole)),
-                )
-                / 20.0
+                np.einsum("t,tij->ij", share, (np.einsum("tki,tkj->tij", corner, corner) + np.einsum("ti,tj->tij", whole, whole))) / 20.0
             )
         centre = first / volume
         about = second - volume * np.outer(centre, centre)
@@ -107,10 +100,7 @@ def solids_hold_what_their_parts_do(deck: Deck, within: float) -> None:
 def barrels_and_their_sections(deck: Deck, within: float) -> None:
     """Along its span a barrel of any bond bears what its section bears; a skew one no more, for its joints bear sidewards too."""
     square, section = changed(deck, structure={"skew": 0.0}), changed(deck, structure={"skew": 0.0, "stones_across": 1})
-    plane, space, skew = (
-        ask(section, "tilt"),
-        *(ask(d, "tilt", direction=0.0, rose=4, starts=1) for d in (square, deck)),
-    )
+    plane, space, skew = (ask(section, "tilt"), *(ask(d, "tilt", direction=0.0, rose=4, starts=1) for d in (square, deck)))
     same("in space", plane, space)
     ok(plane, space)
     near("in space", plane.capacity, space.capacity, within, 1e-3)
@@ -123,8 +113,13 @@ def barrels_and_their_sections(deck: Deck, within: float) -> None:
 def facades(draw: st.DrawFn) -> Deck:
     """Tables of a wall that turns out of its plane, with all that rests on it, pushes it or holds it."""
     height = draw(number(2.0, 8.0))
-    table: Deck = {"mechanism": "facade", "thickness": draw(number(0.2, 1.0)), "height": height, "width": draw(number(0.5, 5.0)),
-                   "hinge_height": draw(st.sampled_from([0.0, 0.5]))}  # fmt: skip
+    table: Deck = {
+        "mechanism": "facade",
+        "thickness": draw(number(0.2, 1.0)),
+        "height": height,
+        "width": draw(number(0.5, 5.0)),
+        "hinge_height": draw(st.sampled_from([0.0, 0.5])),
+    }
     if draw(st.booleans()):
         table["side_walls"] = {
             "thickness": draw(number(0.2, 0.6)),
@@ -133,10 +128,16 @@ def facades(draw: st.DrawFn) -> Deck:
         }
     levels = number(1.0, height, 20)
     table["floors"] = [
-        {"height": draw(levels), "load": draw(number(0.0, 3e4)), "pushing": draw(number(0.0, 2e4)), "thrust": draw(st.sampled_from([0.0, 200.0])),
-         "sways": draw(st.booleans()), **({"arm": draw(number(0.05, 0.2))} if draw(st.booleans()) else {})}
+        {
+            "height": draw(levels),
+            "load": draw(number(0.0, 3e4)),
+            "pushing": draw(number(0.0, 2e4)),
+            "thrust": draw(st.sampled_from([0.0, 200.0])),
+            "sways": draw(st.booleans()),
+            **({"arm": draw(number(0.05, 0.2))} if draw(st.booleans()) else {}),
+        }
         for _ in range(draw(st.integers(0, 2)))
-    ]  # fmt: skip
+    ]
     table["ties"] = [{"height": draw(levels), "force": draw(number(10.0, 3e3))} for _ in range(draw(st.integers(0, 1)))]
     return table
 
@@ -187,28 +188,22 @@ def ties_by_rocking_and_limit_analysis(size: tuple, level: float, force: float, 
     middle = 0.5 * width if min(p[0] for p in building(deck).blocks().outlines[0]) >= 0.0 else 0.0
     y = round(level * height, 4)
     pull = round(force * 0.5 * width * weight / y, 3)  # of the moment that its weight resists by
-    tie = {
-        "start": [middle, y],
-        "ground": [middle + side * (width + 3.0), y],
-        "works_in": "tension",
-        "yield_force": pull,
-    }
+    tie = {"start": [middle, y], "ground": [middle + side * (width + 3.0), y], "works_in": "tension", "yield_force": pull}
     held = {**deck, "ties": [{**tie, "stiffness": 1e6, "prestress": pull}]}
     limit = ask({**deck, "ties": [tie]}, "tilt")
-    rocks = ask(
-        changed(held, motion={"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.5}), "rocking", end_time=1.0
-    )
+    rocks = ask(changed(held, motion={"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.5}), "rocking", end_time=1.0)
     ok(limit, rocks)
     moment = weight * 0.5 * width
-    near(
-        "limit analysis", sorted(limit.capacity), [width / height, (moment + pull * y) / (0.5 * height * weight)], 1e-5
-    )
+    near("limit analysis", sorted(limit.capacity), [width / height, (moment + pull * y) / (0.5 * height * weight)], 1e-5)
     near("rocking", rocks.results.uplift_acceleration_g, (moment - pull * y) / (0.5 * height * weight), within)
     for wall, away in (("left", 1.0), ("right", -1.0)):
         beside = ask(
-            changed(held, motion={"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.5}, supports={"abutting_wall": wall, "rebound": 0.0}),
-            "rocking", end_time=1.0,
-        )  # fmt: skip
+            changed(
+                held, motion={"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.5}, supports={"abutting_wall": wall, "rebound": 0.0}
+            ),
+            "rocking",
+            end_time=1.0,
+        )
         ok(beside)
         want = (moment - side * away * pull * y) / (0.5 * height * weight)
         near(f"a wall to the {wall}", beside.results.uplift_acceleration_g, want, within)
@@ -216,10 +211,18 @@ def ties_by_rocking_and_limit_analysis(size: tuple, level: float, force: float, 
 
 #: Analyses whose tables and arrays are compared, with a motion
 TOLD: dict[str, dict[str, Any]] = {
-    "rocking": {}, "dem": {"end_time": 0.5, "solver": "nonsmooth"}, "tilt": {}, "thrust": {}, "fragility": {"count": 4, "bootstrap": 0},
-    "failure-domain": {"durations": [0.3, 0.6], "amplitudes": 3, "accuracy": 0.05}, "local-mechanism": {"mechanism": "building"},
-    "moving-load": {"count": 5}, "supports": {"steps": 10}, "sla": {"events": 10}, "motion": {},
-}  # fmt: skip
+    "rocking": {},
+    "dem": {"end_time": 0.5, "solver": "nonsmooth"},
+    "tilt": {},
+    "thrust": {},
+    "fragility": {"count": 4, "bootstrap": 0},
+    "failure-domain": {"durations": [0.3, 0.6], "amplitudes": 3, "accuracy": 0.05},
+    "local-mechanism": {"mechanism": "building"},
+    "moving-load": {"count": 5},
+    "supports": {"steps": 10},
+    "sla": {"events": 10},
+    "motion": {},
+}
 
 
 @relation(
@@ -234,10 +237,7 @@ def tables_and_arrays(deck: Deck, motion: Deck, kind: str, within: float) -> Non
     ok(answer)
     arrays = answer.result.arrays
     for name, table in answer.result.tables.items():
-        must(
-            len({len(c) for c in table.columns.values()}) <= 1,
-            f"{name}: columns of {[len(c) for c in table.columns.values()]}",
-        )
+        must(len({len(c) for c in table.columns.values()}) <= 1, f"{name}: columns of {[len(c) for c in table.columns.values()]}")
         for column, values in table.columns.items():
             values = np.asarray(values)
             if column in arrays and values.dtype.kind == "f" and np.shape(arrays[column].data) == values.shape:
@@ -259,23 +259,26 @@ def _peaks(answer: Answer, kind: str, structure: str) -> None:
         upper = np.abs(np.asarray(arrays["rotation_upper"].data) - rotation).max(initial=0.0)
         at_most("the upper block", upper / r.stack.critical_rotation_upper_rad, r.peak_rotation_ratio, 1e-6, 1e-9)
     else:
-        near(
-            "peak over the critical rotation",
-            abs(r.peak_rotation_rad) / r.critical_rotation_rad,
-            abs(r.peak_rotation_ratio),
-            1e-6,
-            1e-9,
-        )
+        near("peak over the critical rotation", abs(r.peak_rotation_rad) / r.critical_rotation_rad, abs(r.peak_rotation_ratio), 1e-6, 1e-9)
 
 
-LOADED = st.tuples(
-    decks("arch", "pointed-arch", "elliptical-arch"), number(0.2, 0.8), number(1.0, 3.0), st.sampled_from([False, True])
+LOADED = st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(0.2, 0.8), number(1.0, 3.0), st.sampled_from([False, True]))
+
+
+@relation(
+    "moving-load",
+    LOADED,
+    1e-5,
+    share=0.5,
+    examples=(
+        (
+            {"structure": {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 5}, "joints": {"friction": 0.7}},
+            0.3,
+            2.0,
+            False,
+        ),
+    ),
 )
-
-
-@relation("moving-load", LOADED, 1e-5, share=0.5, examples=(
-    ({"structure": {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 5}, "joints": {"friction": 0.7}}, 0.3, 2.0, False),
-))  # fmt: skip
 def even_loads_where_they_are_adverse(deck: Deck, share: float, factor: float, both: bool, within: float) -> None:
     """Where an even load stands by its own choice it brings down no later than on any other stretch, and as said on that stretch."""
     outlines = building(deck).blocks().outlines
@@ -285,20 +288,13 @@ def even_loads_where_they_are_adverse(deck: Deck, share: float, factor: float, b
     weight = float(building(deck).blocks().mass.sum()) * GRAVITY
 
     def asked(stretches: list[tuple[float, float]], **keys: Any) -> Answer:
-        even = [
-            {"load": weight / span, "start": round(place - b, 6), "stop": round(place - a, 6)} for a, b in stretches
-        ]
+        even = [{"load": weight / span, "start": round(place - b, 6), "stop": round(place - a, 6)} for a, b in stretches]
         return ask(deck, "moving-load", axle_loads=[0.2 * weight], uniform=even, places=[place], **keys)
 
     found = asked([(low - span, high + span)], both_ways=both)
     ok(found)
     heavier = ask(
-        deck,
-        "moving-load",
-        axle_loads=[0.2 * weight * factor],
-        uniform=[{"load": weight / span * factor}],
-        places=[place],
-        both_ways=both,
+        deck, "moving-load", axle_loads=[0.2 * weight * factor], uniform=[{"load": weight / span * factor}], places=[place], both_ways=both
     )
     near("in proportion", found.results.adequacy_factor, heavier.results.adequacy_factor * factor, 1e-4)
     chosen = np.asarray(found.result.arrays["even_load"].data)
@@ -306,33 +302,14 @@ def even_loads_where_they_are_adverse(deck: Deck, share: float, factor: float, b
     if len(chosen) == 1:
         first, last = chosen[0]
         for da, db in itertools.product(steps, steps):
-            if (
-                last + db - first - da > 0.01 * span
-                and (part := asked([(first + da, last + db)], adverse=False)).answers
-            ):
-                at_most(
-                    f"shifted by {da:.3g} and {db:.3g} m",
-                    found.results.adequacy_factor,
-                    part.results.adequacy_factor,
-                    2e-4,
-                )
+            if last + db - first - da > 0.01 * span and (part := asked([(first + da, last + db)], adverse=False)).answers:
+                at_most(f"shifted by {da:.3g} and {db:.3g} m", found.results.adequacy_factor, part.results.adequacy_factor, 2e-4)
                 if da == db == 0.0:
-                    near(
-                        "on the stretch that is named",
-                        found.results.adequacy_factor,
-                        part.results.adequacy_factor,
-                        5e-3,
-                    )
+                    near("on the stretch that is named", found.results.adequacy_factor, part.results.adequacy_factor, 5e-3)
 
 
-@relation(
-    "moving-load",
-    st.tuples(decks("arch", "elliptical-arch"), number(1.0, 8.0), number(1.0, 4.0), number(1.0, 1.4)),
-    1e-5,
-)
-def partial_factors_are_properties(
-    deck: Deck, pressure: float, strength: float, friction: float, within: float
-) -> None:
+@relation("moving-load", st.tuples(decks("arch", "elliptical-arch"), number(1.0, 8.0), number(1.0, 4.0), number(1.0, 1.4)), 1e-5)
+def partial_factors_are_properties(deck: Deck, pressure: float, strength: float, friction: float, within: float) -> None:
     """A partial factor under strength or friction is a lower strength or friction. pressure: strength over the mean stress at rest."""
     stones = building(deck).blocks()
     least = float(stones.mass.sum()) * GRAVITY / (2.0 * stones.depth * stones.length.min())
@@ -345,9 +322,7 @@ def partial_factors_are_properties(
         factors={"strength": strength, "friction": friction},
     )
     other = ask(
-        changed(deck, material={"compressive_strength": crushing / strength}, joints={"friction": mu / friction}),
-        "moving-load",
-        count=3,
+        changed(deck, material={"compressive_strength": crushing / strength}, joints={"friction": mu / friction}), "moving-load", count=3
     )
     same("factored", one, other)
     ok(one, other)
@@ -373,30 +348,29 @@ def gaps_are_measured(width: float, height: float, gap: float, shift: float, wit
     """A stone that hangs over another is refused with the size of the gap, wherever the survey has its origin."""
     rows = [(0.0, height), (height + gap, 2.0 * height + gap)]
     blocks = [
-        {
-            "name": f"s{k}",
-            "points": [[shift + x, shift + y] for x, y in ((0.0, low), (width, low), (width, high), (0.0, high))],
-        }
+        {"name": f"s{k}", "points": [[shift + x, shift + y] for x, y in ((0.0, low), (width, low), (width, high), (0.0, high))]}
         for k, (low, high) in enumerate(rows)
     ]
     ground = [[shift - 1.0, shift, shift + width + 1.0, shift]]
     answer = ask({"structure": {"kind": "blocks", "block": blocks, "ground": ground}}, "tilt")
     must(answer.status == "refused", answer.status)
-    found = [
-        float(w.strip(",;:()"))
-        for w in answer.said.split()
-        if w.strip(",;:()").replace(".", "", 1).replace("e-", "", 1).isdigit()
-    ]
-    must(
-        any(abs(v - scale * gap) <= within * scale * gap for v in found for scale in (1.0, 1e3)),
-        f"a gap of {gap}: {answer.said}",
-    )
+    found = [float(w.strip(",;:()")) for w in answer.said.split() if w.strip(",;:()").replace(".", "", 1).replace("e-", "", 1).isdigit()]
+    must(any(abs(v - scale * gap) <= within * scale * gap for v in found for scale in (1.0, 1e3)), f"a gap of {gap}: {answer.said}")
 
 
 COMPATIBLE = st.tuples(number(0.1, 0.6), st.integers(1, 10**6)).map(
-    lambda t: {"kind": "compatible", "code": "EN1998-1", "ground": "C", "acceleration": f"{t[0]:g} g", "duration": 3.0, "shortest": 0.1,
-               "longest": 0.8, "tolerance": 0.4, "seed": t[1]}
-)  # fmt: skip
+    lambda t: {
+        "kind": "compatible",
+        "code": "EN1998-1",
+        "ground": "C",
+        "acceleration": f"{t[0]:g} g",
+        "duration": 3.0,
+        "shortest": 0.1,
+        "longest": 0.8,
+        "tolerance": 0.4,
+        "seed": t[1],
+    }
+)
 
 
 @relation("fragility rocking", st.tuples(decks("block"), COMPATIBLE, EARTHQUAKES), 1e-6, share=0.5)
@@ -427,11 +401,22 @@ def codes_where_joints_slide(deck: Deck, within: float) -> None:
     near("alpha_0", codes.results.multiplier, limit.capacity.min(), within)
 
 
-@relation("rocking", st.tuples(decks("stack", "block", "arch", "column"), pulses(0.3, 1.2)), 1e-6, examples=(
-    ({"structure": {"kind": "stack", "lower_width": 0.8, "lower_height": 1.0, "upper_width": 0.4, "upper_height": 1.6}}, {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.5}),
-    ({"structure": {"kind": "stack", "lower_width": 0.6, "lower_height": 2.0, "upper_width": 0.6, "upper_height": 0.8}}, {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.5}),
-    ({"structure": {"kind": "block", "width": 0.3, "height": 3.0}}, {"kind": "sine-pulse", "amplitude": "0.8 g", "period": 1.2}),
-))  # fmt: skip
+@relation(
+    "rocking",
+    st.tuples(decks("stack", "block", "arch", "column"), pulses(0.3, 1.2)),
+    1e-6,
+    examples=(
+        (
+            {"structure": {"kind": "stack", "lower_width": 0.8, "lower_height": 1.0, "upper_width": 0.4, "upper_height": 1.6}},
+            {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.5},
+        ),
+        (
+            {"structure": {"kind": "stack", "lower_width": 0.6, "lower_height": 2.0, "upper_width": 0.6, "upper_height": 0.8}},
+            {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.5},
+        ),
+        ({"structure": {"kind": "block", "width": 0.3, "height": 3.0}}, {"kind": "sine-pulse", "amplitude": "0.8 g", "period": 1.2}),
+    ),
+)
 def peaks_are_those_of_histories(deck: Deck, motion: Deck, within: float) -> None:
     """Greatest rotations, over the critical ones too, are no less than those of the history."""
     answer = ask(changed(deck, motion=motion), "rocking")
@@ -440,14 +425,8 @@ def peaks_are_those_of_histories(deck: Deck, motion: Deck, within: float) -> Non
     r = answer.results
     near("peak ground acceleration", r.peak_ground_acceleration_g, float(motion["amplitude"].split()[0]), 1e-2)
     words = answer.result.answer
-    must(
-        any(w in words for w in ("collapse", "overturn")) == (r.outcome == "collapse"),
-        f"{r.outcome}: {words}",
-    )
-    must(
-        r.impacts == len(r.impact_times_s or []) or deck["structure"]["kind"] != "stack",
-        f"{r.impacts} impacts at {r.impact_times_s}",
-    )
+    must(any(w in words for w in ("collapse", "overturn")) == (r.outcome == "collapse"), f"{r.outcome}: {words}")
+    must(r.impacts == len(r.impact_times_s or []) or deck["structure"]["kind"] != "stack", f"{r.impacts} impacts at {r.impact_times_s}")
 
 
 @relation("fragility", st.tuples(number(0.2, 0.6), number(1.0, 1.5)), 1e-6, share=0.3)
@@ -459,41 +438,33 @@ def a_record_that_cannot_be_read(amplitude: float, frequency: float, within: flo
         (Path(name) / "bad.csv").write_text("no numbers\n")
         deck = {"structure": {"kind": "block", "width": 1.0, "height": 4.0}}
         files = (["motion.csv", "bad.csv"], ["motion.csv"])
-        both, one = (
-            ask({**deck, "motion": {"kind": "suite", "files": f}}, "fragility", Path(name), bootstrap=0) for f in files
-        )
+        both, one = (ask({**deck, "motion": {"kind": "suite", "files": f}}, "fragility", Path(name), bootstrap=0) for f in files)
     ok(both, one)
     rows = both.result.tables["ensemble"].columns
-    must(
-        list(rows["outcome"]) == [*one.result.tables["ensemble"].columns["outcome"], "failed"],
-        f"{list(rows['outcome'])}",
-    )
-    must(
-        "bad.csv" in rows["reason"][1] and not rows["reason"][0] and "bad.csv" in both.warnings,
-        f"{rows.get('reason')}: {both.warnings}",
-    )
-    must(
-        (both.results.collapsed, both.results.uplifted) == (one.results.collapsed, one.results.uplifted),
-        "another count",
-    )
+    must(list(rows["outcome"]) == [*one.result.tables["ensemble"].columns["outcome"], "failed"], f"{list(rows['outcome'])}")
+    must("bad.csv" in rows["reason"][1] and not rows["reason"][0] and "bad.csv" in both.warnings, f"{rows.get('reason')}: {both.warnings}")
+    must((both.results.collapsed, both.results.uplifted) == (one.results.collapsed, one.results.uplifted), "another count")
 
 
-@relation("supports thrust rocking local-mechanism", st.tuples(decks("arch", "pointed-arch"), pulses(0.2, 0.8), st.randoms(use_true_random=False)), 1e-5, share=0.5)  # fmt: skip
+@relation(
+    "supports thrust rocking local-mechanism",
+    st.tuples(decks("arch", "pointed-arch"), pulses(0.2, 0.8), st.randoms(use_true_random=False)),
+    1e-5,
+    share=0.5,
+)
 def an_arch_is_its_blocks(deck: Deck, motion: Deck, rng: Any, within: float) -> None:
     """An arch of a template, and its blocks drawn one by one in any order, give the same by all that take both."""
     plain = drawn(deck)
     rng.shuffle(plain["structure"]["block"])
     for kind, keys, names in (
-        ("supports", {"steps": 40}, ("movement_at_fall_m",)), ("thrust", {}, ()),
+        ("supports", {"steps": 40}, ("movement_at_fall_m",)),
+        ("thrust", {}, ()),
         ("rocking", {}, ("uplift_acceleration_g", "peak_rotation_ratio", "critical_rotation_rad", "restitution")),
         ("local-mechanism", {"mechanism": "building"}, ("multiplier", "participating_part", "zero_displacement_m")),
-    ):  # fmt: skip
+    ):
         one, other = (ask(changed(d, motion=motion) if kind == "rocking" else d, kind, **keys) for d in (deck, plain))
         if one.answers != other.answers or not one.answers:
-            must(
-                kind not in ("supports", "thrust") or one.outcome == other.outcome,
-                f"{kind}: {one.said} against {other.said}",
-            )
+            must(kind not in ("supports", "thrust") or one.outcome == other.outcome, f"{kind}: {one.said} against {other.said}")
             continue
         if kind == "thrust":
             near("least thrust", one.results.least.horizontal_N, other.results.least.horizontal_N, 1e-2)
@@ -506,19 +477,12 @@ def an_arch_is_its_blocks(deck: Deck, motion: Deck, rng: Any, within: float) -> 
 
 
 @relation(
-    "tilt",
-    st.tuples(st.integers(3, 6), st.integers(3, 6), st.integers(1, 2), st.sampled_from(["brickwork", "panel"])),
-    1e-9,
-    share=0.5,
+    "tilt", st.tuples(st.integers(3, 6), st.integers(3, 6), st.integers(1, 2), st.sampled_from(["brickwork", "panel"])), 1e-9, share=0.5
 )
 def openings_at_either_end(units: int, courses: int, wide: int, kind: str, within: float) -> None:
     """A wall with a notch at one end weighs what the wall with the same notch at its other end weighs, also where the notch reaches beyond."""
     length, height = units * 0.5, courses * 0.25
-    keys = (
-        {"units": units, "courses": courses}
-        if kind == "brickwork"
-        else {"width": length, "height": height, "thickness": 0.25}
-    )
+    keys = {"units": units, "courses": courses} if kind == "brickwork" else {"width": length, "height": height, "thickness": 0.25}
     level, size = [0.25, height - 0.25], 0.25 * wide
     wall = {"kind": kind, "unit_length": 0.5, "unit_height": 0.25, **keys}
     masses = [
@@ -532,10 +496,7 @@ def openings_at_either_end(units: int, courses: int, wide: int, kind: str, withi
 def dampers_make_an_upper_bound_of_codes(size: tuple, held: bool, within: float) -> None:
     """What codes do not count on, a damper, makes their multiplier an upper bound, which is no verdict that it stands."""
     width, height = size
-    deck: Deck = {
-        "structure": {"kind": "block", "width": width, "height": height},
-        "joints": {"friction": "no-sliding"},
-    }
+    deck: Deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": "no-sliding"}}
     x = float(building(deck).blocks().centroid[0, 0])
     if held:
         deck["dampers"] = [{"start": [x, 0.8 * height], "ground": [x - width - 2.0, 0.8 * height], "damping": 100.0}]
@@ -546,7 +507,9 @@ def dampers_make_an_upper_bound_of_codes(size: tuple, held: bool, within: float)
     must(not held or answer.outcome != "stands", answer.outcome)
 
 
-@relation("rocking tilt", decks("arch", "pointed-arch", "elliptical-arch", "frame", "column", "brickwork", friction=st.just("no-sliding")), 1e-4)  # fmt: skip
+@relation(
+    "rocking tilt", decks("arch", "pointed-arch", "elliptical-arch", "frame", "column", "brickwork", friction=st.just("no-sliding")), 1e-4
+)
 def mechanisms_start_at_the_limit(deck: Deck, within: float) -> None:
     """Rocking starts where limit analysis has its lesser collapse acceleration; that both differ is no reason to refuse."""
     limit = ask(deck, "tilt")

@@ -26,11 +26,9 @@ def bodies_of_codes(draw: st.DrawFn) -> tuple[Deck, Deck]:
     floor = st.fixed_dictionaries(
         {"height": level, "load": number(0.0, 2e4, 4)},
         optional={"pushing": number(1e3, 1e4, 3), "arm": number(0.1, 0.6, 5), "sways": st.just(False), "thrust": number(50.0, 500.0, 3)},
-    )  # fmt: skip
-    table["floors"] = draw(st.lists(floor, max_size=2))
-    table["ties"] = draw(
-        st.lists(st.fixed_dictionaries({"height": level, "force": number(100.0, 2000.0, 5)}), max_size=2)
     )
+    table["floors"] = draw(st.lists(floor, max_size=2))
+    table["ties"] = draw(st.lists(st.fixed_dictionaries({"height": level, "force": number(100.0, 2000.0, 5)}), max_size=2))
     sides = draw(st.sampled_from(["none", "wedges", "teeth"]))
     if sides == "wedges" and kind != "corner":
         table["side_walls"] = {
@@ -40,8 +38,11 @@ def bodies_of_codes(draw: st.DrawFn) -> tuple[Deck, Deck]:
         }
     if sides == "teeth" and kind == "facade":
         table["interlocking"] = {
-            "unit_height": draw(number(0.1, 0.4, 6)), "overlap": draw(number(0.05, 0.2, 3)), "thickness": 0.3, "count": draw(st.integers(1, 3)),
-        }  # fmt: skip
+            "unit_height": draw(number(0.1, 0.4, 6)),
+            "overlap": draw(number(0.05, 0.2, 3)),
+            "thickness": 0.3,
+            "count": draw(st.integers(1, 3)),
+        }
     table["confidence_factor"], table["behaviour_factor"] = (
         draw(st.sampled_from([1.0, 1.2, 1.35])),
         draw(st.sampled_from([1.0, 2.0, 3.0])),
@@ -81,10 +82,7 @@ def floor_spectrum(a_z: float, first: float, ground: float, period: float, dampi
     if period < 0.8 * first:
         return most * a_z / (1.0 + (most - 1.0) * (1.0 - period / (0.8 * first)) ** 1.6)
     if period >= 1.1 * first:
-        return max(
-            most * a_z / (1.0 + (most - 1.0) * (period / (1.1 * first) - 1.0) ** 1.2),
-            code_spectrum(ground, period, damping),
-        )
+        return max(most * a_z / (1.0 + (most - 1.0) * (period / (1.1 * first) - 1.0) ** 1.2), code_spectrum(ground, period, damping))
     return most * a_z if period <= first else max(most * a_z, code_spectrum(ground, period, damping))
 
 
@@ -106,18 +104,12 @@ def weights_of_body(table: Deck, strength: float | None) -> tuple[np.ndarray, np
     for floor in table["floors"]:
         z, arm = floor["height"] - h0, floor.get("arm", middle)
         if z >= 0.0:
-            rows += [
-                (floor["load"], arm, z, int(floor.get("sways", True)), 1),
-                (floor.get("pushing", 0.0), arm, z, 1, 0),
-            ]
+            rows += [(floor["load"], arm, z, int(floor.get("sways", True)), 1), (floor.get("pushing", 0.0), arm, z, 1, 0)]
             pushes.append((floor.get("thrust", 0.0), z))
     if "interlocking" in table:
         teeth = table["interlocking"]
         n = math.floor(h / teeth["unit_height"] + 1e-9)
-        each = [
-            0.8 * k * teeth["unit_height"] * teeth["overlap"] * teeth["thickness"] * UNIT * 0.577
-            for k in range(1, n + 1)
-        ]
+        each = [0.8 * k * teeth["unit_height"] * teeth["overlap"] * teeth["thickness"] * UNIT * 0.577 for k in range(1, n + 1)]
         pushes += [
             (-teeth["count"] * f, h - k * teeth["unit_height"]) for k, f in enumerate(each, start=1)
         ]  # course by course, at its foot
@@ -167,7 +159,9 @@ def bodies_of_codes_by_hand(deck: Deck, table: Deck, within: float) -> None:
     arrays = {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
     q = np.linspace(0.0, math.atan2(back - held, high), len(arrays["displacement"]))
     swayed = np.array([w @ (sways * (z * np.cos(a) + arm * np.sin(a))) for a in q])
-    near("curve", arrays["acceleration"], ((back - held) * np.cos(q) - high * np.sin(q)) / swayed / part / fc, 1e-5, alpha) if len(q) > 1 else None  # fmt: skip
+    near("curve", arrays["acceleration"], ((back - held) * np.cos(q) - high * np.sin(q)) / swayed / part / fc, 1e-5, alpha) if len(
+        q
+    ) > 1 else None
     near("d* of the curve", arrays["displacement"], spectral(q), 1e-5, 1e-3)
     d0 = float(spectral(math.atan2(back - driving, high))) if alone > 0.0 else None
     must((r.zero_displacement_m is None) == (d0 is None), f"d_0 {r.zero_displacement_m} of {d0}")
@@ -187,7 +181,10 @@ def bodies_of_codes_by_hand(deck: Deck, table: Deck, within: float) -> None:
     def displaced(accelerations: tuple[float, float], period: float, damping: float) -> float:
         times = [*(period * np.arange(1, 61) / 60.0), *([1.1 * first] if raised and 1.1 * first < period else [])]
         ground, above = accelerations
-        return max((floor_spectrum(above, first, ground, t, damping) if raised else code_spectrum(ground, t, damping)) * (t / (2.0 * math.pi)) ** 2 for t in times)  # fmt: skip
+        return max(
+            (floor_spectrum(above, first, ground, t, damping) if raised else code_spectrum(ground, t, damping)) * (t / (2.0 * math.pi)) ** 2
+            for t in times
+        )
 
     want: dict[str, tuple[float | None, float | None]] = {}
     where = "at height z" if raised else "at the ground"
@@ -207,10 +204,7 @@ def bodies_of_codes_by_hand(deck: Deck, table: Deck, within: float) -> None:
             strong = float(table["collapse_spectrum"]["acceleration"].split()[0]) * GRAVITY
             slow = 1.56 * math.pi * math.sqrt(0.6 * d0 / (0.4 * falling))
             want["NTC nonlinear at SLC"] = 0.6 * d0, displaced((strong, 0.0), slow, 0.10)
-    want[f"NTC linear ({where})"] = (
-        table["behaviour_factor"] * a0 / GRAVITY,
-        felt / GRAVITY if felt is not None else None,
-    )
+    want[f"NTC linear ({where})"] = (table["behaviour_factor"] * a0 / GRAVITY, felt / GRAVITY if felt is not None else None)
     for name, (capacity, demand) in want.items():
         check = r.checks[name]
         near(f"{name}: capacity", check.capacity, capacity, 1e-5)
@@ -238,10 +232,7 @@ def decided_by_alternatives(answer: Answer) -> None:
     if not margins:
         must(answer.outcome == "open" or answer.outcome == "not-applicable", f"without a demand {answer.outcome}")
         return
-    must(
-        answer.outcome in (("stands", "open") if min(margins) >= 1.0 else ("collapses", "open")),
-        f"{answer.outcome} of margins {margins}",
-    )
+    must(answer.outcome in (("stands", "open") if min(margins) >= 1.0 else ("collapses", "open")), f"{answer.outcome} of margins {margins}")
     if not answer.verdict.violated and answer.verdict.bound is None:
         must(answer.outcome != "open", f"open of margins {margins}: {answer.verdict}")
     near("margin", answer.verdict.capacity / answer.verdict.demand, min(margins), 1e-9)

@@ -12,10 +12,7 @@ from hypothesis import strategies as st
 from relations import GRAVITY, RIGID, ok, relation
 
 RUNS = st.tuples(
-    decks("block", "column", "brickwork", friction=number(0.15, 0.8, 13)),
-    pulses(0.1, 1.2),
-    st.booleans(),
-    number(0.02, 0.6, 20),
+    decks("block", "column", "brickwork", friction=number(0.15, 0.8, 13)), pulses(0.1, 1.2), st.booleans(), number(0.02, 0.6, 20)
 )
 
 
@@ -42,15 +39,12 @@ def runs_of_elements_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float
     must(bool(r.stopped_by) == (r.stopped in ("collapse", "left")), f"{r.stopped}, stopped by {r.stopped_by}")
     must(len(set(r.stopped_by)) == len(r.stopped_by), f"stopped by {r.stopped_by}")
     for name in r.stopped_by:
-        must(
-            away[-1, names.index(name)] > 0.5 * limit, f"stopped by {name}, which moved {away[-1, names.index(name)]} m"
-        )
+        must(away[-1, names.index(name)] > 0.5 * limit, f"stopped by {name}, which moved {away[-1, names.index(name)]} m")
     for name, most in r.peak_rotation_rad.items():
-        near(f"peak rotation of {name}", most, rotation[np.abs(rotation[:, names.index(name)]).argmax(), names.index(name)], within, 1e-3)  # fmt: skip
+        near(f"peak rotation of {name}", most, rotation[np.abs(rotation[:, names.index(name)]).argmax(), names.index(name)], within, 1e-3)
     most = np.abs(rotation).max(axis=0)
     must(
-        set(r.peak_rotation_rad) >= {names[i] for i in np.argsort(-most)[:1] if most[i] > 1e-6},
-        f"{sorted(r.peak_rotation_rad)} of {names}",
+        set(r.peak_rotation_rad) >= {names[i] for i in np.argsort(-most)[:1] if most[i] > 1e-6}, f"{sorted(r.peak_rotation_rad)} of {names}"
     )
     # joints
     p, q, blocks = a["joint_p"], a["joint_q"], a["joint_block"]
@@ -72,13 +66,7 @@ def runs_of_elements_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float
             angle = shift[:, body, 2]
             spin = np.stack([np.cos(angle) + 0 * angle, np.sin(angle)], axis=1)
             arm = np.array([p[j], q[j]]) - place[0, body, :2]
-            moved = np.stack(
-                [
-                    spin[:, :1] * arm[:, 0] - spin[:, 1:] * arm[:, 1],
-                    spin[:, 1:] * arm[:, 0] + spin[:, :1] * arm[:, 1],
-                ],
-                axis=2,
-            )
+            moved = np.stack([spin[:, :1] * arm[:, 0] - spin[:, 1:] * arm[:, 1], spin[:, 1:] * arm[:, 0] + spin[:, :1] * arm[:, 1]], axis=2)
             ends.append(place[:, body, None, :2] + moved)
             turned.append(angle)
         mean = 0.5 * (turned[0] + turned[1])
@@ -92,40 +80,23 @@ def runs_of_elements_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float
         wide = np.array([a["opening_p"][:, j], a["opening_q"][:, j]]) > 5e-4 * length[j]
         off = (min(i, k) >= 0) & (np.abs(a["slip"][:, j]) > length[j])
         state[:, j] = np.where(wide.all(axis=0) | off, 2, np.where(wide[0], 1, np.where(wide[1], -1, 0)))
-    must(
-        bool((a["hinge"] == state).all()), f"hinges {np.argwhere(a['hinge'] != state)[:3].tolist()} are told otherwise"
-    )
+    must(bool((a["hinge"] == state).all()), f"hinges {np.argwhere(a['hinge'] != state)[:3].tolist()} are told otherwise")
     touching = np.where(a["hinge"] == 2, 0.0, np.abs(a["slip"]))
     near("slip", r.peak_slip_m, touching.max(), within, 1e-6)
     near("slip left", r.residual_slip_m, touching[-1].max(), within, 1e-6)
     ratio = touching.max(axis=0) / length
     near("slip ratio", r.slip_ratio, ratio.max(), within, 1e-6)
     joints = list(a["joint_name"])
-    must(
-        r.slipped_joint == (joints[int(ratio.argmax())] if ratio.max() > 0.01 else None),
-        f"{r.slipped_joint}: {ratio}",
-    )
+    must(r.slipped_joint == (joints[int(ratio.argmax())] if ratio.max() > 0.01 else None), f"{r.slipped_joint}: {ratio}")
     # energies
     masses, inertia = masses_of_blocks(a, building(deck).blocks().depth)
     rate = a["rate"]
     kinetic = 0.5 * (rate[..., :2] ** 2).sum(axis=2) @ masses + 0.5 * rate[..., 2] ** 2 @ inertia
     near("kinetic energy", a["kinetic_energy"], kinetic, 0.03, float(kinetic.max()) + 1e-3)
     rise = shift[..., 1] @ masses * GRAVITY
-    near(
-        "potential energy",
-        a["potential_energy"] - a["potential_energy"][0],
-        rise,
-        1e-6,
-        float(np.abs(rise).max()) + 1e-2,
-    )
+    near("potential energy", a["potential_energy"] - a["potential_energy"][0], rise, 1e-6, float(np.abs(rise).max()) + 1e-2)
     near("greatest kinetic energy", r.peak_kinetic_energy_J, a["kinetic_energy"].max(), within)
-    near(
-        "losses",
-        [r.friction_loss_J, r.damping_loss_J],
-        [a["friction_energy"][-1], a["damping_energy"][-1]],
-        within,
-        1e-6,
-    )
+    near("losses", [r.friction_loss_J, r.damping_loss_J], [a["friction_energy"][-1], a["damping_energy"][-1]], within, 1e-6)
     columns = answer.result.tables["dem"].columns
     for name, values in columns.items():
         if name.endswith("_energy"):
@@ -150,43 +121,22 @@ def runs_of_elements_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float
             at = int(gone.any(axis=1).argmax())
             block = int(gone[at].argmax())
             must(r.governing_block == names[block], f"{r.governing_block} of {names[block]}")
-            by = (
-                "rotation"
-                if turn[at, block] / (0.5 * limit / size) >= drop[at, block] / (0.25 * limit)
-                else "loss of height"
-            )
+            by = "rotation" if turn[at, block] / (0.5 * limit / size) >= drop[at, block] / (0.25 * limit) else "loss of height"
             must(r.collapse_criterion == by, f"{r.collapse_criterion} of {by}")
     else:
         want = "rocked" if (a["hinge"] != 0).any() else "slid" if r.slip_ratio > 0.01 else "at-rest"
-        must(
-            r.outcome == want and r.collapse_criterion is None and r.collapse_time_s is None,
-            f"{r.outcome}, not {want}",
-        )
-        must(
-            r.governing_block == names[int(away.max(axis=0).argmax())],
-            f"{r.governing_block} of {away.max(axis=0)}",
-        )
+        must(r.outcome == want and r.collapse_criterion is None and r.collapse_time_s is None, f"{r.outcome}, not {want}")
+        must(r.governing_block == names[int(away.max(axis=0).argmax())], f"{r.governing_block} of {away.max(axis=0)}")
         if r.stopped == "end":
             noise = 1e-6 * masses.sum() * GRAVITY * size
             last, all_ = a["kinetic_energy"][-1], a["kinetic_energy"].max()
             must(r.still_moving == bool(last > max(1e-3 * all_, noise)), f"still moving: {r.still_moving}")
     changes = [(t, j) for j in range(len(p)) for t in range(1, len(place)) if a["hinge"][t, j] != a["hinge"][t - 1, j]]
     told = answer.result.tables["dem_hinges"].columns
-    must(
-        len(told["time"]) in (len(changes), len(changes) + len(p)),
-        f"{len(told['time'])} changes of hinges, {len(changes)}",
-    )
+    must(len(told["time"]) in (len(changes), len(changes) + len(p)), f"{len(told['time'])} changes of hinges, {len(changes)}")
     if len(names) == 1 and r.restitution_housner is not None:
         s = deck["structure"]
-        near(
-            "Housner",
-            r.restitution_housner,
-            max(
-                0.0,
-                1.0 - 1.5 * s["width"] ** 2 / (s["width"] ** 2 + s["height"] ** 2),
-            ),
-            1e-6,
-        )
+        near("Housner", r.restitution_housner, max(0.0, 1.0 - 1.5 * s["width"] ** 2 / (s["width"] ** 2 + s["height"] ** 2)), 1e-6)
 
 
 def masses_of_blocks(a: dict[str, np.ndarray], depth: float) -> tuple[np.ndarray, np.ndarray]:
@@ -224,9 +174,7 @@ def runs_of_solids_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float, 
     must(bool(r.stopped_by) == (r.stopped in ("collapse", "left")), f"{r.stopped}, stopped by {r.stopped_by}")
     must(len(set(r.stopped_by)) == len(r.stopped_by), f"stopped by {r.stopped_by}")
     for name in r.stopped_by:
-        must(
-            away[-1, names.index(name)] > 0.5 * limit, f"stopped by {name}, which moved {away[-1, names.index(name)]} m"
-        )
+        must(away[-1, names.index(name)] > 0.5 * limit, f"stopped by {name}, which moved {away[-1, names.index(name)]} m")
     near("last displacement", r.final_displacement_m, away[-1].max(), within, 1e-3)
     turned = np.linalg.norm(a["turn"], axis=2)
     for name, most in r.peak_rotation_rad.items():
@@ -235,19 +183,16 @@ def runs_of_solids_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float, 
     near("opening", r.peak_opening_m, np.where(touching, a["opening"], 0.0).max(), within, 1e-6)
     slips = np.where(touching, np.abs(a["slip"]), 0.0)
     near("slip", [r.peak_slip_m, r.residual_slip_m], [slips.max(), slips[-1].max()], within, 1e-6)
-    masses = np.array(
-        [m for m in masses_of_solids(a)],
-    )
+    masses = np.array([m for m in masses_of_solids(a)])
     rate = a["rate"]
     kinetic = 0.5 * (rate[..., :3] ** 2).sum(axis=2) @ masses
     must(
-        bool((a["kinetic_energy"] >= kinetic * 0.97 - 0.03 * kinetic.max() - 1e-3).all()),
-        "less kinetic energy than that of the centroids",
+        bool((a["kinetic_energy"] >= kinetic * 0.97 - 0.03 * kinetic.max() - 1e-3).all()), "less kinetic energy than that of the centroids"
     )
     rise = shift[..., 2] @ masses * GRAVITY
     near("potential energy", a["potential_energy"] - a["potential_energy"][0], rise, 1e-5, np.abs(rise).max() + 1e-2)
     near("greatest kinetic energy", r.peak_kinetic_energy_J, a["kinetic_energy"].max(), within)
-    near("losses", [r.friction_loss_J, r.damping_loss_J], [a["friction_energy"][-1], a["damping_energy"][-1]], within, 1e-6)  # fmt: skip
+    near("losses", [r.friction_loss_J, r.damping_loss_J], [a["friction_energy"][-1], a["damping_energy"][-1]], within, 1e-6)
     must((r.blocks, r.contacts) == (len(names), a["state"].shape[1]), f"{r.blocks} stones, {r.contacts} contacts")
     size = float(np.ptp(a["solid_vertex"], axis=0).max())
     gone = (away > limit) & ((turned > 0.5 * limit / size) | (-shift[..., 2] > 0.25 * limit))

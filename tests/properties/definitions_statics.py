@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 from relations import GRAVITY, ok, relation
 
 
-@relation("supports", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(-1.0, 1.0, 8), number(-1.0, 1.0, 8)), 1e-3, share=2.0)  # fmt: skip
+@relation(
+    "supports", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(-1.0, 1.0, 8), number(-1.0, 1.0, 8)), 1e-3, share=2.0
+)
 def work_of_moving_supports(deck: Deck, spread: float, settle: float, within: float) -> None:
     """The potential energy of an arch changes by the work of its force on the right support; stages and numbers are those of the history."""
     if abs(spread) + abs(settle) < 0.2:
@@ -50,7 +52,7 @@ def work_of_moving_supports(deck: Deck, spread: float, settle: float, within: fl
         extreme = limits.results.least if spread > 0.0 else limits.results.most
         near("thrust at rest", r.thrust_at_rest_N, extreme.horizontal_N, 1e-4)
     shown = a["shown_movement"]
-    near("shown", shown, [movement[np.abs(movement - s * movement[-1]).argmin()] for s in (0.0, 0.25, 0.5, 0.75, 1.0)], 1e-9, 1e-6)  # fmt: skip
+    near("shown", shown, [movement[np.abs(movement - s * movement[-1]).argmin()] for s in (0.0, 0.25, 0.5, 0.75, 1.0)], 1e-9, 1e-6)
     ends = a["shown_point"][-1]
     joint = np.array([a["joint_p"], a["joint_q"]])
     at = [np.clip((ends[k] - base) @ _unit(joint[:, k]), 0.0, None) for k, base in ((0, joint[0, 0]),)]
@@ -65,7 +67,9 @@ def _unit(ends: np.ndarray) -> np.ndarray:
     return (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
 
 
-@relation("supports", st.tuples(decks("frame", "vault", "arch"), number(0.2, 1.0, 8), number(0.0, 0.6, 6), st.sampled_from([0.001, 0.003])), 1e-6)  # fmt: skip
+@relation(
+    "supports", st.tuples(decks("frame", "vault", "arch"), number(0.2, 1.0, 8), number(0.0, 0.6, 6), st.sampled_from([0.001, 0.003])), 1e-6
+)
 def right_support_spelled_out(deck: Deck, spread: float, settle: float, movement: float, within: float) -> None:
     """The right support of a structure that moves is the movement of its rightmost joints on the ground, spelled out."""
     plain = drawn(deck)
@@ -79,9 +83,7 @@ def right_support_spelled_out(deck: Deck, spread: float, settle: float, movement
     one = ask(plain, "supports", spread=spread, settle=settle, movement=movement)
     if one.answers and one.results.openings is None:
         reject()  # an arch is followed to its fall
-    rows = [
-        {"joint": str(a["joint_name"][j]), "dx": movement * spread / far, "dy": -movement * settle / far} for j in last
-    ]
+    rows = [{"joint": str(a["joint_name"][j]), "dx": movement * spread / far, "dy": -movement * settle / far} for j in last]
     other = ask(changed(plain, initial={"movements": rows}), "supports")
     must(one.outcome == other.outcome, f"{one.outcome} ({one.said}) against {other.outcome} ({other.said})")
     ok(one, other)
@@ -90,13 +92,7 @@ def right_support_spelled_out(deck: Deck, spread: float, settle: float, movement
     must(set(p) == set(q), f"{sorted(set(p) ^ set(q))}")
     b = {k: np.asarray(v.data) for k, v in one.result.arrays.items()}
     for name, row in p.items():
-        near(
-            name,
-            [row.opening_mm, row.slip_mm],
-            [q[name].opening_mm, q[name].slip_mm],
-            within,
-            1e3 * movement,
-        )
+        near(name, [row.opening_mm, row.slip_mm], [q[name].opening_mm, q[name].slip_mm], within, 1e3 * movement)
         first, second, slip = b["settled_opening"][row.joint]
         near(name, [row.opening_mm, row.slip_mm], [1e3 * max(first, second), 1e3 * slip], within, 1e3 * movement)
         must(
@@ -104,7 +100,13 @@ def right_support_spelled_out(deck: Deck, spread: float, settle: float, movement
             f"{name}: {row.side} of {first}, {second}",
         )
     down = sum(r.vertical_N for r in one.results.reactions)
-    near("reactions", [down, sum(r.horizontal_N for r in one.results.reactions)], [blocks.results.weight_N, 0.0], 1e-6, blocks.results.weight_N)  # fmt: skip
+    near(
+        "reactions",
+        [down, sum(r.horizontal_N for r in one.results.reactions)],
+        [blocks.results.weight_N, 0.0],
+        1e-6,
+        blocks.results.weight_N,
+    )
     near("work of the weight", one.results.work_J, -_fallen(b, plain), 1e-5, 1e-3 * blocks.results.weight_N * movement)
 
 
@@ -134,7 +136,7 @@ def trains(draw: st.DrawFn) -> tuple[Deck, Deck]:
     return deck, table
 
 
-@relation("moving-load tilt", st.tuples(trains(), st.lists(number(0.15, 0.85, 14), min_size=2, max_size=3, unique=True)), 1e-4, share=2.0)  # fmt: skip
+@relation("moving-load tilt", st.tuples(trains(), st.lists(number(0.15, 0.85, 14), min_size=2, max_size=3, unique=True)), 1e-4, share=2.0)
 def a_moving_load_stands_still(question: tuple, shares: list, within: float) -> None:
     """At each place the structure stands under a little less than the collapse load laid there at rest, and not under a little more."""
     deck, table = question
@@ -164,32 +166,19 @@ def a_moving_load_stands_still(question: tuple, shares: list, within: float) -> 
     if "axle_loads" in table:
         near("adequacy", r.adequacy_factor, a["adequacy"][k], 1e-9)
         near("live", r.live_load_factor, live, 1e-9)
-        near(
-            "on the structure",
-            r.collapse_load_N,
-            r.adequacy_factor * live * loads[on].sum(),
-            1e-6,
-        )
+        near("on the structure", r.collapse_load_N, r.adequacy_factor * live * loads[on].sum(), 1e-6)
         laid = r.adequacy_factor * live * strip * loads
     else:
         laid = r.collapse_load_N * loads / (loads if "force" in table else loads[on]).sum()
         if "force" in table:
             near("safety", r.safety_factor, r.collapse_load_N / table["force"], 1e-9)
-    must(
-        getattr(r, "characteristic", None) == (not factors),
-        f"characteristic: {getattr(r, 'characteristic', None)}, factors {factors}",
-    )
+    must(getattr(r, "characteristic", None) == (not factors), f"characteristic: {getattr(r, 'characteristic', None)}, factors {factors}")
     for share, stands in ((1.0 - 1e-4, True), (1.0 + 1e-4, False)):
         rows = [
-            {"x": float(place), "force": float(share * f), "sways": False}
-            for place, f, there in zip(axles, laid, on, strict=True)
-            if there
+            {"x": float(place), "force": float(share * f), "sways": False} for place, f, there in zip(axles, laid, on, strict=True) if there
         ]
         still = ask(heavier, "tilt", load=rows)
-        must(
-            (still.outcome != "cannot-stand") == stands,
-            f"{share} of the collapse load {laid} at {axles}: {still.outcome} {still.said}",
-        )
+        must((still.outcome != "cannot-stand") == stands, f"{share} of the collapse load {laid} at {axles}: {still.outcome} {still.said}")
 
 
 SPACES = decks("wall", "dome", "cross-vault", friction=number(0.2, 0.9, 7))
@@ -203,8 +192,18 @@ def mechanisms_of_solids_by_hand(deck: Deck, angle: float, within: float) -> Non
     both.append(ask(deck, "tilt", direction=both[0].results.least_direction_deg % 360.0))
     ok(*both)
     one, back = (x.results for x in both[:2])
-    near("both ways", [one.collapse_acceleration_g, one.collapse_acceleration_opposite_g], [back.collapse_acceleration_opposite_g, back.collapse_acceleration_g], 1e-5)  # fmt: skip
-    near("angles", [one.tilt_angle_deg, one.tilt_angle_opposite_deg], [math.degrees(math.atan(g)) for g in (one.collapse_acceleration_g, one.collapse_acceleration_opposite_g)], within)  # fmt: skip
+    near(
+        "both ways",
+        [one.collapse_acceleration_g, one.collapse_acceleration_opposite_g],
+        [back.collapse_acceleration_opposite_g, back.collapse_acceleration_g],
+        1e-5,
+    )
+    near(
+        "angles",
+        [one.tilt_angle_deg, one.tilt_angle_opposite_deg],
+        [math.degrees(math.atan(g)) for g in (one.collapse_acceleration_g, one.collapse_acceleration_opposite_g)],
+        within,
+    )
     dilating = []
     for answer, direction in zip(both, (angle, (angle + 180.0) % 360.0, one.least_direction_deg % 360.0), strict=True):
         r, a = answer.results, {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
@@ -222,19 +221,14 @@ def mechanisms_of_solids_by_hand(deck: Deck, angle: float, within: float) -> Non
         size = float(np.ptp(a["solid_vertex"], axis=0).max())
         near("pose", a["mechanism_pose"], velocity * 0.08 * size / speed.max(), 1e-6, size * 1e-3)
         share = np.array([speed[owner == i].max() for i in range(len(names))]) / speed.max()
-        must(
-            r.moving_blocks == int((share > 1e-3).sum()) and r.blocks == len(names),
-            f"{r.moving_blocks} moving blocks: {share}",
-        )
+        must(r.moving_blocks == int((share > 1e-3).sum()) and r.blocks == len(names), f"{r.moving_blocks} moving blocks: {share}")
         own = np.linalg.norm(velocity[:, :3], axis=1)
         must(own[names.index(r.fastest_block)] >= own.max() * (1.0 - 1e-9), f"{r.fastest_block} is not the fastest")
         a_, b_ = _pairs(deck)
         must(r.contacts == len(a_) and len(blocks) == len(names), f"{r.contacts} contacts of {len(a_)}")
         at = a["contact_point"]
 
-        def of_block(
-            which: np.ndarray, at: np.ndarray = at, velocity: np.ndarray = velocity, centre: np.ndarray = centre
-        ) -> np.ndarray:
+        def of_block(which: np.ndarray, at: np.ndarray = at, velocity: np.ndarray = velocity, centre: np.ndarray = centre) -> np.ndarray:
             moved = velocity[which, :3] + np.cross(velocity[which, 3:], at - centre[which])
             return np.where((which >= 0)[:, None], moved, 0.0)
 
@@ -246,10 +240,7 @@ def mechanisms_of_solids_by_hand(deck: Deck, angle: float, within: float) -> Non
             most[:, k] = max(opening[of == k].max(), 0.0), sliding[of == k].max()
         told = {c.joint: c for c in r.opening_contacts}
         moving = np.flatnonzero(most.max(axis=0) > 1e-6 * (1.0 + 1e-3))
-        must(
-            len(told) == min(20, len(moving)) or abs(len(told) - len(moving)) <= 1,
-            f"{len(told)} of {len(moving)} contacts",
-        )
+        must(len(told) == min(20, len(moving)) or abs(len(told) - len(moving)) <= 1, f"{len(told)} of {len(moving)} contacts")
         for j, c in told.items():
             near(f"contact {j}", [c.opening, c.sliding], most[:, j], 1e-5, 1e-3)
             near(f"contact {j}", [c.x_m, c.y_m, c.z_m], at[of == j].mean(axis=0), 1e-6, size)
@@ -284,24 +275,10 @@ def mechanisms_of_solids_by_hand(deck: Deck, angle: float, within: float) -> Non
             near("equilibrium of each stone", left, -weight, 1e-4, r.weight_N * 0.1)
         near("least of the rose", r.least_acceleration_g, a["rose_capacity"].min(), 1e-6)
         near(
-            "its direction",
-            a["rose_capacity"][np.abs(a["rose_direction"] - r.least_direction_deg).argmin()],
-            r.least_acceleration_g,
-            1e-5,
+            "its direction", a["rose_capacity"][np.abs(a["rose_direction"] - r.least_direction_deg).argmin()], r.least_acceleration_g, 1e-5
         )
-        near(
-            "rose",
-            np.diff(a["rose_direction"]),
-            np.full(len(a["rose_direction"]) - 1, 360.0 / len(a["rose_direction"])),
-            1e-9,
-        )
-        near(
-            "first of the rose",
-            [a["rose_direction"][0], a["rose_capacity"][0]],
-            [direction, r.collapse_acceleration_g],
-            1e-5,
-            1.0,
-        )
+        near("rose", np.diff(a["rose_direction"]), np.full(len(a["rose_direction"]) - 1, 360.0 / len(a["rose_direction"])), 1e-9)
+        near("first of the rose", [a["rose_direction"][0], a["rose_capacity"][0]], [direction, r.collapse_acceleration_g], 1e-5, 1.0)
     must(one.dilating_contacts == max(dilating), f"{one.dilating_contacts} contacts of {dilating} dilate")
 
 

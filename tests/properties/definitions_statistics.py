@@ -9,7 +9,14 @@ from hypothesis import strategies as st
 from relations import GRAVITY, ok, relation
 
 
-@relation("failure-domain rocking", st.tuples(decks("block", "arch", "column", friction=number(0.3, 2.0)), st.sampled_from(["sine", "step"]), number(0.8, 1.6), st.booleans()), 0.0, share=1.0)  # fmt: skip
+@relation(
+    "failure-domain rocking",
+    st.tuples(
+        decks("block", "arch", "column", friction=number(0.3, 2.0)), st.sampled_from(["sine", "step"]), number(0.8, 1.6), st.booleans()
+    ),
+    0.0,
+    share=1.0,
+)
 def curves_by_rules_and_at_amplitudes(deck: Deck, pulse: str, period: float, numbered: bool, within: float) -> None:
     """Of fixed hinges: curves by an impact rule are those of a deck with it; shortest durations fail and shorter ones do not; single runs agree."""
     if numbered:
@@ -52,10 +59,7 @@ def curves_by_rules_and_at_amplitudes(deck: Deck, pulse: str, period: float, num
     for k, duration in enumerate(keys["durations"]):
         for j, amplitude in enumerate(a["amplitude"][::2]):
             found = falls(float(amplitude), duration)
-            must(
-                found is None or found == (a["outcome"][k, 2 * j] >= 2),
-                f"{amplitude} g for {duration} s: {a['outcome'][k, 2 * j]}",
-            )
+            must(found is None or found == (a["outcome"][k, 2 * j] >= 2), f"{amplitude} g for {duration} s: {a['outcome'][k, 2 * j]}")
         for name, code in (("mode_I", 2), ("mode_II", 3)):
             row = a["outcome"][k] >= 2 if code == 2 else a["outcome"][k] == 3
             least = getattr(r, name).amplitudes_g[k]
@@ -80,17 +84,15 @@ def curves_by_rules_and_at_amplitudes(deck: Deck, pulse: str, period: float, num
         if shortest is not None:
             must(falls(1.2, shortest) in (True, None), f"1.2 g for {shortest} s does not fail")
             before = shortest - 2.0 * 1e-3 - (tried[1] - tried[0])
-            must(before < period or falls(1.2, before) in (False, None) or falls(1.2, before + (tried[1] - tried[0])) in (False, None), f"1.2 g for {before} s fails already")  # fmt: skip
+            must(
+                before < period or falls(1.2, before) in (False, None) or falls(1.2, before + (tried[1] - tried[0])) in (False, None),
+                f"1.2 g for {before} s fails already",
+            )
             if (second := told.mode_II_durations_s[0]) is not None:
                 must(second >= shortest - 1e-9, f"{second} before {shortest}")
 
 
-@relation(
-    "fragility rocking",
-    st.tuples(decks("block", "arch", "column"), st.integers(1, 10**6), number(0.1, 0.3)),
-    1e-6,
-    share=1.0,
-)
+@relation("fragility rocking", st.tuples(decks("block", "arch", "column"), st.integers(1, 10**6), number(0.1, 0.3)), 1e-6, share=1.0)
 def ensembles_in_other_ways(deck: Deck, seed: int, start: float, within: float) -> None:
     """Durations one by one, levels as scales, histories and starts are those of the single runs and ensembles."""
     motion = {"kind": "generated", "mmi": 9, "duration": 2.0, "seed": seed, "lines": 8}
@@ -101,8 +103,17 @@ def ensembles_in_other_ways(deck: Deck, seed: int, start: float, within: float) 
     for k, duration in enumerate((1.0, 2.5)):
         alone = ask(changed(deck, motion={"duration": duration}), "fragility", count=4, bootstrap=0)
         ok(alone)
-        for name in ("mean_peak_rotation_ratio", "deviation_peak_rotation_ratio", "collapse_probability", "uplift_probability", "confidence_interval",
-                     "count", "collapsed", "uplifted", "median_pga_g"):  # fmt: skip
+        for name in (
+            "mean_peak_rotation_ratio",
+            "deviation_peak_rotation_ratio",
+            "collapse_probability",
+            "uplift_probability",
+            "confidence_interval",
+            "count",
+            "collapsed",
+            "uplifted",
+            "median_pga_g",
+        ):
             near(name, getattr(w, name)[k], getattr(alone.results, name), within, 1e-6)
         for name in ("restitution", "critical_rotation_rad", "initial_rotation_ratio", "confidence"):
             near(name, getattr(w, name), getattr(alone.results, name), within)
@@ -114,8 +125,7 @@ def ensembles_in_other_ways(deck: Deck, seed: int, start: float, within: float) 
     near("durations", w.durations_s, [1.0, 2.5], 0.0)
     shares = w.collapse_probability
     must(
-        whole.outcome
-        in ({"stands", "open"} if max(shares) == 0.0 else {"collapses", "open"} if min(shares) == 1.0 else {"open"}),
+        whole.outcome in ({"stands", "open"} if max(shares) == 0.0 else {"collapses", "open"} if min(shares) == 1.0 else {"open"}),
         f"{whole.outcome} of {shares}",
     )
     drawn_ = ask(deck, "fragility", count=3, bootstrap=0, histories=2)
@@ -137,8 +147,7 @@ def ensembles_in_other_ways(deck: Deck, seed: int, start: float, within: float) 
         near(f"history {k}", history[: len(inner)], np.interp(inner, time, own), 0.03, float(np.abs(own).max()))
         near(f"motion {k}", np.abs(arrays[f"history_motion_{k}"]).max(), peaks["pga"][k - 1], 1e-3)
         must(
-            abs(np.abs(history).max() - min(peaks["peak_ratio"][k - 1], np.abs(history).max()))
-            < 1e-6 + 0.02 * np.abs(history).max(),
+            abs(np.abs(history).max() - min(peaks["peak_ratio"][k - 1], np.abs(history).max())) < 1e-6 + 0.02 * np.abs(history).max(),
             f"peak of history {k}",
         )
     block = deck["structure"]["kind"] == "block"
@@ -153,14 +162,6 @@ def ensembles_in_other_ways(deck: Deck, seed: int, start: float, within: float) 
             want = unit * GRAVITY / math.sqrt(0.75 * GRAVITY / (0.5 * math.hypot(s["width"], s["height"])))
         if want is not None:
             near(measure, columns[base] / want, columns["level"], 1e-3)
-        same_ = ask(
-            deck, "fragility", count=3, bootstrap=0, levels=[float(x) for x in columns["scale"][:2]], intensity="scale"
-        )
+        same_ = ask(deck, "fragility", count=3, bootstrap=0, levels=[float(x) for x in columns["scale"][:2]], intensity="scale")
         ok(same_)
-        near(
-            "as scales",
-            same_.result.tables["ensemble"].columns["peak_ratio"][:2],
-            columns["peak_ratio"][:2],
-            1e-3,
-            1e-2,
-        )
+        near("as scales", same_.result.tables["ensemble"].columns["peak_ratio"][:2], columns["peak_ratio"][:2], 1e-3, 1e-2)

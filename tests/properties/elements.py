@@ -35,9 +35,7 @@ def places(answer: Answer, axis: int) -> np.ndarray:
     return (np.asarray(arrays["solid_centroid"].data) + np.asarray(arrays["pose"].data)[:, :, :3])[:, :, 2 * axis]
 
 
-PIERS = st.tuples(
-    decks("block", "column", friction=number(0.5, 0.9, 8)), number(1.2, 1.8), number(0.3, 0.6, 12), st.booleans()
-)
+PIERS = st.tuples(decks("block", "column", friction=number(0.5, 0.9, 8)), number(1.2, 1.8), number(0.3, 0.6, 12), st.booleans())
 
 
 @relation("dem", PIERS, 0.15)
@@ -67,9 +65,7 @@ def elements_in_space_and_in_the_plane(deck: Deck, ratio: float, period: float, 
         at_most(f"residual of energy in {told}", r.energy_residual_ratio, 0.02, 0.0)
 
 
-STACKS = st.tuples(
-    decks("block", "column", friction=number(0.6, 0.9)), number(7.0, 10.0), number(0.5, 2.0), st.booleans()
-)
+STACKS = st.tuples(decks("block", "column", friction=number(0.6, 0.9)), number(7.0, 10.0), number(0.5, 2.0), st.booleans())
 
 
 @relation("dem", STACKS, 1e-3)
@@ -91,7 +87,19 @@ def settlements_of_springs(deck: Deck, power: float, depth: float, solid: bool, 
     near("settled places", np.sort(place), want, within * float(np.sum(above)) / stiffness / there["height"])
 
 
-@relation("dem", st.tuples(number(0.5, 2.0), number(0.3, 0.6), number(0.15, 0.4), number(1.3, 2.0), number(0.2, 0.5), st.sampled_from(["rigid", "springs"]), st.booleans()), 0.04)  # fmt: skip
+@relation(
+    "dem",
+    st.tuples(
+        number(0.5, 2.0),
+        number(0.3, 0.6),
+        number(0.15, 0.4),
+        number(1.3, 2.0),
+        number(0.2, 0.5),
+        st.sampled_from(["rigid", "springs"]),
+        st.booleans(),
+    ),
+    0.04,
+)
 def work_of_friction(
     width: float, slenderness: float, mu: float, ratio: float, period: float, how: str, solid: bool, within: float
 ) -> None:
@@ -105,12 +113,7 @@ def work_of_friction(
     ok(answer)
     r = answer.results
     x = places(answer, 0)[:, 0]
-    near(
-        "work of friction",
-        r.friction_loss_J,
-        mu * 2000.0 * GRAVITY * width * height * float(np.abs(np.diff(x)).sum()),
-        within,
-    )
+    near("work of friction", r.friction_loss_J, mu * 2000.0 * GRAVITY * width * height * float(np.abs(np.diff(x)).sum()), within)
     near("slip", r.peak_slip_m, np.abs(x - x[0]).max(), within, 0.01 * width)
     at_most("residual of energy", r.energy_residual_ratio, 0.01, 0.0)
 
@@ -121,8 +124,10 @@ def mortar_at_the_ends_of_a_joint(size: tuple, strength: float, solid: bool, wit
     width, height = size
     weight = 2000.0 * GRAVITY * width * height
     tension = float(f"{strength * weight / width:.4g}")
-    deck = {"structure": {"kind": "block", "width": width, "height": height},
-            "joints": {"friction": 0.9, "normal_stiffness": 1e10, "tension": tension, "cohesion": 1e8}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "block", "width": width, "height": height},
+        "joints": {"friction": 0.9, "normal_stiffness": 1e10, "tension": tension, "cohesion": 1e8},
+    }
     keys = {"test": "tilt", "tilt_accuracy": 2e-3 * width / height, "tilt_limit": f"{10.0 * width / height:.4g} g"}
     answer = (in_space if solid else ask)(deck, "dem", **keys)
     ok(answer)

@@ -18,13 +18,46 @@ from extrados.results.fields import ResultModel
 from extrados.schema.quantities import unit_of
 
 #: Exponents of length, mass and time of what units are made of; g and angles have none
-DIMENSIONS = {"m": (1, 0, 0), "kg": (0, 1, 0), "s": (0, 0, 1), "N": (1, 1, -2), "kN": (1, 1, -2), "J": (2, 1, -2), "kJ": (2, 1, -2),
-              "Pa": (-1, 1, -2), "kPa": (-1, 1, -2), "MPa": (-1, 1, -2), "Hz": (0, 0, -1), "mm": (1, 0, 0), "kNm": (2, 1, -2)}  # fmt: skip
+DIMENSIONS = {
+    "m": (1, 0, 0),
+    "kg": (0, 1, 0),
+    "s": (0, 0, 1),
+    "N": (1, 1, -2),
+    "kN": (1, 1, -2),
+    "J": (2, 1, -2),
+    "kJ": (2, 1, -2),
+    "Pa": (-1, 1, -2),
+    "kPa": (-1, 1, -2),
+    "MPa": (-1, 1, -2),
+    "Hz": (0, 0, -1),
+    "mm": (1, 0, 0),
+    "kNm": (2, 1, -2),
+}
 #: Of results and arrays: what depends on the way to the answer, on which of several states statics leaves open, or is what is left of a sum
 OF_THE_WAY = (
-    "gap", "residual", "steps", "rounds", "violation", "astray", "growth", "reason", "seconds", "miss", "factorisations", "searches",
-    "snapshot", "touching", "bytes", "convergence", "velocity", "friction_joint", "ground", "chain", "critical_step", "starts_g",
-)  # fmt: skip
+    "gap",
+    "residual",
+    "steps",
+    "rounds",
+    "violation",
+    "astray",
+    "growth",
+    "reason",
+    "seconds",
+    "miss",
+    "factorisations",
+    "searches",
+    "snapshot",
+    "touching",
+    "bytes",
+    "convergence",
+    "velocity",
+    "friction_joint",
+    "ground",
+    "chain",
+    "critical_step",
+    "starts_g",
+)
 #: Words of results that hold numbers or sides
 IN_WORDS = (
     "note",
@@ -124,9 +157,7 @@ def compare(told: str, one: Answer, other: Answer, within: float, length: float 
         x, y = np.asarray(value, dtype=float) * factor, np.asarray(there, dtype=float)
         if x.shape != y.shape:
             x, y = (np.array([v[np.isfinite(v)].min(initial=0.0), v[np.isfinite(v)].max(initial=0.0)]) for v in (x, y))
-        most = (
-            np.abs(x[np.isfinite(x)]).max(initial=0.0) if x.ndim else max(abs(float(x)), scale.get(unit, 0.0) * factor)
-        )
+        most = np.abs(x[np.isfinite(x)]).max(initial=0.0) if x.ndim else max(abs(float(x)), scale.get(unit, 0.0) * factor)
         most = max(most, 1e-3 if unit == "rad" else 0.0)
         if np.array_equal(np.isnan(x), np.isnan(y)):
             off = np.abs(x - y)[~np.isnan(x) & (x != y)]
@@ -163,20 +194,43 @@ FRAME = ("arch", "block", "column", "brickwork", "pointed-arch", "elliptical-arc
 QUESTIONS: dict[str, tuple[tuple[str, ...], Any]] = {
     "tilt": (FRAME, {"friction_rule": st.just("associated")}),
     "thrust": (("arch", "pointed-arch", "elliptical-arch", "bridge"), {"gamma": st.sampled_from([0.01, -0.02])}),
-    "moving-load": (("arch", "pointed-arch", "elliptical-arch", "bridge"), {
-        "axle_loads": st.just([3e4]), "both_ways": st.booleans(),
-        "contact_length": st.just(0.2), "factors": st.just({"masonry": 1.1, "live": 1.3, "dynamic": 1.2}),
-    }),
-    "supports": (("arch", "pointed-arch", "elliptical-arch"), {"spread": st.sampled_from([1.0, 0.5]), "settle": st.sampled_from([0.0, 0.3]), "steps": st.just(20)}),
-    "rocking": (("arch", "block", "column", "brickwork", "frame", "stack"), st.fixed_dictionaries(
-        {"hand_over": st.just(False)}, optional={"end_time": st.just(1.0), "thrust_line_times": st.just([0.2])})),
-    "failure-domain": (("arch", "block", "column"), st.fixed_dictionaries({
-        "durations": st.just([0.5]), "amplitudes": st.just(3), "accuracy": st.just(1e-3), "pulse": st.sampled_from(["step", "sine"])})),
+    "moving-load": (
+        ("arch", "pointed-arch", "elliptical-arch", "bridge"),
+        {
+            "axle_loads": st.just([3e4]),
+            "both_ways": st.booleans(),
+            "contact_length": st.just(0.2),
+            "factors": st.just({"masonry": 1.1, "live": 1.3, "dynamic": 1.2}),
+        },
+    ),
+    "supports": (
+        ("arch", "pointed-arch", "elliptical-arch"),
+        {"spread": st.sampled_from([1.0, 0.5]), "settle": st.sampled_from([0.0, 0.3]), "steps": st.just(20)},
+    ),
+    "rocking": (
+        ("arch", "block", "column", "brickwork", "frame", "stack"),
+        st.fixed_dictionaries({"hand_over": st.just(False)}, optional={"end_time": st.just(1.0), "thrust_line_times": st.just([0.2])}),
+    ),
+    "failure-domain": (
+        ("arch", "block", "column"),
+        st.fixed_dictionaries(
+            {"durations": st.just([0.5]), "amplitudes": st.just(3), "accuracy": st.just(1e-3), "pulse": st.sampled_from(["step", "sine"])}
+        ),
+    ),
     "fragility": (("block", "arch", "column"), st.fixed_dictionaries({"count": st.just(4), "bootstrap": st.just(0)})),
-    "local-mechanism": (FRAME, st.fixed_dictionaries({"mechanism": st.just("building")}, optional={
-        "motion_spectrum": st.just(True), "peak_acceleration": st.just("0.15 g"), "one_second_acceleration": st.just("0.1 g")})),
+    "local-mechanism": (
+        FRAME,
+        st.fixed_dictionaries(
+            {"mechanism": st.just("building")},
+            optional={
+                "motion_spectrum": st.just(True),
+                "peak_acceleration": st.just("0.15 g"),
+                "one_second_acceleration": st.just("0.1 g"),
+            },
+        ),
+    ),
     "dem": (("block", "column", "brickwork"), st.sampled_from([{**SHORT, **RIGID}, SHORT])),
-}  # fmt: skip
+}
 
 
 def _inner(deck: Deck, shares: list[float]) -> list[float]:
@@ -204,11 +258,7 @@ def _model(name: str, there: Deck) -> Any:
 
 def _spelled(model: Any, given: Deck, whole: Deck) -> Deck:
     """The keys that were given, and those of a unit that hold a number."""
-    return {
-        k: v
-        for k, v in whole.items()
-        if k in given or (v and isinstance(v, float) and dimension(unit_of(model, k)).any())
-    }
+    return {k: v for k, v in whole.items() if k in given or (v and isinstance(v, float) and dimension(unit_of(model, k)).any())}
 
 
 def grown(deck: Deck, length: float, mass: float) -> Deck:
@@ -220,9 +270,7 @@ def grown(deck: Deck, length: float, mass: float) -> Deck:
     def table(name: str, there: Deck) -> Deck:
         return _converted(_model(name, there), {k: v for k, v in there.items() if v is not None}, change)
 
-    return {
-        name: table(name, t) if isinstance(t, dict) else [table(name, one) for one in t] for name, t in deck.items()
-    }
+    return {name: table(name, t) if isinstance(t, dict) else [table(name, one) for one in t] for name, t in deck.items()}
 
 
 def similitude_of_all_numbers(question: tuple, length: float, density: float, within: float) -> None:
@@ -238,17 +286,12 @@ def similitude_of_all_numbers(question: tuple, length: float, density: float, wi
     _reject_chaos(*found)
     if kind == "dem" and found[0].results.peak_displacement_m < 1e-3:
         reject()  # what is left of it is rounding
-    loose = (
-        50.0 if kind in ("dem", "failure-domain") or "motion_spectrum" in table else 1.0
-    )  # of bisections and sampled motions
+    loose = 50.0 if kind in ("dem", "failure-domain") or "motion_spectrum" in table else 1.0  # of bisections and sampled motions
     compare(kind, *found, within * loose, length, mass)
 
 
 for _kind in QUESTIONS:
-    if _kind not in (
-        "fragility",
-        "dem",
-    ):  # durations of seismological motions; elements are chaotic (proportion.py has piers)
+    if _kind not in ("fragility", "dem"):  # durations of seismological motions; elements are chaotic (proportion.py has piers)
         _cases = st.tuples(questions(_kind), st.sampled_from([0.25, 4.0]), number(0.5, 2.0))
         relation(_kind, _cases, 2e-5, _kind)(similitude_of_all_numbers)
 
@@ -279,9 +322,14 @@ def mirrored_question(deck: Deck, table: Deck) -> tuple[Deck, Deck]:
         there["places"] = [-x for x in table["places"]]
     if "load" in table:
         there["load"] = [
-            {**one, "x": -one.get("x_end", one["x"]), **({"x_end": -one["x"]} if "x_end" in one else {}), "horizontal": -one.get("horizontal", 0.0)}
+            {
+                **one,
+                "x": -one.get("x_end", one["x"]),
+                **({"x_end": -one["x"]} if "x_end" in one else {}),
+                "horizontal": -one.get("horizontal", 0.0),
+            }
             for one in table["load"]
-        ]  # fmt: skip
+        ]
     return made, there
 
 
@@ -292,8 +340,7 @@ def shifted_question(deck: Deck, table: Deck, dx: float, dy: float) -> tuple[Dec
         there["places"] = [x + dx for x in table["places"]]
     if "load" in table:
         there["load"] = [
-            {**one, **{k: one[k] + (dy if k == "y" else dx) for k in ("x", "x_end", "y") if k in one}}
-            for one in table["load"]
+            {**one, **{k: one[k] + (dy if k == "y" else dx) for k in ("x", "x_end", "y") if k in one}} for one in table["load"]
         ]
     return made, there
 
@@ -307,9 +354,7 @@ def reordered(deck: Deck, rng: Any) -> Deck:
     for block in blocks:
         first = rng.randrange(len(block["points"]))
         block["points"] = [*block["points"][first:], *block["points"][:first]][:: rng.choice((1, -1))]
-    made["structure"]["ground"] = [
-        row if rng.random() < 0.5 else [*row[2:], *row[:2]] for row in made["structure"]["ground"]
-    ]
+    made["structure"]["ground"] = [row if rng.random() < 0.5 else [*row[2:], *row[:2]] for row in made["structure"]["ground"]]
     if "ties" in made:
         rng.shuffle(made["ties"])
     return made
@@ -399,22 +444,12 @@ def asymmetric(draw: st.DrawFn, *only: str) -> tuple[Deck, str, Deck]:
     if kind in ("tilt", "local-mechanism") and draw(st.booleans()):
         force = draw(number(1e2, 1e4))
         deck["ties"] = [
-            {
-                "start": tidy(np.array([x, y])),
-                "ground": [round(x - 9.0, 6), round(y - 1.0, 6)],
-                "works_in": "tension",
-                "yield_force": force,
-            }
+            {"start": tidy(np.array([x, y])), "ground": [round(x - 9.0, 6), round(y - 1.0, 6)], "works_in": "tension", "yield_force": force}
         ]
     if kind in ("tilt", "thrust") and draw(st.booleans()):
         one = {"x": round(float(x), 6), "force": draw(number(1e2, 1e4)), "sways": draw(st.booleans())}
         table["load"] = [
-            one
-            | draw(
-                st.sampled_from(
-                    [{}, {"horizontal": 30.0}, {"x_end": round(float(x) + 0.1, 6)}, {"y": round(float(y), 6)}]
-                )
-            )
+            one | draw(st.sampled_from([{}, {"horizontal": 30.0}, {"x_end": round(float(x) + 0.1, 6)}, {"y": round(float(y), 6)}]))
         ]
     if kind == "moving-load":
         table["places"] = _inner(deck, draw(st.lists(number(0.1, 0.9, 7), min_size=1, max_size=2, unique=True)))
@@ -455,29 +490,19 @@ def all_numbers_described_otherwise(question: tuple, how: str, rng: Any, within:
 
 for _kind in LEANING:
     _ways = st.sampled_from(["mirror", "order", "origin"])
-    relation(_kind, st.tuples(asymmetric(_kind), _ways, st.randoms(use_true_random=False)), 2e-5, _kind)(
-        all_numbers_described_otherwise
-    )
+    relation(_kind, st.tuples(asymmetric(_kind), _ways, st.randoms(use_true_random=False)), 2e-5, _kind)(all_numbers_described_otherwise)
 
 
 def _is_chain(answer: Answer) -> bool:
     """Whether forces follow from one line of thrust between two grounds."""
-    blocks = (
-        np.asarray(answer.result.arrays["joint_block"].data)
-        if "joint_block" in answer.result.arrays
-        else np.zeros((0, 2))
-    )
+    blocks = np.asarray(answer.result.arrays["joint_block"].data) if "joint_block" in answer.result.arrays else np.zeros((0, 2))
     return len(blocks) == blocks.max(initial=0) + 2 and (blocks < 0).any(axis=1).sum() == 2
 
 
 def compare_named(told: str, one: Answer, other: Answer, within: float, skip: tuple[str, ...] = ()) -> None:
     """Broken unless numbers that are no parts of lists are the same by their names, those left out that hold a word of skip."""
     a, b = (
-        {
-            k: v
-            for k, v in numbers(x).items()
-            if k[0] != "[" and not any(c.isdigit() for c in k) and not any(word in k for word in skip)
-        }
+        {k: v for k, v in numbers(x).items() if k[0] != "[" and not any(c.isdigit() for c in k) and not any(word in k for word in skip)}
         for x in (one, other)
     )
     for name in set(a) & set(b):
@@ -508,27 +533,22 @@ def a_template_is_its_blocks(question: tuple, within: float) -> None:
 
 
 for _kind in SAME_BLOCKS:
-    _drawn = st.sampled_from(["block", "column", "brickwork", "frame"]).flatmap(
-        lambda s, k=_kind: questions(k, of=(s,))
-    )
+    _drawn = st.sampled_from(["block", "column", "brickwork", "frame"]).flatmap(lambda s, k=_kind: questions(k, of=(s,)))
     relation(_kind, _drawn.map(lambda q: (q,)), 1e-4, _kind)(a_template_is_its_blocks)
 
 
-@relation("tilt thrust supports local-mechanism", st.tuples(decks(*FRAME, "bridge", "vault", "panel", "stack"), number(1.04, 1.2), st.randoms(use_true_random=False)), 1e-7)  # fmt: skip
+@relation(
+    "tilt thrust supports local-mechanism",
+    st.tuples(decks(*FRAME, "bridge", "vault", "panel", "stack"), number(1.04, 1.2), st.randoms(use_true_random=False)),
+    1e-7,
+)
 def each_size_has_an_effect(deck: Deck, factor: float, rng: Any, within: float) -> None:
     """Any length or number of the structure, the density and the depth: changed, it changes a number of the result."""
     there = deck["structure"]
     model = kinds.table("structure", there["kind"])
     sizes_ = [k for k, v in there.items() if isinstance(v, float) and dimension(unit_of(model, k)).any()]
     key = rng.choice([*sizes_, "density"])
-    other = changed(
-        deck,
-        **(
-            {"material": {"density": 2000.0 * factor}}
-            if key == "density"
-            else {"structure": {key: there[key] * factor}}
-        ),
-    )
+    other = changed(deck, **({"material": {"density": 2000.0 * factor}} if key == "density" else {"structure": {key: there[key] * factor}}))
     one, two = ask(changed(deck, material={"density": 2000.0}), "tilt"), ask(other, "tilt")
     ok(one, two)
     a, b = ({k: v for k, v in numbers(x).items() if isinstance(v[1], float)} for x in (one, two))

@@ -38,9 +38,10 @@ def a_deck_as_text_and_as_objects(deck: Deck, within: float) -> None:
     names = {kind: place.split(":")[1] for there in kinds.TABLES.values() for kind, place in there.items()}
     structure, table = dict(deck["structure"]), dict(analysis)
     made = extrados.deck(
-        getattr(extrados, names[structure.pop("kind")])(**structure), getattr(extrados, names[table.pop("kind")])(**table),
+        getattr(extrados, names[structure.pop("kind")])(**structure),
+        getattr(extrados, names[table.pop("kind")])(**table),
         joints=extrados.Joints(**deck["joints"]),
-    )  # fmt: skip
+    )
     alike("as objects", one, Answer(extrados.run(made, threads=1).results[0]), within)
 
 
@@ -54,9 +55,9 @@ def a_section_through_files(deck: Deck, within: float) -> None:
     ok(one)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "stones.json").write_text(json.dumps({
-            "blocks": [{"name": b["name"], "points": b["points"]} for b in there["block"]], "ground": there["ground"],
-        }))  # fmt: skip
+        (folder / "stones.json").write_text(
+            json.dumps({"blocks": [{"name": b["name"], "points": b["points"]} for b in there["block"]], "ground": there["ground"]})
+        )
         drawing = ezdxf.new()
         drawing.header["$INSUNITS"] = 6
         drawing.layers.add("GROUND")
@@ -73,33 +74,35 @@ def a_section_through_files(deck: Deck, within: float) -> None:
         polygons = [[[float(v) for v in pair.split(",")] for pair in line.split()] for line in lines]
         shape = {"kind": "blocks", "depth": there.get("depth", 1.0)}
         files = {
-            "JSON": {**shape, "file": "stones.json"}, "DXF": {**shape, "file": "stones.dxf"},
-            "COMPAS": {**shape, "file": "compas.json", "unit": "m"}, "COMPAS of triangles": {**shape, "file": "triangles.json", "unit": "m"},
+            "JSON": {**shape, "file": "stones.json"},
+            "DXF": {**shape, "file": "stones.dxf"},
+            "COMPAS": {**shape, "file": "compas.json", "unit": "m"},
+            "COMPAS of triangles": {**shape, "file": "triangles.json", "unit": "m"},
             "UDEC": {**shape, "block": [{"name": f"b{k}", "points": p} for k, p in enumerate(polygons)], "ground": there["ground"]},
-        }  # fmt: skip
+        }
         for form, structure in files.items():
             back = ask({**deck, "structure": structure}, "tilt", folder)
             same(form, one, back)
             near(form, one.capacity, back.capacity, within, 1.0)
 
 
-@relation("tilt", decks(*SOLIDS), 1e-4, examples=(
-    {"structure": {"kind": "cross-vault", "radius": 5.0, "thickness": 0.8, "embrace": 140.0, "voussoirs": 4}, "joints": {"friction": 0.7}},
-))  # fmt: skip
+@relation(
+    "tilt",
+    decks(*SOLIDS),
+    1e-4,
+    examples=(
+        {
+            "structure": {"kind": "cross-vault", "radius": 5.0, "thickness": 0.8, "embrace": 140.0, "voussoirs": 4},
+            "joints": {"friction": 0.7},
+        },
+    ),
+)
 def solids_through_compas(deck: Deck, within: float) -> None:
     """An assembly of COMPAS read back bears the same."""
     one = ask(deck, "tilt", direction=0.0, rose=4, starts=1)
     with tempfile.TemporaryDirectory() as name:
-        (Path(name) / "stones.json").write_text(
-            extrados.export({**deck, "analysis": [{"kind": "tilt", "direction": 0.0}]}, "compas")
-        )
-        back = ask(
-            {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}},
-            "tilt",
-            Path(name),
-            direction=0.0,
-            rose=4,
-        )
+        (Path(name) / "stones.json").write_text(extrados.export({**deck, "analysis": [{"kind": "tilt", "direction": 0.0}]}, "compas"))
+        back = ask({**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}}, "tilt", Path(name), direction=0.0, rose=4)
     same("COMPAS", one, back)
     must(
         one.numbers.get("blocks") == back.numbers.get("blocks"),
@@ -119,11 +122,7 @@ def a_section_drawn_out(deck: Deck, within: float) -> None:
     with tempfile.TemporaryDirectory() as name:
         (Path(name) / "stones.json").write_text(extrados.export({**deck, "analysis": [{"kind": "tilt"}]}, "compas"))
         other = ask(
-            {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}},
-            "tilt",
-            Path(name),
-            direction=0.0,
-            rose=4,
+            {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}}, "tilt", Path(name), direction=0.0, rose=4
         )
     if "not convex" in other.said:
         reject()
@@ -162,8 +161,17 @@ def stray_solids(text: str, deviation: float, seed: int) -> str:
     return json.dumps(data)
 
 
-CORNER = {"structure": {"kind": "wall", "unit_length": 0.5, "unit_height": 0.25, "thickness": 0.25, "height": 1.0,
-                        "legs": [{"length": 1.5}, {"length": 1.5, "turn": "left"}]}, "joints": {"friction": 0.65}}  # fmt: skip
+CORNER = {
+    "structure": {
+        "kind": "wall",
+        "unit_length": 0.5,
+        "unit_height": 0.25,
+        "thickness": 0.25,
+        "height": 1.0,
+        "legs": [{"length": 1.5}, {"length": 1.5, "turn": "left"}],
+    },
+    "joints": {"friction": 0.65},
+}
 
 
 @relation("tilt", st.tuples(decks("wall"), st.integers(0, 10**6)), 0.01, examples=((CORNER, 1),))
@@ -180,9 +188,13 @@ def noise_of_solids(deck: Deck, seed: int, within: float) -> None:
     near("noise", found[0].capacity, found[1].capacity, within, 1e-2)
 
 
-@relation("dem", st.tuples(number(0.6, 1.2), number(2.0, 4.0), number(0.02, 0.06), number(0.02, 0.06)), 0.01, share=0.3, examples=(
-    (1.0, 3.0, 0.04, 0.044),
-))  # fmt: skip
+@relation(
+    "dem",
+    st.tuples(number(0.6, 1.2), number(2.0, 4.0), number(0.02, 0.06), number(0.02, 0.06)),
+    0.01,
+    share=0.3,
+    examples=((1.0, 3.0, 0.04, 0.044),),
+)
 def bevelled_corners(width: float, slenderness: float, dx: float, dy: float, within: float) -> None:
     """Elements take stones as drawn: a block with both lower corners cut off rocks on its narrower foot."""
     height = width * slenderness / 1.5
@@ -197,10 +209,7 @@ def bevelled_corners(width: float, slenderness: float, dx: float, dy: float, wit
 
 
 @relation(
-    "rocking fragility motion",
-    st.tuples(number(0.01, 0.05), st.sampled_from(["rocking", "dem"])),
-    0.0,
-    examples=((0.02, "rocking"),),
+    "rocking fragility motion", st.tuples(number(0.01, 0.05), st.sampled_from(["rocking", "dem"])), 0.0, examples=((0.02, "rocking"),)
 )
 def offsets_of_records_are_told(offset: float, kind: str, within: float) -> None:
     """A record whose velocity runs away is warned of by all that take it."""
@@ -232,11 +241,7 @@ def layers_that_are_switched_off(deck: Deck, within: float) -> None:
             top = max(p[1] for b in there["block"] for p in b["points"])
             for k, layer in enumerate(("OLD", "OFF")):
                 low = top + 0.2 * k
-                space.add_lwpolyline(
-                    [(0.0, low), (0.2, low), (0.2, low + 0.2), (0.0, low + 0.2)],
-                    close=True,
-                    dxfattribs={"layer": layer},
-                )
+                space.add_lwpolyline([(0.0, low), (0.2, low), (0.2, low + 0.2), (0.0, low + 0.2)], close=True, dxfattribs={"layer": layer})
         with tempfile.TemporaryDirectory() as name:
             drawing.saveas(Path(name) / "stones.dxf")
             found.append(ask({**deck, "structure": {"kind": "blocks", "file": "stones.dxf"}}, "tilt", Path(name)))
@@ -250,7 +255,5 @@ def columns_without_a_time_are_refused(count: int, amplitude: float, within: flo
     waves = amplitude * np.sin(np.arange(count)[:, None] * [0.1, 0.13, 0.17])
     with tempfile.TemporaryDirectory() as name:
         (Path(name) / "m.txt").write_text("\n".join(" ".join(f"{v:.6f}" for v in row) for row in waves) + "\n")
-        answer = ask(
-            {"motion": {"kind": "record", "file": "m.txt", "time_step": 0.01, "unit": "g"}}, "motion", Path(name)
-        )
+        answer = ask({"motion": {"kind": "record", "file": "m.txt", "time_step": 0.01, "unit": "g"}}, "motion", Path(name))
     must(answer.status == "refused", f"{answer.status}: read as one series")

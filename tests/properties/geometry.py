@@ -27,10 +27,7 @@ def stars(draw: st.DrawFn) -> np.ndarray:
     """Simple polygons, counter-clockwise, mostly concave, about a place off the origin."""
     radii = draw(st.lists(number(0.4, 2.0), min_size=4, max_size=9))
     angle = 2.0 * math.pi * (np.arange(len(radii)) + 0.3) / len(radii)
-    return np.column_stack([np.cos(angle), np.sin(angle)]) * np.array(radii)[:, None] + [
-        draw(number(-5, 5)),
-        draw(number(-5, 5)),
-    ]
+    return np.column_stack([np.cos(angle), np.sin(angle)]) * np.array(radii)[:, None] + [draw(number(-5, 5)), draw(number(-5, 5))]
 
 
 def area_of(outline: np.ndarray) -> float:
@@ -53,12 +50,7 @@ def beside(outline: np.ndarray, place: np.ndarray) -> float:
     return float(np.hypot(*(nearest - place).T).min())
 
 
-@relation(
-    "",
-    st.tuples(stars(), number(0.05, 0.95), number(0.0, 360.0), number(-2.5, 2.5), number(-2.5, 2.5)),
-    1e-9,
-    share=5.0,
-)
+@relation("", st.tuples(stars(), number(0.05, 0.95), number(0.0, 360.0), number(-2.5, 2.5), number(-2.5, 2.5)), 1e-9, share=5.0)
 def polygons_by_two_ways(star: np.ndarray, share: float, angle: float, dx: float, dy: float, within: float) -> None:
     """Areas, centres, cuts, levels, distances and places within of random polygons."""
     area, centre, second = moments(star)
@@ -89,16 +81,12 @@ def polygons_by_two_ways(star: np.ndarray, share: float, angle: float, dx: float
     must(polygons.crossing_edges(star) is None, "a star crosses itself")
     parts = convex.convex_parts(star)
     near("convex parts", sum(area_of(p) for p, _ in parts), area, within)
-    must(
-        all(convex.is_convex(p) for p, _ in parts) and convex.is_convex(star) == (len(parts) == 1),
-        f"{len(parts)} parts",
-    )
+    must(all(convex.is_convex(p) for p, _ in parts) and convex.is_convex(star) == (len(parts) == 1), f"{len(parts)} parts")
     length = sum(np.hypot(*(np.roll(p, -1, axis=0) - p)[mask].T).sum() for p, mask in parts)
     near("outer edges", length, np.hypot(*(np.roll(star, -1, axis=0) - star).T).sum(), within)
     wrap = convex.hull(star)
     must(
-        convex.is_convex(wrap) and all(abs(winding(wrap, p)) > 0.5 or beside(wrap, p) < 1e-6 for p in star),
-        "a hull that does not hold it",
+        convex.is_convex(wrap) and all(abs(winding(wrap, p)) > 0.5 or beside(wrap, p) < 1e-6 for p in star), "a hull that does not hold it"
     )
     must({tuple(p) for p in wrap} <= {tuple(p) for p in star}, "corners of a hull")
     swapped = wrap[[1, 0, *range(2, len(wrap))]]
@@ -106,10 +94,7 @@ def polygons_by_two_ways(star: np.ndarray, share: float, angle: float, dx: float
         pair = polygons.crossing_edges(swapped)
         must(pair is not None and _meet(swapped, *pair), f"edges {pair} of {swapped} do not cross")
     worn = convex.rounded(wrap, 0.01)
-    must(
-        0.0 < area_of(wrap) - area_of(worn) < 0.05 and bool(np.all([beside(wrap, p) < 0.1 for p in worn])),
-        "worn corners",
-    )
+    must(0.0 < area_of(wrap) - area_of(worn) < 0.05 and bool(np.all([beside(wrap, p) < 0.1 for p in worn])), "worn corners")
 
 
 def _chord(star: np.ndarray, y: float) -> float:
@@ -156,10 +141,7 @@ def overlaps_by_moving_apart(one: np.ndarray, two: np.ndarray, angle: float, dep
             1.0,
         )
         places = convex.crossings(a, there, 1e-9)
-        must(
-            len(places) in (2, 4) and all(beside(p, q) < 5e-3 for p in (a, there) for q in places),
-            f"crossings {places}",
-        )
+        must(len(places) in (2, 4) and all(beside(p, q) < 5e-3 for p in (a, there) for q in places), f"crossings {places}")
 
 
 @st.composite
@@ -191,12 +173,7 @@ def courses(draw: st.DrawFn) -> tuple[list[np.ndarray], dict[tuple[int, int], tu
 
 @relation(
     "",
-    st.tuples(
-        courses(),
-        number(0.0, 360.0),
-        number(-40.0, 40.0),
-        st.sampled_from([0.0, 4e-4, -4e-4, 3e-3, -3e-3, 0.02]),
-    ),
+    st.tuples(courses(), number(0.0, 360.0), number(-40.0, 40.0), st.sampled_from([0.0, 4e-4, -4e-4, 3e-3, -3e-3, 0.02])),
     1e-9,
     share=5.0,
 )
@@ -213,14 +190,8 @@ def contacts_by_hand(wall: tuple, angle: float, shift: float, gap: float, within
         return points @ turn + [shift, 0.5 * shift]
 
     tolerance = 1e-3
-    found = find_contacts(
-        [place(o) for o in there], np.column_stack([place(ground[:, :2]), place(ground[:, 2:])]), tolerance
-    )
-    across = {
-        pair
-        for pair, ends in joints.items()
-        if abs(ends[0][1] - level) < 1e-9 and abs(ends[1][1] - level) < 1e-9 and gap
-    }
+    found = find_contacts([place(o) for o in there], np.column_stack([place(ground[:, :2]), place(ground[:, 2:])]), tolerance)
+    across = {pair for pair, ends in joints.items() if abs(ends[0][1] - level) < 1e-9 and abs(ends[1][1] - level) < 1e-9 and gap}
     want = {pair: ends for pair, ends in joints.items() if pair not in across or abs(gap) < tolerance}
     got = {(int(a), int(b)): (p, q) for a, b, p, q in zip(found.a, found.b, found.p, found.q, strict=True)}
     must(set(got) == set(want), f"joints {sorted(set(got) ^ set(want))} of a gap of {gap}")
@@ -271,10 +242,7 @@ def chains_run_from_left_to_right(deck: Deck, rng: Any, lean: float, within: flo
     must(all(len(shared) == 1 for shared in row) and len(set.union(*row)) == len(a.mass), f"stones in the order {row}")
     row = [shared.pop() for shared in row]
     middle = np.array([a.middle[[joints[0], joints[-1]], 0].mean(), a.middle[joints, 1].min() - 0.1])
-    must(
-        bool(np.all(np.hypot(*(a.p[joints] - middle).T) < np.hypot(*(a.q[joints] - middle).T))),
-        "an extrados within the intrados",
-    )
+    must(bool(np.all(np.hypot(*(a.p[joints] - middle).T) < np.hypot(*(a.q[joints] - middle).T))), "an extrados within the intrados")
     inner = np.where(a.a >= 0, a.a, a.b)
     side = ((a.centroid[inner] - a.middle) * a.normal).sum(axis=1)
     must(bool(np.all(np.where(a.a >= 0, side, -side) > 0.0)), "normals that leave block a")
@@ -298,9 +266,7 @@ def chains_run_from_left_to_right(deck: Deck, rng: Any, lean: float, within: flo
     1e-7,
     share=2.0,
 )
-def bodies_hold_what_their_blocks_do(
-    deck: Deck, lean: float, glue: int, floor: float | None, worn: float, within: float
-) -> None:
+def bodies_hold_what_their_blocks_do(deck: Deck, lean: float, glue: int, floor: float | None, worn: float, within: float) -> None:
     """Rigid bodies have the areas, masses, centres and inertias of their blocks, supports under their joints, and a whole floor."""
     a = building(leaning(deck, lean)).blocks()
     pairs = [(int(i), int(j)) for i, j in zip(a.a, a.b, strict=True) if min(i, j) >= 0]
@@ -343,10 +309,7 @@ def bodies_hold_what_their_blocks_do(
                 must(below * above < 0.0, "a footing above its joint")
                 low, high = np.sort(foot @ a.tangent[j])[[0, -1]]
                 ends = np.sort([a.p[j] @ a.tangent[j], a.q[j] @ a.tangent[j]])
-                must(
-                    low <= ends[0] + 1e-6 * a.size and high >= ends[1] - 1e-6 * a.size,
-                    "a footing narrower than its joint",
-                )
+                must(low <= ends[0] + 1e-6 * a.size and high >= ends[1] - 1e-6 * a.size, "a footing narrower than its joint")
                 near("masses of supports", bodies.mass[got], 0.0, 0.0)
     if floor is not None:
         supports = [p for p, o in zip(bodies.parts, bodies.owner, strict=True) if o >= bodies.count]
@@ -354,17 +317,11 @@ def bodies_hold_what_their_blocks_do(
         must(bool(pieces), f"no floor at {floor}")
         gaps = [q[:, 0].min() - p[:, 0].max() for p, q in itertools.pairwise(pieces)]
         must(all(abs(gap) < 1e-9 for gap in gaps), f"gaps of the floor {gaps}")
-        must(
-            pieces[0][:, 0].min() < a.p[:, 0].min() - a.size and pieces[-1][:, 0].max() > a.p[:, 0].max() + a.size,
-            "a narrow floor",
-        )
+        must(pieces[0][:, 0].min() < a.p[:, 0].min() - a.size and pieces[-1][:, 0].max() > a.p[:, 0].max() + a.size, "a narrow floor")
         for k in range(len(a.a)):  # no seam under a block that stands on it
             if min(a.a[k], a.b[k]) < 0 and abs(a.p[k, 1] - floor) + abs(a.q[k, 1] - floor) < 1e-9:
                 low, high = sorted((a.p[k, 0], a.q[k, 0]))
-                must(
-                    any(p[:, 0].min() <= low + 1e-9 and p[:, 0].max() >= high - 1e-9 for p in pieces),
-                    f"a seam under joint {k}",
-                )
+                must(any(p[:, 0].min() <= low + 1e-9 and p[:, 0].max() >= high - 1e-9 for p in pieces), f"a seam under joint {k}")
     glued = [(p, m) for p, m, o in zip(bodies.parts, bodies.outer, bodies.owner, strict=True) if o < bodies.count]
     if groups and not worn:
         j = next(j for j, pair in enumerate(zip(a.a, a.b, strict=True)) if set(map(int, pair)) == set(groups[0]))
@@ -373,16 +330,13 @@ def bodies_hold_what_their_blocks_do(
     elif not worn:
         single = {o for o in bodies.owner if bodies.owner.count(o) == 1}
         must(
-            all(m.all() for (_, m), o in zip(glued, bodies.owner, strict=False) if o in single),
-            "an outer edge that counts as an inner one",
+            all(m.all() for (_, m), o in zip(glued, bodies.owner, strict=False) if o in single), "an outer edge that counts as an inner one"
         )
 
 
 @relation(
     "tilt",
-    st.tuples(
-        decks("arch", "block", "column", "brickwork"), number(0.5, 3.0), st.integers(1, 4), number(-30.0, 30.0, 6)
-    ),
+    st.tuples(decks("arch", "block", "column", "brickwork"), number(0.5, 3.0), st.integers(1, 4), number(-30.0, 30.0, 6)),
     1e-6,
     share=2.0,
 )
@@ -390,10 +344,7 @@ def solids_of_a_section(deck: Deck, depth: float, count: int, skew: float, withi
     """A section drawn out, and divided across and sheared, keeps volume, mass, centres, and areas of joints."""
     a = building(changed(deck, structure={"depth": depth})).blocks()
     plain = deck["structure"]["kind"] == "arch"
-    for whole, sheared, stones in (
-        (drawn_out(a), 0.0, 1),
-        *(((barrel(a, count, math.radians(skew)), skew, count),) if plain else ()),
-    ):
+    for whole, sheared, stones in ((drawn_out(a), 0.0, 1), *(((barrel(a, count, math.radians(skew)), skew, count),) if plain else ())):
         tan = math.tan(math.radians(sheared))
         near("mass", whole.mass.sum(), a.mass.sum(), within)
         near(
@@ -402,13 +353,7 @@ def solids_of_a_section(deck: Deck, depth: float, count: int, skew: float, withi
             sum(area_of(o) for o in a.outlines) * depth,
             within,
         )
-        near(
-            "centre",
-            whole.mass @ whole.centroid / whole.mass.sum(),
-            _drawn(a.mass @ a.centroid / a.mass.sum(), tan),
-            within,
-            1.0,
-        )
+        near("centre", whole.mass @ whole.centroid / whole.mass.sum(), _drawn(a.mass @ a.centroid / a.mass.sum(), tan), within, 1.0)
         area: dict[tuple, float] = {}
         for k in range(len(whole.a)):
             points, n = whole.polygon[k], whole.normal[k]
@@ -418,8 +363,7 @@ def solids_of_a_section(deck: Deck, depth: float, count: int, skew: float, withi
             two = whole.centroid[whole.b[k]] if whole.b[k] >= 0 else None
             middle = points.mean(axis=0)
             must(
-                (one is None or (one - middle) @ n > -1e-9) and (two is None or (middle - two) @ n > -1e-9),
-                "a normal that leaves block a",
+                (one is None or (one - middle) @ n > -1e-9) and (two is None or (middle - two) @ n > -1e-9), "a normal that leaves block a"
             )
             area[k] = float(np.linalg.norm(newell))
         if not sheared and stones == 1:
@@ -432,10 +376,7 @@ def solids_of_a_section(deck: Deck, depth: float, count: int, skew: float, withi
                 near("bed joints", across[0], a.length.sum() * depth, within)
                 heads = sum(v for k, v in area.items() if abs(whole.normal[k, 1]) > 0.9)
                 faces = sum(area_of(o) for o in a.outlines)
-                must(
-                    heads == 0.0 if stones == 1 else heads > 0.5 * faces,
-                    f"head joints of {heads} m^2 in {stones} stones",
-                )
+                must(heads == 0.0 if stones == 1 else heads > 0.5 * faces, f"head joints of {heads} m^2 in {stones} stones")
         trace = np.trace(whole.inertia, axis1=1, axis2=2)
         must(bool((trace > 0.0).all()), "inertia below zero")
 
@@ -461,35 +402,26 @@ BOX = st.tuples(number(0.3, 2.0), number(0.3, 2.0), number(0.3, 2.0))
     1e-6,
     share=5.0,
 )
-def boxes_that_touch(
-    one: tuple, two: tuple, x: float, y: float, gap: float, angle: float, tip: float, within: float
-) -> None:
+def boxes_that_touch(one: tuple, two: tuple, x: float, y: float, gap: float, angle: float, tip: float, within: float) -> None:
     """Two boxes, one on the other, turned anyhow, share the rectangle that their faces have in common; gaps and overlaps have their size."""
     shift = np.array([0.5 * x * (one[0] + two[0]), 0.5 * y * (one[1] + two[1]), one[2] + gap])
     first = prism(_rectangle(*one[:2]), 0.0, one[2])
     second = prism(_rectangle(*two[:2]) + shift[:2], shift[2], shift[2] + two[2])
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     u, v = math.cos(math.radians(tip)), math.sin(math.radians(tip))
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ np.array(
-        [[1.0, 0.0, 0.0], [0.0, u, -v], [0.0, v, u]]
-    )
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ np.array([[1.0, 0.0, 0.0], [0.0, u, -v], [0.0, v, u]])
     tolerance, near_ = 1e-3, 1e-2
     sides = [min(o / 2, m + t / 2) - max(-o / 2, m - t / 2) for o, t, m in zip(one, two, shift[:2], strict=False)]
     found = solid_contacts.touching([first.moved(turn), second.moved(turn)], np.array([0, 1]), tolerance, near_)
     if min(sides) < 0.05 and min(sides) > -0.05:
         reject()
     meet = min(sides) > 0.0
-    must(
-        len(found.polygon) == (meet and abs(gap) < tolerance),
-        f"{len(found.polygon)} contacts of a gap of {gap}, {sides}",
-    )
+    must(len(found.polygon) == (meet and abs(gap) < tolerance), f"{len(found.polygon)} contacts of a gap of {gap}, {sides}")
     for points, normal, a in zip(found.polygon, found.normal, found.a, strict=True):
         newell = 0.5 * sum(np.cross(p, q) for p, q in itertools.pairwise([*(points - points[0]), points[0] * 0.0]))
         near("area", newell @ normal, sides[0] * sides[1], 1e-6)
         near("normal", (1.0 if a == 0 else -1.0) * normal, turn @ [0.0, 0.0, -1.0], within, 1.0)
-        middle = [
-            0.5 * (max(-o / 2, m - t / 2) + min(o / 2, m + t / 2)) for o, t, m in zip(one, two, shift[:2], strict=False)
-        ]
+        middle = [0.5 * (max(-o / 2, m - t / 2) + min(o / 2, m + t / 2)) for o, t, m in zip(one, two, shift[:2], strict=False)]
         near("middle", points.mean(axis=0), turn @ [*middle, one[2] + 0.5 * gap], 1e-6, 1.0)
     must(bool(found.overlaps) == (meet and gap < -tolerance), f"overlaps {found.overlaps}")
     must(bool(found.gaps) == (meet and tolerance < gap < near_), f"gaps {found.gaps}")

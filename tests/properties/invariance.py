@@ -10,37 +10,10 @@ from typing import Any
 
 import numpy as np
 from asking import Answer, Deck, ask, must, near, same
-from buildings import (
-    SMALL,
-    SOLIDS,
-    changed,
-    decks,
-    drawn,
-    in_words,
-    mirrored,
-    moved,
-    number,
-    on_plinth,
-    pulses,
-    sections,
-)
+from buildings import SMALL, SOLIDS, changed, decks, drawn, in_words, mirrored, moved, number, on_plinth, pulses, sections
 from hypothesis import reject
 from hypothesis import strategies as st
-from relations import (
-    ANY,
-    EARTHQUAKES,
-    GRAVITY,
-    INTERVAL,
-    MASONRY,
-    PUSH,
-    RIGID,
-    SLOW,
-    alike,
-    ok,
-    recorded,
-    relation,
-    statics,
-)
+from relations import ANY, EARTHQUAKES, GRAVITY, INTERVAL, MASONRY, PUSH, RIGID, SLOW, alike, ok, recorded, relation, statics
 
 
 @relation("tilt", sections())
@@ -72,11 +45,18 @@ def mirror_of_elements(deck: Deck, within: float) -> None:
 
 BODIES = st.tuples(number(0.2, 1.0), number(0.2, 1.0), number(1.0, 3.0), number(-0.6, 0.6), pulses()).map(
     lambda t: {
-        "structure": {"kind": "block", "mass": 1000.0, "inertia": round(400.0 * t[2] ** 2, 3), "centre_height": t[2],
-                      "toe_right": t[0], "toe_left": t[1]},
-        "initial": {"rotation_ratio": t[3]}, "motion": t[4],
+        "structure": {
+            "kind": "block",
+            "mass": 1000.0,
+            "inertia": round(400.0 * t[2] ** 2, 3),
+            "centre_height": t[2],
+            "toe_right": t[0],
+            "toe_left": t[1],
+        },
+        "initial": {"rotation_ratio": t[3]},
+        "motion": t[4],
     }
-)  # fmt: skip
+)
 
 
 @relation("rocking", BODIES, 1e-6)
@@ -84,9 +64,11 @@ def mirror_of_a_rocking_body(deck: Deck, within: float) -> None:
     """Toes exchanged, motion and start turned around: the rotation changes its sign."""
     s, m = deck["structure"], deck["motion"]
     there = changed(
-        deck, structure={"toe_right": s["toe_left"], "toe_left": s["toe_right"]}, motion={"amplitude": f"-{m['amplitude']}"},
+        deck,
+        structure={"toe_right": s["toe_left"], "toe_left": s["toe_right"]},
+        motion={"amplitude": f"-{m['amplitude']}"},
         initial={"rotation_ratio": -deck["initial"]["rotation_ratio"]},
-    )  # fmt: skip
+    )
     one, other = ask(deck, "rocking"), ask(there, "rocking")
     ok(one, other)
     if one.results.decided_by_last_digits:
@@ -103,12 +85,7 @@ def translation_of_a_section(deck: Deck, dx: float, dy: float, within: float) ->
         one, other = ask(deck, kind), ask(there, kind)
         same(kind, one, other)
         near(kind, one.capacity, other.capacity, within, 1e-3)
-    near(
-        "weight",
-        ask(deck, "tilt").numbers.get("weight_N", 0.0),
-        ask(there, "tilt").numbers.get("weight_N", 0.0),
-        within,
-    )
+    near("weight", ask(deck, "tilt").numbers.get("weight_N", 0.0), ask(there, "tilt").numbers.get("weight_N", 0.0), within)
 
 
 @relation("dem", st.tuples(sections("block", "column"), number(-90.0, 90.0)), 0.006, share=0.4)
@@ -149,10 +126,7 @@ def turned_plan_by_codes(deck: Deck, angle: float, within: float) -> None:
 @relation("pushover", st.tuples(decks("building", material=MASONRY), st.sampled_from([90.0, 180.0])), 5e-3)
 def turned_plan_pushed(deck: Deck, angle: float, within: float) -> None:
     """The push turned with the plan; the triangles of floors lie otherwise."""
-    one, other = (
-        ask(deck, "pushover", direction=0.0, **PUSH),
-        ask(turned(deck, angle), "pushover", direction=angle, **PUSH),
-    )
+    one, other = (ask(deck, "pushover", direction=0.0, **PUSH), ask(turned(deck, angle), "pushover", direction=angle, **PUSH))
     same("turned", one, other)
     ok(one, other)
     for name in ("initial_stiffness_N_m", "first_event_load_N", "weight_N"):
@@ -162,10 +136,7 @@ def turned_plan_pushed(deck: Deck, angle: float, within: float) -> None:
 @relation("tilt", st.tuples(decks(*SOLIDS), number(0.0, 180.0, 12)), 1e-5)
 def opposite_direction_of_solids(deck: Deck, angle: float, within: float) -> None:
     """What is borne along a direction is the opposite of what is borne against it."""
-    one, other = (
-        ask(deck, "tilt", direction=angle, rose=4, starts=1),
-        ask(deck, "tilt", direction=angle - 180.0, rose=4, starts=1),
-    )
+    one, other = (ask(deck, "tilt", direction=angle, rose=4, starts=1), ask(deck, "tilt", direction=angle - 180.0, rose=4, starts=1))
     same("turned around", one, other)
     near("turned around", one.capacity, other.capacity[::-1], within, 1e-3)
 
@@ -174,10 +145,7 @@ def opposite_direction_of_solids(deck: Deck, angle: float, within: float) -> Non
 def a_dome_turned_by_a_lune(deck: Deck, within: float) -> None:
     """A dome is the same from every lune."""
     angle = 360.0 / deck["structure"]["lunes"]
-    one, other = (
-        ask(deck, "tilt", direction=0.0, rose=4, starts=1),
-        ask(deck, "tilt", direction=angle, rose=4, starts=1),
-    )
+    one, other = (ask(deck, "tilt", direction=0.0, rose=4, starts=1), ask(deck, "tilt", direction=angle, rose=4, starts=1))
     same("turned", one, other)
     near("turned", one.capacity, other.capacity, within, 1e-3)
 
@@ -238,19 +206,14 @@ def a_block_cut_and_glued(width: float, height: float, share: float, within: flo
         {"name": name, "points": [[0.0, low], [width, low], [width, high], [0.0, high]]}
         for name, low, high in (("low", 0.0, level), ("high", level, height))
     ]
-    bars = [
-        {"start": [x, 0.5 * level], "end": [x, 0.5 * (level + height)], "works_in": "both"}
-        for x in (inset, width - inset)
-    ]
+    bars = [{"start": [x, 0.5 * level], "end": [x, 0.5 * (level + height)], "works_in": "both"} for x in (inset, width - inset)]
     glued = {"structure": {"kind": "blocks", "block": parts}, "joints": {"friction": "no-sliding"}, "ties": bars}
     one, other = ask(changed(whole, joints={"friction": "no-sliding"}), "tilt"), ask(glued, "tilt")
     same("glued", one, other)
     near("glued", one.capacity, other.capacity, within)
 
 
-PLINTHS = st.tuples(
-    sections("block", "column", "brickwork", "blocks", "stack"), number(3.0, 30.0, 27), number(0.3, 4.0)
-)
+PLINTHS = st.tuples(sections("block", "column", "brickwork", "blocks", "stack"), number(3.0, 30.0, 27), number(0.3, 4.0))
 
 
 @relation("tilt", PLINTHS, 1e-5)
@@ -261,10 +224,24 @@ def a_plinth_under_limit_analysis(deck: Deck, width: float, height: float, withi
     near("on a plinth", one.capacity, other.capacity, within, 1e-3)
 
 
-@relation("local-mechanism", PLINTHS, 1e-3, examples=(
-    ({"structure": {"kind": "blocks", "block": [{"name": "a", "points": [[0, 0], [0.4, 0], [0.4, 2], [0, 2]]}],
-                    "ground": [[-1, 0, 2, 0]]}}, 20.0, 4.0),
-))  # fmt: skip
+@relation(
+    "local-mechanism",
+    PLINTHS,
+    1e-3,
+    examples=(
+        (
+            {
+                "structure": {
+                    "kind": "blocks",
+                    "block": [{"name": "a", "points": [[0, 0], [0.4, 0], [0.4, 2], [0, 2]]}],
+                    "ground": [[-1, 0, 2, 0]],
+                }
+            },
+            20.0,
+            4.0,
+        ),
+    ),
+)
 def a_plinth_by_codes(deck: Deck, width: float, height: float, within: float) -> None:
     """The size of a part that does not move changes no result of a local mechanism."""
     there = [ask(d, "local-mechanism", mechanism="building") for d in (deck, on_plinth(deck, width, height))]
@@ -272,20 +249,29 @@ def a_plinth_by_codes(deck: Deck, width: float, height: float, within: float) ->
     ok(*there)
     if there[0].results.multiplier > 0.999 * deck.get("joints", {}).get("friction", 9.0):
         reject()  # the plinth slides under the same push: the mechanism is not unique
-    for name in (
-        "multiplier",
-        "participating_mass_kg",
-        "participating_part",
-        "activation_acceleration_g",
-        "zero_displacement_m",
-    ):
+    for name in ("multiplier", "participating_mass_kg", "participating_part", "activation_acceleration_g", "zero_displacement_m"):
         near(f"on a plinth: {name}", *(getattr(a.results, name) for a in there), within)
 
 
-@relation("dem", st.tuples(sections("block", "column"), number(3.0, 10.0), number(0.3, 2.0)), 0.006, share=0.4, examples=(
-    ({"structure": {"kind": "blocks", "block": [{"name": "a", "points": [[0, 0], [1.8, 0], [1.8, 3.4], [0, 3.4]]}],
-                    "ground": [[-1, 0, 2, 0]]}}, 5.4, 0.47),
-))  # fmt: skip
+@relation(
+    "dem",
+    st.tuples(sections("block", "column"), number(3.0, 10.0), number(0.3, 2.0)),
+    0.006,
+    share=0.4,
+    examples=(
+        (
+            {
+                "structure": {
+                    "kind": "blocks",
+                    "block": [{"name": "a", "points": [[0, 0], [1.8, 0], [1.8, 3.4], [0, 3.4]]}],
+                    "ground": [[-1, 0, 2, 0]],
+                }
+            },
+            5.4,
+            0.47,
+        ),
+    ),
+)
 def a_plinth_under_elements(deck: Deck, width: float, height: float, within: float) -> None:
     """Rigid contacts under a slow tilt."""
     one, other = ask(deck, "dem", **SLOW), ask(on_plinth(deck, width, height), "dem", **SLOW)
@@ -305,18 +291,17 @@ def quiet_after_the_end(deck: Deck, amplitude: float, frequency: float, within: 
     for values in (wave, np.concatenate([wave, np.zeros(200)])):
         with tempfile.TemporaryDirectory() as folder:
             made = changed(deck, motion=recorded(Path(folder), 0.01, values))
-            found.append({
-                "rocking": ask(made, "rocking", Path(folder), end_time=5.0),
-                "rigid contacts": ask(made, "dem", Path(folder), end_time=2.5, **RIGID),
-            })  # fmt: skip
+            found.append(
+                {
+                    "rocking": ask(made, "rocking", Path(folder), end_time=5.0),
+                    "rigid contacts": ask(made, "dem", Path(folder), end_time=2.5, **RIGID),
+                }
+            )
     for name, one in found[0].items():
         other = found[1][name]
         same(name, one, other)
         if one.answers:
-            peaks = [
-                np.max(np.abs(list(v.values()) if isinstance(v := a.results.peak_rotation_rad, dict) else v))
-                for a in (one, other)
-            ]
+            peaks = [np.max(np.abs(list(v.values()) if isinstance(v := a.results.peak_rotation_rad, dict) else v)) for a in (one, other)]
             near(f"{name}: peak rotation", *peaks, within, 1e-3)
 
 
@@ -330,32 +315,39 @@ def one_thread_or_two(deck: Deck, motion: Deck, within: float) -> None:
         must(one.numbers == two.numbers, f"{kind}: one thread {one.numbers}, two {two.numbers}")
 
 
-FOREIGN = st.sampled_from([
-    ("joints", "damping_ratio", 0.3), ("material", "poisson", 0.3), ("joints", "restitution", 0.7),
-("joints", "normal_stiffness", 1e9), ("joints", "cohesion", 1e5),
-    ("joints", "tension", 1e5), ("material", "young", 5e9), ("initial", "rotation_ratio", 0.4), ("joints", "shear_ratio", 0.4),
-])  # fmt: skip
-
-
-@relation(
-    "tilt thrust rocking failure-domain local-mechanism",
-    st.tuples(decks("arch", "column", "block"), pulses(), FOREIGN),
-    0.0,
+FOREIGN = st.sampled_from(
+    [
+        ("joints", "damping_ratio", 0.3),
+        ("material", "poisson", 0.3),
+        ("joints", "restitution", 0.7),
+        ("joints", "normal_stiffness", 1e9),
+        ("joints", "cohesion", 1e5),
+        ("joints", "tension", 1e5),
+        ("material", "young", 5e9),
+        ("initial", "rotation_ratio", 0.4),
+        ("joints", "shear_ratio", 0.4),
+    ]
 )
+
+
+@relation("tilt thrust rocking failure-domain local-mechanism", st.tuples(decks("arch", "column", "block"), pulses(), FOREIGN), 0.0)
 def keys_of_other_strategies(deck: Deck, motion: Deck, key: tuple, within: float) -> None:
     """What an answer says that it leaves out has no effect; what has an effect is not said to be left out."""
     table, name, value = key
     deck = changed(deck, motion=motion)
     there = changed(deck, **{table: {name: value}})
-    calls = {"tilt": {}, "thrust": {}, "rocking": {}, "local-mechanism": {"mechanism": "building"},
-             "failure-domain": {"durations": [0.5], "amplitudes": 2, "accuracy": 0.05}}  # fmt: skip
+    calls = {
+        "tilt": {},
+        "thrust": {},
+        "rocking": {},
+        "local-mechanism": {"mechanism": "building"},
+        "failure-domain": {"durations": [0.5], "amplitudes": 2, "accuracy": 0.05},
+    }
     for kind, keys in calls.items():
         one, other = ask(deck, kind, **keys), ask(there, kind, **keys)
         told = f" {table}.{name}: " in other.warnings and "not use it" in other.warnings
         if other.answers and one.answers and told:
-            must(
-                one.numbers == other.numbers, f"{kind} says that it leaves out {table}.{name}, which changes its answer"
-            )
+            must(one.numbers == other.numbers, f"{kind} says that it leaves out {table}.{name}, which changes its answer")
 
 
 @relation("moving-load", decks("arch", "pointed-arch", "elliptical-arch"), 1e-4)

@@ -12,8 +12,15 @@ from relations import EARTHQUAKES, RIGID, SLOW, ok, relation
 from extrados.analyses.left_out import left_out
 from extrados.decks.reader import make_deck
 
-LEFT_OUT = st.sampled_from([("joints", "cohesion", 1e5), ("joints", "restitution", 0.7), ("joints", "normal_stiffness", 1e8), ("material", "compressive_strength", 1e6),
-                            ("supports", "stiffness", 1e8)])  # fmt: skip
+LEFT_OUT = st.sampled_from(
+    [
+        ("joints", "cohesion", 1e5),
+        ("joints", "restitution", 0.7),
+        ("joints", "normal_stiffness", 1e8),
+        ("material", "compressive_strength", 1e6),
+        ("supports", "stiffness", 1e8),
+    ]
+)
 
 
 @relation("tilt thrust rocking", st.tuples(st.permutations(["tilt", "thrust", "rocking", "supports"]), LEFT_OUT), 0.0)
@@ -24,12 +31,14 @@ def the_first_that_leaves_a_key_out_says_so(asked: list, given: tuple, within: f
     made = make_deck(changed({**DRUMS, "motion": PULSE}, **{table: {key: value}}, analysis=rows))
     uses = [f"{table}.{key}" in o.reckons_with(b) for o, b in zip(made.analyses, made.buildings, strict=True)]
     for remark in (r for r in left_out(made) if key in r.text):
-        must(
-            remark.analysis == uses.index(False), f"{key}: analysis {remark.analysis} of {asked}, which use it: {uses}"
-        )
+        must(remark.analysis == uses.index(False), f"{key}: analysis {remark.analysis} of {asked}, which use it: {uses}")
 
 
-@relation("rocking fragility assessment failure-domain", st.tuples(decks("block", "column", "arch", friction=number(0.15, 0.9, 6)), pulses(0.1, 1.2), EARTHQUAKES), 0.0)  # fmt: skip
+@relation(
+    "rocking fragility assessment failure-domain",
+    st.tuples(decks("block", "column", "arch", friction=number(0.15, 0.9, 6)), pulses(0.1, 1.2), EARTHQUAKES),
+    0.0,
+)
 def a_verdict_carries_what_is_violated(deck: Deck, motion: Deck, many: Deck, within: float) -> None:
     """Conditions of a result that do not hold are those of its verdict, whether it collapses or not."""
     domain = {"durations": [0.3, 0.6], "amplitudes": 3, "accuracy": 1e-2}
@@ -48,13 +57,17 @@ def a_verdict_carries_what_is_violated(deck: Deck, motion: Deck, many: Deck, wit
         must(all(text in said for text in told), f"{answer.result.kind}: {told} against {answer.verdict.violated}")
 
 
-@relation("tilt", st.tuples(decks("block", "arch", "column", "pointed-arch", "brickwork"), number(1e2, 1e4), st.booleans()), 1e-6)  # fmt: skip
+@relation("tilt", st.tuples(decks("block", "arch", "column", "pointed-arch", "brickwork"), number(1e2, 1e4), st.booleans()), 1e-6)
 def ties_of_a_tilt(deck: Deck, force: float, across: bool, within: float) -> None:
     """Forces of ties are those of their array, no more than they bear, in the states that the words name; a tie never lowers the capacity."""
     bare = leaning(deck, 0.05)
     x, y = np.mean(bare["structure"]["block"][-1]["points"], axis=0)
-    row = {"start": [round(float(x), 6), round(float(y), 6)], "ground": [round(float(x) + (9.0 if across else -9.0), 6), round(float(y) - 1.0, 6)],
-           "works_in": "tension", "yield_force": force}  # fmt: skip
+    row = {
+        "start": [round(float(x), 6), round(float(y), 6)],
+        "ground": [round(float(x) + (9.0 if across else -9.0), 6), round(float(y) - 1.0, 6)],
+        "works_in": "tension",
+        "yield_force": force,
+    }
     free, tied = ask(bare, "tilt"), ask({**bare, "ties": [row]}, "tilt")
     ok(free, tied)
     a, r = {k: np.asarray(v.data) for k, v in tied.result.arrays.items()}, tied.results
@@ -67,14 +80,16 @@ def ties_of_a_tilt(deck: Deck, force: float, across: bool, within: float) -> Non
     at_most("capacity", free.capacity, tied.capacity, 1e-5, 1e-3)
 
 
-@relation("tilt", st.tuples(decks("column", "brickwork", "blocks", "stack", friction=number(0.2, 0.6, 8)), st.booleans()), 1e-6)  # fmt: skip
+@relation("tilt", st.tuples(decks("column", "brickwork", "blocks", "stack", friction=number(0.2, 0.6, 8)), st.booleans()), 1e-6)
 def the_least_state_without_dilatancy(deck: Deck, associated: bool, within: float) -> None:
     """The value without dilatancy is no greater than the end of any certified load path, nor than the associated one; the design value is the least end."""
     answer = ask(deck, "tilt", starts=2, **({} if associated else {"friction_rule": "non-associated"}))
     ok(answer)
     for sense in ("", "_opposite"):
         r = answer.results
-        least = getattr(r, f"collapse_acceleration_non_associated{sense}_g") if associated else getattr(r, f"collapse_acceleration{sense}_g")  # fmt: skip
+        least = (
+            getattr(r, f"collapse_acceleration_non_associated{sense}_g") if associated else getattr(r, f"collapse_acceleration{sense}_g")
+        )
         paths = getattr(r, f"load_paths{sense}") or []
         ends = [p.collapse_acceleration_g for p in paths if p.certified and p.collapse_acceleration_g is not None]
         if least is None:
@@ -87,7 +102,9 @@ def the_least_state_without_dilatancy(deck: Deck, associated: bool, within: floa
         near("design value", design or 0.0, min(ends, default=0.0), within)
 
 
-LEANING_PIERS = st.tuples(decks("block", "column", friction=number(0.4, 0.9, 6)), pulses(0.3, 0.8), st.booleans(), st.sampled_from([0.03, -0.05]))  # fmt: skip
+LEANING_PIERS = st.tuples(
+    decks("block", "column", friction=number(0.4, 0.9, 6)), pulses(0.3, 0.8), st.booleans(), st.sampled_from([0.03, -0.05])
+)
 
 
 @relation("dem", LEANING_PIERS, 0.03)
@@ -114,7 +131,5 @@ def a_tilt_of_elements_ends_by_collapse(deck: Deck, within: float) -> None:
     answer = ask(deck, "dem", **{**SLOW, "tilt_accuracy": 0.1, "time_step": 4e-3})
     ok(answer)
     r = answer.results
-    must(
-        (r.test, r.outcome, r.load_direction) == ("tilt", "collapse", "+x"), f"{r.test} {r.outcome} {r.load_direction}"
-    )
-    must(answer.verdict.capacity is None or abs(answer.verdict.capacity - min(answer.capacity)) < within, f"{answer.verdict}")  # fmt: skip
+    must((r.test, r.outcome, r.load_direction) == ("tilt", "collapse", "+x"), f"{r.test} {r.outcome} {r.load_direction}")
+    must(answer.verdict.capacity is None or abs(answer.verdict.capacity - min(answer.capacity)) < within, f"{answer.verdict}")

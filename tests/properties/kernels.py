@@ -22,8 +22,13 @@ from extrados.model.geometry.solids.polyhedra import box
 from extrados.views.rockers.mechanism import MechanismModel
 
 WAYS = st.fixed_dictionaries(
-    {"rigid": st.booleans(), "friction": st.sampled_from([0.0, 0.3, 0.8]), "damping": st.sampled_from([0.0, 0.0, 1e-5]), "rebound": st.sampled_from([0.0, 0.5])}
-)  # fmt: skip
+    {
+        "rigid": st.booleans(),
+        "friction": st.sampled_from([0.0, 0.3, 0.8]),
+        "damping": st.sampled_from([0.0, 0.0, 1e-5]),
+        "rebound": st.sampled_from([0.0, 0.5]),
+    }
+)
 MOTION = st.tuples(number(0.3, 1.0), number(-2.0, 2.0), number(-2.0, 2.0), number(-0.3, 0.3))
 
 
@@ -46,13 +51,18 @@ def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: t
         inertia = np.array([_inertia(o) for o in outlines])
         law = dem.Law(1e9, 5e8, how["friction"], damping=how["damping"])
         both = dem.Bodies(
-            np.array([m[1] for m in bodies]), mass, inertia, outlines, [0, 1], [np.ones(len(o), bool) for o in outlines], 1.0, [law],
-        )  # fmt: skip
+            np.array([m[1] for m in bodies]), mass, inertia, outlines, [0, 1], [np.ones(len(o), bool) for o in outlines], 1.0, [law]
+        )
         rate = np.array([[*(2.0 * speed * way), spin_a], [*(-speed * way), spin_b]])[::order]
         options = dem.Options(
-            0.08, 0.004, step=5e-6 if not how["rigid"] else 2e-4, gravity=(0.0, 0.0), rigid=how["rigid"], rebound=how["rebound"] if how["rigid"] else 0.0,
+            0.08,
+            0.004,
+            step=5e-6 if not how["rigid"] else 2e-4,
+            gravity=(0.0, 0.0),
+            rigid=how["rigid"],
+            rebound=how["rebound"] if how["rigid"] else 0.0,
             residual_limit=10.0,
-        )  # fmt: skip
+        )
         run = dem.run(both, options, shift=np.zeros((2, 3)), rate=rate)
         must(run.reason == "end", run.reason)
         momentum = (mass[:, None] * run.rate[:, :, :2]).sum(axis=1)
@@ -68,16 +78,9 @@ def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: t
             left = left[[0, -1]]
         near("ledger", left, np.full(len(left), left[0]), 0.02, kinetic[0])
         at_most("kinetic energy", kinetic[-1], kinetic[0], 5e-3)
-        if (
-            how["friction"] == how["damping"] == 0.0
-            and not how["rigid"]
-            and run.energy["elastic"][-1] < 1e-3 * kinetic[0]
-        ):
+        if how["friction"] == how["damping"] == 0.0 and not how["rigid"] and run.energy["elastic"][-1] < 1e-3 * kinetic[0]:
             near("without friction and damping", kinetic[-1], kinetic[0], 0.01)
-        must(
-            abs(run.energy["friction"][-1]) < 1e-3 * kinetic[0] or how["friction"] > 0.0,
-            "friction loses without friction",
-        )
+        must(abs(run.energy["friction"][-1]) < 1e-3 * kinetic[0] or how["friction"] > 0.0, "friction loses without friction")
         found.append((run.place[-1][::order], run.rate[-1][::order], kinetic[-1]))
     near("places in another order", found[0][0], found[1][0], 5e-3, 1.0)
     near("energy in another order", found[0][2], found[1][2], 0.02)
@@ -119,7 +122,7 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
     first, second = (
         box(tuple(-0.5 * np.array(s)), tuple(0.5 * np.array(s))).moved(Rotation.from_euler("xyz", t, degrees=True).as_matrix())
         for s, t in ((one, turn_a), (two, turn_b))
-    )  # fmt: skip
+    )
     gap = first.vertices[:, 0].max() - second.vertices[:, 0].min() + 0.005
     corner_a, corner_b = first.vertices[first.vertices[:, 0].argmax()], second.vertices[second.vertices[:, 0].argmin()]
     shift = np.array([gap, *(corner_a - corner_b)[1:]]) + aside * 0.3 * np.array([0.0, 1.0, 0.6])
@@ -130,14 +133,17 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
         mass, centre, inertia = zip(*(mass_properties([p], 2000.0) for p in parts), strict=True)
         mass, centre = np.array(mass), np.array(centre)
         law = dem3.Law(1e9, 5e8, how["friction"])
-        solids = dem3.Solids(
-            centre, mass, np.array(inertia), [p.vertices for p in parts], [p.faces for p in parts], [0, 1], [law]
-        )
+        solids = dem3.Solids(centre, mass, np.array(inertia), [p.vertices for p in parts], [p.faces for p in parts], [0, 1], [law])
         rate = np.array([[*(2.0 * speed * way), spin_a, 0.3, spin_b], [*(-speed * way), -0.2, spin_b, spin_a]])[::order]
         options = dem3.Options(
-            0.06, 0.004, step=5e-6 if not how["rigid"] else 2e-4, gravity=(0.0, 0.0, 0.0), rigid=how["rigid"], rebound=how["rebound"] if how["rigid"] else 0.0,
+            0.06,
+            0.004,
+            step=5e-6 if not how["rigid"] else 2e-4,
+            gravity=(0.0, 0.0, 0.0),
+            rigid=how["rigid"],
+            rebound=how["rebound"] if how["rigid"] else 0.0,
             residual_limit=10.0,
-        )  # fmt: skip
+        )
         run = dem3.run(solids, options, rate=rate)
         must(run.reason == "end", run.reason)
         v, place, turn = run.rate, run.place, run.turn
@@ -164,7 +170,12 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
     return closes
 
 
-@relation("rocking", st.tuples(decks("frame", "arch", "vault", "brickwork", "pointed-arch"), st.lists(number(0.05, 0.95), min_size=3, max_size=3)), 1e-6, share=1.0)  # fmt: skip
+@relation(
+    "rocking",
+    st.tuples(decks("frame", "arch", "vault", "brickwork", "pointed-arch"), st.lists(number(0.05, 0.95), min_size=3, max_size=3)),
+    1e-6,
+    share=1.0,
+)
 def mechanisms_by_their_kinematics(deck: Deck, shares: list, within: float) -> None:
     """Hinges stay closed, rates are slopes of places, and mass, moment, drive and potential of the table are sums over the parts."""
     model = MechanismModel(building(deck).blocks())
@@ -190,24 +201,14 @@ def mechanisms_by_their_kinematics(deck: Deck, shares: list, within: float) -> N
         v = first[:n]
         mass = (v[..., 0] ** 2 + v[..., 1] ** 2) @ one.mass + v[..., 2] ** 2 @ one.inertia
         near("M", c.mass, mass, 1e-5)
-        slope = 2.0 * ((v[..., 0] * second[:n, :, 0] + v[..., 1] * second[:n, :, 1]) @ one.mass + (v[..., 2] * second[:n, :, 2]) @ one.inertia)  # fmt: skip
+        slope = 2.0 * (
+            (v[..., 0] * second[:n, :, 0] + v[..., 1] * second[:n, :, 1]) @ one.mass + (v[..., 2] * second[:n, :, 2]) @ one.inertia
+        )
         near("M'/2", c.half_mass_slope, 0.5 * slope, 1e-3, float(mass.max()))
         lift = v[..., 1] @ one.mass * GRAVITY
         near("V'", c.gravity_moment, lift, 1e-5, abs(table.gravity_moment))
-        near(
-            "H",
-            c.drive,
-            v[..., 0] @ one.mass * (1.0 if c.drive[0] * (v[0, :, 0] @ one.mass) > 0.0 else -1.0),
-            1e-5,
-            abs(table.drive),
-        )
-        near(
-            "V",
-            c.potential,
-            (place[:n, :, 1] - rest[:, 1]) @ one.mass * GRAVITY,
-            1e-5,
-            abs(table.gravity_moment) * table.critical,
-        )
+        near("H", c.drive, v[..., 0] @ one.mass * (1.0 if c.drive[0] * (v[0, :, 0] @ one.mass) > 0.0 else -1.0), 1e-5, abs(table.drive))
+        near("V", c.potential, (place[:n, :, 1] - rest[:, 1]) @ one.mass * GRAVITY, 1e-5, abs(table.gravity_moment) * table.critical)
         edge, _, _ = core_mechanism.follow(one, [table.critical * (1.0 - 1e-6), table.critical * (1.0 + 1e-6)])
         rise = (edge[:, :, 1] - rest[:, 1]) @ one.mass
         must(
@@ -221,11 +222,7 @@ def mechanisms_by_their_kinematics(deck: Deck, shares: list, within: float) -> N
         for k, (before, after) in enumerate(((model.fields[1], model.fields[0]), (model.fields[0], model.fields[1]))):
             mass, inertia = model.assembly.mass, model.assembly.inertia
             work = float(
-                (
-                    (mass * before[:, 0] * after[:, 0])
-                    + mass * before[:, 1] * after[:, 1]
-                    + inertia * before[:, 2] * after[:, 2]
-                ).sum()
+                ((mass * before[:, 0] * after[:, 0]) + mass * before[:, 1] * after[:, 1] + inertia * before[:, 2] * after[:, 2]).sum()
             )
             own = float((mass * (after[:, :2] ** 2).sum(axis=1) + inertia * after[:, 2] ** 2).sum())
             last = float((mass * (before[:, :2] ** 2).sum(axis=1) + inertia * before[:, 2] ** 2).sum())
@@ -245,10 +242,15 @@ def _carried(place: np.ndarray, rest: np.ndarray, part: int, point: np.ndarray) 
     return p[:, :2] + np.column_stack([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]])
 
 
-@relation("dem", st.tuples(decks("block", "column"), number(-0.05, 0.05, 10), number(-0.02, 0.02, 8), number(0.0, 0.2, 4), number(0.5, 1.0, 5), st.booleans()), 0.03, share=1.0)  # fmt: skip
-def elements_on_a_moving_support(
-    deck: Deck, dx: float, dy: float, start: float, duration: float, rigid: bool, within: float
-) -> None:
+@relation(
+    "dem",
+    st.tuples(
+        decks("block", "column"), number(-0.05, 0.05, 10), number(-0.02, 0.02, 8), number(0.0, 0.2, 4), number(0.5, 1.0, 5), st.booleans()
+    ),
+    0.03,
+    share=1.0,
+)
+def elements_on_a_moving_support(deck: Deck, dx: float, dy: float, start: float, duration: float, rigid: bool, within: float) -> None:
     """A pier goes with the ground that it stands on, along a raised cosine, and stands on it at the end."""
     if abs(dx) + abs(dy) < 0.01:
         reject()
@@ -258,18 +260,10 @@ def elements_on_a_moving_support(
     still = ask(deck, "tilt")
     ok(still)
     arrays = still.result.arrays
-    joint = next(
-        str(n) for n, b in zip(arrays["joint_name"].data, arrays["joint_block"].data, strict=True) if min(b) < 0
-    )
+    joint = next(str(n) for n, b in zip(arrays["joint_name"].data, arrays["joint_block"].data, strict=True) if min(b) < 0)
     row = {"joint": joint, "dx": dx, "dy": dy, "start": start, "duration": duration}
-    made = {
-        **deck,
-        "initial": {"movements": [row]},
-        "joints": {"friction": 0.9, **({} if rigid else {"normal_stiffness": 1e9})},
-    }
-    answer = ask(
-        made, "dem", end_time=start + duration + 0.1, time_step=5e-4, output_step=0.02, **(RIGID if rigid else {})
-    )
+    made = {**deck, "initial": {"movements": [row]}, "joints": {"friction": 0.9, **({} if rigid else {"normal_stiffness": 1e9})}}
+    answer = ask(made, "dem", end_time=start + duration + 0.1, time_step=5e-4, output_step=0.02, **(RIGID if rigid else {}))
     ok(answer)
     a = {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
     phase = np.clip((a["time"] - start) / duration, 0.0, 1.0)

@@ -50,11 +50,7 @@ def the_sense_of_a_push(deck: Deck, factor: float, within: float) -> None:
 
 
 @relation(
-    "supports",
-    st.tuples(
-        decks("arch", "frame", "vault", friction=st.sampled_from([0.3, 0.7, "no-sliding"])), number(-0.01, 0.01, 8)
-    ),
-    1e-3,
+    "supports", st.tuples(decks("arch", "frame", "vault", friction=st.sampled_from([0.3, 0.7, "no-sliding"])), number(-0.01, 0.01, 8)), 1e-3
 )
 def words_count_the_table(deck: Deck, spread: float, within: float) -> None:
     """The answer on moving supports names as many joints that open, and that slide, as its table holds."""
@@ -68,10 +64,7 @@ def words_count_the_table(deck: Deck, spread: float, within: float) -> None:
     opening, slip = (np.abs(np.asarray(rows[name], dtype=float)) for name in ("opening", "slip"))
     for word, count in (("open", opening > within * slip), ("slide", slip > within * opening)):
         said = re.search(rf"(no|\d+) joints? (?:of [^.;:]*? )?{word}s?\b", answer.result.answer)
-        must(
-            (int(said[1]) if said and said[1] != "no" else 0) == int(count.sum()),
-            f"{answer.result.answer}: {word} {count.sum()}",
-        )
+        must((int(said[1]) if said and said[1] != "no" else 0) == int(count.sum()), f"{answer.result.answer}: {word} {count.sum()}")
 
 
 def _moved(points: np.ndarray, bodies: np.ndarray, pose: np.ndarray, centre: np.ndarray) -> np.ndarray:
@@ -82,9 +75,7 @@ def _moved(points: np.ndarray, bodies: np.ndarray, pose: np.ndarray, centre: np.
     return np.where((bodies < 0)[:, None], points, there)
 
 
-@relation(
-    "rocking", st.tuples(decks("block", "column", "stack", "arch", "frame", "vault"), pulses(0.2, 1.0)), 1e-6, share=2.0
-)
+@relation("rocking", st.tuples(decks("block", "column", "stack", "arch", "frame", "vault"), pulses(0.2, 1.0)), 1e-6, share=2.0)
 def snapshots_hold_together(deck: Deck, motion: Deck, within: float) -> None:
     """In each snapshot of a mechanism at least one end of every joint stays where both of its blocks have it."""
     answer = ask({**deck, "joints": {"friction": 2.0}, "motion": motion}, "rocking", hand_over=False)
@@ -96,18 +87,14 @@ def snapshots_hold_together(deck: Deck, motion: Deck, within: float) -> None:
     size = float(np.ptp(arrays["outline"], axis=0).max())
     for pose in arrays["snapshot_pose"]:
         apart = [
-            np.hypot(
-                *(_moved(arrays[end], sides[:, 0], pose, centre) - _moved(arrays[end], sides[:, 1], pose, centre)).T
-            )
+            np.hypot(*(_moved(arrays[end], sides[:, 0], pose, centre) - _moved(arrays[end], sides[:, 1], pose, centre)).T)
             for end in ("joint_p", "joint_q")
         ]
         worst = float(np.min(apart, axis=0).max())
         must(worst <= within * size, f"a joint parts at both ends by {worst} m")
 
 
-BOXES = st.lists(
-    st.tuples(number(0.0, 9.0), number(0.0, 9.0), number(0.1, 1.0), number(0.1, 1.0)), min_size=3, max_size=6
-)
+BOXES = st.lists(st.tuples(number(0.0, 9.0), number(0.0, 9.0), number(0.1, 1.0), number(0.1, 1.0)), min_size=3, max_size=6)
 
 
 @relation("tilt", BOXES, 1e-9)

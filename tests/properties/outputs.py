@@ -21,9 +21,7 @@ def _arrays(answer: Answer) -> dict[str, np.ndarray]:
     return {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
 
 
-def _in_balance(
-    told: str, a: dict[str, np.ndarray], name: str, masses: np.ndarray, gamma: float, weight: float
-) -> None:
+def _in_balance(told: str, a: dict[str, np.ndarray], name: str, masses: np.ndarray, gamma: float, weight: float) -> None:
     """The forces of a state across the joints hold every block under its weight and gamma times that to +x."""
     p, q, blocks = a["joint_p"], a["joint_q"], a["joint_block"].astype(int)
     tangent = (q - p) / np.hypot(*(q - p).T)[:, None]
@@ -50,9 +48,7 @@ def _in_balance(
     near(f"{told}: friction", a[f"{name}_friction"][pressed], friction[pressed], 1e-6, 1e-3)
 
 
-SECTIONS = decks(
-    "arch", "pointed-arch", "elliptical-arch", "block", "column", "brickwork", "blocks", friction=number(0.4, 0.9, 10)
-)
+SECTIONS = decks("arch", "pointed-arch", "elliptical-arch", "block", "column", "brickwork", "blocks", friction=number(0.4, 0.9, 10))
 
 
 @relation("tilt thrust", st.tuples(SECTIONS, number(-0.05, 0.05, 10)), 1e-6, share=2.0)
@@ -68,16 +64,20 @@ def states_of_statics_by_hand(deck: Deck, gamma: float, within: float) -> None:
     v = a["velocity"]
     work = float(masses @ (r.collapse_acceleration_g * v[:, 0] - v[:, 1]))
     if not r.dilating_joints:
-        near("work of the mechanism", work, 0.0, 0.0, 1.0) if abs(work) > 1e-6 * float(
-            masses @ np.abs(v[:, :2]).sum(axis=1)
-        ) else None
+        near("work of the mechanism", work, 0.0, 0.0, 1.0) if abs(work) > 1e-6 * float(masses @ np.abs(v[:, :2]).sum(axis=1)) else None
     for h in r.hinges:
         end = a["joint_p" if h.side in ("intrados", "first end") else "joint_q"][h.joint]
         must(h.name == str(a["joint_name"][h.joint]), f"hinge {h}")
         if deck["structure"]["kind"] in ("arch", "pointed-arch", "elliptical-arch"):
             near("hinge", [h.x_m, h.y_m], end, 1e-6, stones.size)
             near("thrust at the hinge", a["collapse_point"][h.joint], end, 1e-4, stones.size)
-    near("reactions", [sum(x.horizontal_N for x in r.reactions), sum(x.vertical_N for x in r.reactions)], [-r.collapse_acceleration_g * weight, weight], 1e-6, weight)  # fmt: skip
+    near(
+        "reactions",
+        [sum(x.horizontal_N for x in r.reactions), sum(x.vertical_N for x in r.reactions)],
+        [-r.collapse_acceleration_g * weight, weight],
+        1e-6,
+        weight,
+    )
     for row in r.reactions:
         size = math.hypot(a["collapse_normal"][row.joint], a["collapse_shear"][row.joint])
         near(f"reaction {row.name}", math.hypot(row.horizontal_N, row.vertical_N), size, 1e-6, weight)
@@ -100,40 +100,32 @@ def states_of_statics_by_hand(deck: Deck, gamma: float, within: float) -> None:
             table[column] = 1e3 * stones.depth * np.asarray(table[column])
         near("rows", table["normal"], b[f"{name}_normal"], within, weight)
         near("rows", np.abs(table["shear"]), np.abs(b[f"{name}_shear"]), within, weight)
-        near(
-            "rows",
-            np.hypot(table["horizontal"], table["vertical"]),
-            np.hypot(b[f"{name}_normal"], b[f"{name}_shear"]),
-            1e-6,
-            weight,
-        )
+        near("rows", np.hypot(table["horizontal"], table["vertical"]), np.hypot(b[f"{name}_normal"], b[f"{name}_shear"]), 1e-6, weight)
         near("rows", np.column_stack([table["x"], table["y"]]), b[f"{name}_point"], within, stones.size)
         length = np.hypot(*(b["joint_q"] - b["joint_p"]).T)
         near("rows", table["joint_length"], length, within)
         middle = 0.5 * (b["joint_p"] + b["joint_q"])
-        near(
-            "eccentricity", np.abs(table["eccentricity"]), np.hypot(*(b[f"{name}_point"] - middle).T), 1e-5, stones.size
-        )
+        near("eccentricity", np.abs(table["eccentricity"]), np.hypot(*(b[f"{name}_point"] - middle).T), 1e-5, stones.size)
         near("friction", table["friction_needed"], b[f"{name}_friction"], within, 1.0)
         size = np.hypot(b[f"{name}_normal"], b[f"{name}_shear"])
         near("greatest force along the line", b[f"{name}_line_force"].max(), size.max(), 0.02)
         polygon = b[f"{name}_polygon"]
-        near("polygon", np.ptp(polygon[:, 1]), weight / stones.depth, 0.02) if name == "least" and abs(
-            gamma
-        ) < 1e-9 else None
+        near("polygon", np.ptp(polygon[:, 1]), weight / stones.depth, 0.02) if name == "least" and abs(gamma) < 1e-9 else None
     at = [
         np.abs(x).min()
-        for x in (
-            thrust.result.tables["thrust_least"].columns["horizontal"],
-            thrust.result.tables["thrust_most"].columns["horizontal"],
-        )
+        for x in (thrust.result.tables["thrust_least"].columns["horizontal"], thrust.result.tables["thrust_most"].columns["horizontal"])
     ]
     must(at[0] <= at[1] * (1.0 + 1e-6), f"thrusts {at}")
     if gamma == 0.0:
         near("thrusts", [t.least.horizontal_N, t.most.horizontal_N], at, 1e-6)
         near("interval", [r.thrust_min_N, r.thrust_max_N], at, 1e-6)
     near("interval", t.admissible_interval_g, r.admissible_interval_g, 1e-6)
-    near("capacity of the interval", [-t.admissible_interval_g[0], t.admissible_interval_g[1]], [r.collapse_acceleration_opposite_g, r.collapse_acceleration_g], 1e-6)  # fmt: skip
+    near(
+        "capacity of the interval",
+        [-t.admissible_interval_g[0], t.admissible_interval_g[1]],
+        [r.collapse_acceleration_opposite_g, r.collapse_acceleration_g],
+        1e-6,
+    )
 
 
 @relation("moving-load", st.tuples(asymmetric("moving-load"), st.booleans(), LOADS), 1e-9)
@@ -143,7 +135,14 @@ def tables_of_a_moving_load(question: tuple, tied: bool, loads: list, within: fl
     del loads
     if tied:
         x, y = np.mean(deck["structure"]["block"][0]["points"], axis=0)
-        deck["ties"] = [{"start": [round(float(x), 6), round(float(y), 6)], "ground": [round(float(x) - 9.0, 6), round(float(y), 6)], "works_in": "tension", "yield_force": 1e3}]  # fmt: skip
+        deck["ties"] = [
+            {
+                "start": [round(float(x), 6), round(float(y), 6)],
+                "ground": [round(float(x) - 9.0, 6), round(float(y), 6)],
+                "works_in": "tension",
+                "yield_force": 1e3,
+            }
+        ]
     answer = ask(deck, kind, **table)
     ok(answer)
     r, a = answer.results, _arrays(answer)
@@ -156,33 +155,23 @@ def tables_of_a_moving_load(question: tuple, tied: bool, loads: list, within: fl
         pressed = normal[:, j] > 0.0
         share = ((point[:, j] - a["joint_p"][j]) @ (a["joint_q"][j] - a["joint_p"][j])) / length[j] ** 2
         near(
-            "greatest compression",
-            rows["greatest_compression"][j],
-            np.where(pressed, normal[:, j], 0.0).max() / depth / 1e3,
-            within,
-            1e-9,
+            "greatest compression", rows["greatest_compression"][j], np.where(pressed, normal[:, j], 0.0).max() / depth / 1e3, within, 1e-9
         )
         pressed &= np.isfinite(share)
         ends = [rows["least_position"][j], rows["greatest_position"][j]]
-        near(
-            "positions",
-            ends,
-            [share[pressed].min(), share[pressed].max()] if pressed.any() else [np.nan, np.nan],
-            1e-6,
-            1.0,
-        )
+        near("positions", ends, [share[pressed].min(), share[pressed].max()] if pressed.any() else [np.nan, np.nan], 1e-6, 1.0)
     columns = answer.result.tables["moving_load"].columns
     near("rows", columns["place"], a["place"], within, 1.0)
     near("rows", columns["collapse_load"], a["capacity"], within)
-    near("greatest compression", r.greatest_compression_N, a["envelope_normal"][int(np.abs(a["place"] - r.worst_place_m).argmin())].max(), 1e-6) if not table.get("both_ways") else None  # fmt: skip
-    must(
-        r.places_without_limit == int(np.isnan(a["capacity"]).sum()), f"{r.places_without_limit} places without a limit"
-    )
+    near(
+        "greatest compression",
+        r.greatest_compression_N,
+        a["envelope_normal"][int(np.abs(a["place"] - r.worst_place_m).argmin())].max(),
+        1e-6,
+    ) if not table.get("both_ways") else None
+    must(r.places_without_limit == int(np.isnan(a["capacity"]).sum()), f"{r.places_without_limit} places without a limit")
     if tied:
-        must(
-            {"tie_point", "tie_block", "collapse_tie_force"} <= set(a),
-            f"arrays of ties: {sorted(k for k in a if 'tie' in k)}",
-        )
+        must({"tie_point", "tie_block", "collapse_tie_force"} <= set(a), f"arrays of ties: {sorted(k for k in a if 'tie' in k)}")
         near("tie", a["collapse_tie_force"], [t.force_N for t in r.ties], within, 1e-3)
         tie = r.ties[0]
         sort = "yields" if abs(tie.force_N) > 999.9 else "slack" if abs(tie.force_N) < 1e-3 else "carries"
@@ -191,9 +180,7 @@ def tables_of_a_moving_load(question: tuple, tied: bool, loads: list, within: fl
     must(len(a["chain_joint"]) == a["chain_start"][-1], "joints of chains")
 
 
-@relation(
-    "rocking", st.tuples(decks("block", "stack", "stack", "arch", "column", "frame"), pulses(0.2, 1.6)), 1e-6, share=4.0
-)
+@relation("rocking", st.tuples(decks("block", "stack", "stack", "arch", "column", "frame"), pulses(0.2, 1.6)), 1e-6, share=4.0)
 def histories_of_rocking_by_hand(deck: Deck, motion: Deck, within: float) -> None:
     """Outcome, half cycles, impacts, losses and energies of a run by fixed hinges are those of its history, events and words."""
     answer = ask(changed(deck, motion=motion), "rocking", end_time=2.0, output_step=0.005, hand_over=False)
@@ -205,36 +192,24 @@ def histories_of_rocking_by_hand(deck: Deck, motion: Deck, within: float) -> Non
         f"{r.outcome}: {r.collapse_time_s}, {r.collapse_half_cycle}",
     )
     if r.outcome == "collapse":
-        must(
-            r.collapse_half_cycle == r.half_cycles, f"collapse in half cycle {r.collapse_half_cycle} of {r.half_cycles}"
-        )
-        must(
-            r.collapse_time_s <= 2.0 + 1e-9 and r.collapse_time_s >= a["time"][-1] - 1e-9,
-            f"collapse at {r.collapse_time_s}",
-        )
+        must(r.collapse_half_cycle == r.half_cycles, f"collapse in half cycle {r.collapse_half_cycle} of {r.half_cycles}")
+        must(r.collapse_time_s <= 2.0 + 1e-9 and r.collapse_time_s >= a["time"][-1] - 1e-9, f"collapse at {r.collapse_time_s}")
         must(answer.outcome in ("collapses", "open"), answer.outcome)
     else:
         must(r.settled or answer.outcome == "open", f"{answer.outcome} of a run that has not settled")
     must(
-        r.impacts == len(r.impact_times_s)
-        if not stack
-        else r.impacts == r.stack.impacts_on_ground + r.stack.impacts_between,
+        r.impacts == len(r.impact_times_s) if not stack else r.impacts == r.stack.impacts_on_ground + r.stack.impacts_between,
         f"{r.impacts} impacts",
     )
     near("impacts", a["impact_time"], r.impact_times_s, within, 1.0)
     must(list(r.impact_times_s) == sorted(r.impact_times_s), "impacts in another order")
     must(
         (r.outcome == "no-hinging")
-        == (
-            np.abs(a["rotation"]).max(initial=0.0) == 0.0
-            and (not stack or np.abs(a["rotation_upper"]).max(initial=0.0) == 0.0)
-        ),
+        == (np.abs(a["rotation"]).max(initial=0.0) == 0.0 and (not stack or np.abs(a["rotation_upper"]).max(initial=0.0) == 0.0)),
         f"{r.outcome}",
     )
     if r.outcome == "no-hinging":
-        must(
-            r.half_cycles == 0 and r.impacts == 0 and r.energy_supplied_J == 0.0, f"{r.half_cycles} half cycles at rest"
-        )
+        must(r.half_cycles == 0 and r.impacts == 0 and r.energy_supplied_J == 0.0, f"{r.half_cycles} half cycles at rest")
     energy = a["kinetic"] + a["potential"]
     scale = max(float(np.abs(energy).max(initial=0.0)), abs(r.energy_supplied_J), 1e-6)
     near("ledger", energy - energy[0], a["ledger"], 2e-4, scale)
@@ -242,8 +217,16 @@ def histories_of_rocking_by_hand(deck: Deck, motion: Deck, within: float) -> Non
     near("supplied less lost", a["ledger"][-1], r.energy_supplied_J - r.energy_lost_at_impacts_J, 0.05, scale)
     must(r.energy_lost_at_impacts_J >= -1e-9 * scale, f"impacts give {-r.energy_lost_at_impacts_J} J")
     columns = answer.result.tables["rocking"].columns
-    pairs = {"time": "time", "rotation": "rotation", "ground_acceleration": "ground", "vertical_acceleration": "vertical", "kinetic_energy": "kinetic",
-             "potential_energy": "potential", "energy_supplied_less_lost": "ledger", **({"rotation_upper": "rotation_upper"} if stack else {"rotation_rate": "rate"})}  # fmt: skip
+    pairs = {
+        "time": "time",
+        "rotation": "rotation",
+        "ground_acceleration": "ground",
+        "vertical_acceleration": "vertical",
+        "kinetic_energy": "kinetic",
+        "potential_energy": "potential",
+        "energy_supplied_less_lost": "ledger",
+        **({"rotation_upper": "rotation_upper"} if stack else {"rotation_rate": "rate"}),
+    }
     for column, array in pairs.items():
         near(column, columns[column], a[array], within, 1e-6)
     near("friction", columns["required_friction"], a["required_friction"].max(axis=1), within, 1e-6)
@@ -255,18 +238,10 @@ def histories_of_rocking_by_hand(deck: Deck, motion: Deck, within: float) -> Non
         inertia = mass * 4.0 * radius**2 / 3.0
         side = np.where(a["rotation"] < 0.0, -1.0, 1.0)
         q = np.abs(a["rotation"])
-        near(
-            "potential energy",
-            a["potential"],
-            mass * GRAVITY * radius * (np.cos(slender - q) - math.cos(slender)),
-            1e-5,
-            scale,
-        )
+        near("potential energy", a["potential"], mass * GRAVITY * radius * (np.cos(slender - q) - math.cos(slender)), 1e-5, scale)
         near("kinetic energy", a["kinetic"], 0.5 * inertia * a["rate"] ** 2, 1e-5, scale)
         moving = q > 1e-4
-        turning = (
-            -mass * GRAVITY * radius * np.sin(slender - q) - side * mass * radius * np.cos(slender - q) * a["ground"]
-        )
+        turning = -mass * GRAVITY * radius * np.sin(slender - q) - side * mass * radius * np.cos(slender - q) * a["ground"]
         near("equation of motion", (side * a["acceleration"])[moving], (turning / inertia)[moving], 1e-4, 1.0)
         x = side * radius * (np.cos(slender - q) * side * a["acceleration"] + np.sin(slender - q) * a["rate"] ** 2)
         y = radius * (np.sin(slender - q) * side * a["acceleration"] - np.cos(slender - q) * a["rate"] ** 2)
@@ -285,13 +260,7 @@ def histories_of_rocking_by_hand(deck: Deck, motion: Deck, within: float) -> Non
 
 STACK = (
     {
-        "structure": {
-            "kind": "stack",
-            "lower_width": 0.6,
-            "lower_height": 0.68,
-            "upper_width": 0.3,
-            "upper_height": 0.926,
-        },
+        "structure": {"kind": "stack", "lower_width": 0.6, "lower_height": 0.68, "upper_width": 0.3, "upper_height": 0.926},
         "joints": {"friction": 0.6},
     },
     {"kind": "sine-pulse", "amplitude": "0.655 g", "period": 0.96},
@@ -311,22 +280,27 @@ def impacts_of_stacks_lose_energy(deck: Deck, motion: Deck, within: float) -> No
 def tables_of_levels(deck: Deck, motion: Deck, turned: bool, within: float) -> None:
     """Tables and arrays of levels hold what the results do; curves are the most likely, by another optimiser; first collapses by rows."""
     levels = [1.4, 0.3, 0.7] if turned else [0.3, 0.7, 1.4]
-    answer = ask(
-        changed(deck, motion={**motion, "mmi": 9}), "fragility", count=8, bootstrap=0, levels=levels, intensity="pga"
-    )
+    answer = ask(changed(deck, motion={**motion, "mmi": 9}), "fragility", count=8, bootstrap=0, levels=levels, intensity="pga")
     ok(answer)
     r, a = answer.results, _arrays(answer)
     rows, table = answer.result.tables["ensemble"].columns, answer.result.tables["fragility"].columns
-    names = {"level": r.levels, "count": r.count, "uplifted": r.uplifted, "collapsed": r.collapsed, "collapse_probability": r.collapse_probability,
-             "uplift_probability": r.uplift_probability, "lower": [x[0] for x in r.confidence_interval], "upper": [x[1] for x in r.confidence_interval],
-             "uplift_lower": [x[0] for x in r.uplift_confidence_interval], "uplift_upper": [x[1] for x in r.uplift_confidence_interval]}  # fmt: skip
+    names = {
+        "level": r.levels,
+        "count": r.count,
+        "uplifted": r.uplifted,
+        "collapsed": r.collapsed,
+        "collapse_probability": r.collapse_probability,
+        "uplift_probability": r.uplift_probability,
+        "lower": [x[0] for x in r.confidence_interval],
+        "upper": [x[1] for x in r.confidence_interval],
+        "uplift_lower": [x[0] for x in r.uplift_confidence_interval],
+        "uplift_upper": [x[1] for x in r.uplift_confidence_interval],
+    }
     for name, values in names.items():
         near(name, table[name], values, within, 1e-6)
         near(name, a[f"stripe_{name}"], values, within, 1e-6)
     must(list(rows["motion"]) == [k // 3 + 1 for k in range(24)], f"motions {rows['motion']}")
-    fell = np.array(
-        [[rows["outcome"][3 * k + levels.index(x)] == "collapse" for x in sorted(levels)] for k in range(8)]
-    )
+    fell = np.array([[rows["outcome"][3 * k + levels.index(x)] == "collapse" for x in sorted(levels)] for k in range(8)])
     own = answer.result.tables["incremental"].columns
     must(list(own["motion"]) == list(range(1, 9)), f"motions {own['motion']}")
     first = [sorted(levels)[int(row.argmax())] if row.any() else np.nan for row in fell]
@@ -363,7 +337,12 @@ def tables_of_levels(deck: Deck, motion: Deck, turned: bool, within: float) -> N
     near("median acceleration", r.median_pga_g, r.levels, 1e-4)
 
 
-@relation("", st.tuples(st.integers(1, 5), st.integers(1, 5), number(0.0, 0.4, 9), number(0.6, 1.0, 9), st.integers(2, 4), st.integers(1, 3)), 1e-12, share=2.0)  # fmt: skip
+@relation(
+    "",
+    st.tuples(st.integers(1, 5), st.integers(1, 5), number(0.0, 0.4, 9), number(0.6, 1.0, 9), st.integers(2, 4), st.integers(1, 3)),
+    1e-12,
+    share=2.0,
+)
 def medians_of_two_halves(pieces: int, each: int, low: float, high: float, bins: int, few: int, within: float) -> None:
     """A median whose two middle values lie far apart is their mean, wherever the pieces are cut."""
     count = pieces * each
@@ -391,9 +370,6 @@ def an_assessment_ends_at_its_time_limit(deck: Deck, within: float) -> None:
     finally:
         driver.STOPPED_AFTER = kept
     ok(whole, brief)
-    must(
-        all(row.status == "ok" for row in whole.results.verdicts if row.strategy in ("tilt", "dem")),
-        f"{whole.results.verdicts}",
-    )
+    must(all(row.status == "ok" for row in whole.results.verdicts if row.strategy in ("tilt", "dem")), f"{whole.results.verdicts}")
     left = {row.strategy: row for row in brief.results.verdicts}
     must(left["dem"].status == "left out" and "time limit" in left["dem"].reason, f"{left['dem']}")

@@ -8,19 +8,7 @@ from bounds import SOLE
 from buildings import SOLIDS, changed, decks, number, pulses
 from hypothesis import reject
 from hypothesis import strategies as st
-from relations import (
-    MASONRY,
-    PUSH,
-    RECTANGLES,
-    RIGID,
-    SLIDERS,
-    SLIDES,
-    STONES,
-    WEAK,
-    WEAK_SET,
-    ok,
-    relation,
-)
+from relations import MASONRY, PUSH, RECTANGLES, RIGID, SLIDERS, SLIDES, STONES, WEAK, WEAK_SET, ok, relation
 
 import extrados
 
@@ -30,75 +18,55 @@ def rocking_of_a_block_that_slides(deck: Deck, within: float) -> None:
     """What slides before it rocks does not rock: no plain verdict by rocking."""
     moving = changed(deck, motion={"kind": "sine-pulse", "amplitude": "1.5 g", "period": 0.6})
     answer = ask(moving, "rocking")
-    must(
-        answer.outcome not in ("stands", "collapses"),
-        f"rocking says {answer.outcome}: {answer.verdict and answer.verdict.statement}",
-    )
+    must(answer.outcome not in ("stands", "collapses"), f"rocking says {answer.outcome}: {answer.verdict and answer.verdict.statement}")
 
 
-DROPPED = (
-    "fragility",
-    "failure-domain",
-    "failure-curves",
-    "rocking-spectrum",
-    "harmonic-map",
-    "resonance",
-    "assessment",
-)
+DROPPED = ("fragility", "failure-domain", "failure-curves", "rocking-spectrum", "harmonic-map", "resonance", "assessment")
 
 
 TALL = {"structure": {"kind": "block", "width": 1.0, "height": 2.0}, "joints": {"friction": 0.3}}
 
 
-@relation(
-    " ".join(DROPPED),
-    st.tuples(RECTANGLES, st.sampled_from(DROPPED)),
-    0.0,
-    examples=tuple(((1.0, 2.0), k) for k in DROPPED[:2]),
-)
+@relation(" ".join(DROPPED), st.tuples(RECTANGLES, st.sampled_from(DROPPED)), 0.0, examples=tuple(((1.0, 2.0), k) for k in DROPPED[:2]))
 def friction_is_not_dropped(size: tuple, kind: str, within: float) -> None:
     """Where friction is less than rocking needs, every strategy that rests on rocking says so."""
     width, height = size
     friction = round(0.6 * width / height, 4)
     deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": friction}}
     keys: dict[str, dict] = {
-        "fragility": {"count": 4, "bootstrap": 0}, "failure-domain": {"durations": [0.5], "amplitudes": 2, "accuracy": 0.05},
-        "failure-curves": {"durations": [0.4, 0.8], "accuracy": 0.05}, "rocking-spectrum": {"periods": [2.0, 4.0]},
-        "harmonic-map": {"amplitudes": 3, "frequencies": [0.5, 1.0]}, "resonance": {}, "assessment": {"impulses": 1},
-    }  # fmt: skip
+        "fragility": {"count": 4, "bootstrap": 0},
+        "failure-domain": {"durations": [0.5], "amplitudes": 2, "accuracy": 0.05},
+        "failure-curves": {"durations": [0.4, 0.8], "accuracy": 0.05},
+        "rocking-spectrum": {"periods": [2.0, 4.0]},
+        "harmonic-map": {"amplitudes": 3, "frequencies": [0.5, 1.0]},
+        "resonance": {},
+        "assessment": {"impulses": 1},
+    }
     if kind != "resonance":
-        deck["motion"] = (
-            WEAK_SET | {"mmi": 8} if kind == "fragility" else {"kind": "sine-pulse", "amplitude": "1 g", "period": 0.6}
-        )
+        deck["motion"] = WEAK_SET | {"mmi": 8} if kind == "fragility" else {"kind": "sine-pulse", "amplitude": "1 g", "period": 0.6}
     if kind in ("failure-domain", "harmonic-map"):
         del deck["motion"]
     if kind == "assessment":
         deck["structure"] = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
         deck["joints"] = {"friction": 0.3}
     answer = ask(deck, kind, **keys[kind])
-    said = " ".join(
-        [answer.said, *(answer.verdict.violated if answer.verdict is not None else []), *answer.result.warnings]
-    )
+    said = " ".join([answer.said, *(answer.verdict.violated if answer.verdict is not None else []), *answer.result.warnings])
     must("friction" in said.replace("joints.friction", ""), f"{kind} says nothing of a friction of {friction}")
 
 
 @relation(
-    "rocking", st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5)), 0.0,
+    "rocking",
+    st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5)),
+    0.0,
     examples=((1.005, 5.01, 1.0525, 1.625), (1.15, 4.62, 1.165, 1.725)),
-)  # fmt: skip
+)
 def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency: float, within: float) -> None:
     """Where amplitudes 1e-5 g apart end otherwise, every run from the first turn to the last says that last digits decide."""
     deck = {"structure": {"kind": "block", "width": width, "height": width * slenderness}, "joints": {"friction": 0.9}}
     runs = [
         ask(
             changed(
-                deck,
-                motion={
-                    "kind": "harmonic",
-                    "amplitude": f"{amplitude + k * 1e-5!r} g",
-                    "frequency": frequency,
-                    "duration": 10.0,
-                },
+                deck, motion={"kind": "harmonic", "amplitude": f"{amplitude + k * 1e-5!r} g", "frequency": frequency, "duration": 10.0}
             ),
             "rocking",
         )
@@ -119,31 +87,29 @@ def little_damping(deck: Deck, ratio: float, within: float) -> None:
     must(answer.status == "ok", f"{answer.status}: {answer.said}")
 
 
-@relation("pushover", decks("building", material=MASONRY).map(lambda d: changed(d, motion=WEAK)), 0.0, examples=(
-    changed({k: v for k, v in SOLE.items() if k != "joints"}, motion=WEAK, structure={"beds": []}),
-))  # fmt: skip
+@relation(
+    "pushover",
+    decks("building", material=MASONRY).map(lambda d: changed(d, motion=WEAK)),
+    0.0,
+    examples=(changed({k: v for k, v in SOLE.items() if k != "joints"}, motion=WEAK, structure={"beds": []}),),
+)
 def a_push_is_no_verdict_on_a_peak(deck: Deck, within: float) -> None:
     """A base shear over the weight is not compared with the peak of a motion."""
     answer = ask(deck, "pushover", **PUSH)
     ok(answer)
-    must(
-        answer.outcome not in ("stands", "collapses") and answer.verdict.ratio is None,
-        f"{answer.outcome}: {answer.verdict.statement}",
-    )
+    must(answer.outcome not in ("stands", "collapses") and answer.verdict.ratio is None, f"{answer.outcome}: {answer.verdict.statement}")
 
 
-@relation("failure-domain rocking", st.tuples(number(1.0, 8.0), number(0.1, 0.12), number(170.0, 180.0)), 0.0, share=0.3, examples=(
-    (1.0, 0.1, 175.0),
-))  # fmt: skip
+@relation(
+    "failure-domain rocking",
+    st.tuples(number(1.0, 8.0), number(0.1, 0.12), number(170.0, 180.0)),
+    0.0,
+    share=0.3,
+    examples=((1.0, 0.1, 175.0),),
+)
 def the_impact_rule_is_told(radius: float, share: float, embrace: float, within: float) -> None:
     """A failure domain of a thin arch says as much of the impact rule as rocking does."""
-    arch = {
-        "kind": "arch",
-        "radius": radius,
-        "thickness": round(share * radius, 4),
-        "embrace": embrace,
-        "voussoirs": 36,
-    }
+    arch = {"kind": "arch", "radius": radius, "thickness": round(share * radius, 4), "embrace": embrace, "voussoirs": 36}
     deck = {"structure": arch, "motion": {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.4}}
     one = ask(deck, "rocking", hand_over=False)  # rigid contacts have one rule of impact
     other = ask({"structure": arch}, "failure-domain", durations=[0.4], amplitudes=2, accuracy=0.05, hand_over_cells=0)
@@ -165,14 +131,21 @@ def clauses_within_their_scope(thickness: float, height: float, mechanism: str, 
     answer = ask({"code": {"jurisdiction": "ASCE41"}}, "local-mechanism", **keys)
     ok(answer)
     check = answer.results.checks["ASCE 41 slenderness"]
-    must(
-        check.verdict == "not-applicable" and check.reason, f"{check.demand} against {check.capacity}: {check.verdict}"
-    )
+    must(check.verdict == "not-applicable" and check.reason, f"{check.demand} against {check.capacity}: {check.verdict}")
 
 
-@relation("tilt", decks("brickwork", "blocks", friction=number(0.2, 0.5)), 0.0, share=0.5, examples=(
-    {"structure": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 4, "courses": 5}, "joints": {"friction": 0.3}},
-))  # fmt: skip
+@relation(
+    "tilt",
+    decks("brickwork", "blocks", friction=number(0.2, 0.5)),
+    0.0,
+    share=0.5,
+    examples=(
+        {
+            "structure": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 4, "courses": 5},
+            "joints": {"friction": 0.3},
+        },
+    ),
+)
 def dilatant_capacities_are_called_so(deck: Deck, within: float) -> None:
     """Where the mechanism of an associated limit slides, its verdict is an upper bound, or takes the state without dilatancy."""
     answer = ask(changed(deck, motion=WEAK), "tilt")
@@ -194,17 +167,22 @@ def dilatant_capacities_are_called_so(deck: Deck, within: float) -> None:
 
 #: Analyses of a stone building with a motion, quick
 PLAIN: dict[str, dict[str, Any]] = {
-    "tilt": {}, "thrust": {}, "rocking": {}, "dem": {"end_time": 0.3, **RIGID}, "local-mechanism": {"mechanism": "building"},
-    "failure-domain": {"durations": [0.5], "amplitudes": 2, "accuracy": 0.05}, "assessment": {"impulses": 1}, "sla": {"events": 30},
-    "moving-load": {"count": 5}, "supports": {},
-}  # fmt: skip
+    "tilt": {},
+    "thrust": {},
+    "rocking": {},
+    "dem": {"end_time": 0.3, **RIGID},
+    "local-mechanism": {"mechanism": "building"},
+    "failure-domain": {"durations": [0.5], "amplitudes": 2, "accuracy": 0.05},
+    "assessment": {"impulses": 1},
+    "sla": {"events": 30},
+    "moving-load": {"count": 5},
+    "supports": {},
+}
 
 
 @relation(
     " ".join(PLAIN),
-    st.tuples(
-        decks("arch", "block", "column", "brickwork", "pointed-arch", "frame"), pulses(), st.sampled_from(sorted(PLAIN))
-    ),
+    st.tuples(decks("arch", "block", "column", "brickwork", "pointed-arch", "frame"), pulses(), st.sampled_from(sorted(PLAIN))),
     1e-9,
 )
 def verdicts_are_whole(deck: Deck, motion: Deck, kind: str, within: float) -> None:
@@ -212,28 +190,18 @@ def verdicts_are_whole(deck: Deck, motion: Deck, kind: str, within: float) -> No
     answer = ask(changed(deck, motion=motion), kind, **PLAIN[kind])
     ok(answer)
     v = answer.verdict
-    must(
-        bool(v.statement.strip()) and v.statement.strip()[-1] in ".!",
-        f"{kind}: a statement without an end: {v.statement!r}",
-    )
+    must(bool(v.statement.strip()) and v.statement.strip()[-1] in ".!", f"{kind}: a statement without an end: {v.statement!r}")
     must(not (v.violated and answer.outcome == "stands"), f"{kind} stands though {v.violated}")
     must(not (v.bound == "upper" and answer.outcome == "stands"), f"{kind} stands by an upper bound")
     if v.demand is not None and v.capacity is not None:
         if v.ratio is not None and answer.outcome != "cannot-stand":
             near(f"{kind}: ratio", v.ratio, v.capacity / v.demand, within)
         if answer.outcome in ("stands", "collapses") and v.ratio is not None:
-            must(
-                (v.ratio > 1.0) == (answer.outcome == "stands"),
-                f"{kind}: {answer.outcome} at a ratio of {v.ratio}: {v.statement}",
-            )
+            must((v.ratio > 1.0) == (answer.outcome == "stands"), f"{kind}: {answer.outcome} at a ratio of {v.ratio}: {v.statement}")
         must(not v.unit or v.unit in v.statement, f"{kind}: no '{v.unit}' in {v.statement!r}")
 
 
-@relation(
-    "tilt sla rocking dem local-mechanism",
-    st.tuples(STONES, pulses(), st.sampled_from(sorted(PLAIN))),
-    0.0,
-)
+@relation("tilt sla rocking dem local-mechanism", st.tuples(STONES, pulses(), st.sampled_from(sorted(PLAIN))), 0.0)
 def nobody_dies(deck: Deck, motion: Deck, kind: str, within: float) -> None:
     """Every strategy answers, or refuses in words: internal errors are faults of the program (`ask` sees to it)."""
     keys = dict(PLAIN[kind])
@@ -250,16 +218,11 @@ def nobody_dies(deck: Deck, motion: Deck, kind: str, within: float) -> None:
 @relation("assess", st.tuples(decks("block", "stack", "arch", "column"), pulses(0.05, 0.6)), 0.0, share=0.1)
 def an_assessment_is_whole(deck: Deck, motion: Deck, within: float) -> None:
     """Each strategy has a row, and one that refuses ends nothing."""
-    answer = ask(
-        changed(deck, motion=motion), "assess", budget=5.0, strategies=["tilt", "rocking", "code-checks", "assessment"]
-    )
+    answer = ask(changed(deck, motion=motion), "assess", budget=5.0, strategies=["tilt", "rocking", "code-checks", "assessment"])
     must(answer.status == "ok", f"{answer.status}: {answer.said}")
     rows = {row.strategy: row for row in answer.results.verdicts}
     must(set(rows) >= {"tilt", "rocking"}, f"rows of {sorted(rows)}")
     for name in ("tilt", "rocking"):
         alone = ask(changed(deck, motion=motion), name)
         if rows[name].status == "ok":
-            must(
-                rows[name].outcome == alone.verdict.outcome,
-                f"{name}: {rows[name].outcome} in the table, {alone.verdict.outcome} alone",
-            )
+            must(rows[name].outcome == alone.verdict.outcome, f"{name}: {rows[name].outcome} in the table, {alone.verdict.outcome} alone")

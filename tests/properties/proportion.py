@@ -9,20 +9,7 @@ from asking import Answer, Deck, ask, must, near, same
 from buildings import MESH, ROCKING, changed, decks, number, pulses, scaled
 from hypothesis import reject
 from hypothesis import strategies as st
-from relations import (
-    EARTHQUAKES,
-    GRAVITY,
-    INTERVAL,
-    MASONRY,
-    RIGID,
-    SCALES,
-    SLOW,
-    STONES,
-    ok,
-    recorded,
-    relation,
-    statics,
-)
+from relations import EARTHQUAKES, GRAVITY, INTERVAL, MASONRY, RIGID, SCALES, SLOW, STONES, ok, recorded, relation, statics
 
 
 @relation("rocking", st.tuples(decks(*ROCKING), pulses(0.1, 1.2), SCALES), 1e-4)
@@ -50,13 +37,7 @@ def similitude_of_elements(deck: Deck, motion: Deck, factor: float, within: floa
     other = ask(there, "dem", **{**keys, **{k: keys[k] * root for k in ("end_time", "time_step", "output_step")}})
     ok(one, other)
     same("scaled", one, other)
-    near(
-        "peak displacement",
-        one.results.peak_displacement_m * factor,
-        other.results.peak_displacement_m,
-        within,
-        1e-3 * factor,
-    )
+    near("peak displacement", one.results.peak_displacement_m * factor, other.results.peak_displacement_m, within, 1e-3 * factor)
 
 
 @relation("tilt local-mechanism", st.tuples(STONES, SCALES), 1e-5)
@@ -77,9 +58,16 @@ def codes_of_another_size(deck: Deck, factor: float, within: float) -> None:
     ok(*answers)
     one, other = (a.results for a in answers)
     for name, power in (
-        ("multiplier", 0.0), ("participating_part", 0.0), ("activation_acceleration_g", 0.0), ("zero_displacement_m", 1.0),
-        ("ultimate_displacement_m", 1.0), ("collapse_displacement_m", 1.0), ("equivalent_period_s", 0.5), ("swaying_weight_N", None), ("participating_mass_kg", None),
-    ):  # fmt: skip
+        ("multiplier", 0.0),
+        ("participating_part", 0.0),
+        ("activation_acceleration_g", 0.0),
+        ("zero_displacement_m", 1.0),
+        ("ultimate_displacement_m", 1.0),
+        ("collapse_displacement_m", 1.0),
+        ("equivalent_period_s", 0.5),
+        ("swaying_weight_N", None),
+        ("participating_mass_kg", None),
+    ):
         a, b = getattr(one, name), getattr(other, name)
         if a is None or b is None:
             must(a is b, f"{name}: {a} against {b}")
@@ -128,9 +116,7 @@ def a_factor_on_the_motion(deck: Deck, motion: Deck, factor: float, within: floa
     plain = ask(changed(deck, motion={**motion, "factor": 1.0}), "fragility", count=8, bootstrap=0)
     ok(levels, plain)
     at_one = levels.results.collapsed[levels.results.levels.index(1.0)]
-    must(
-        at_one == plain.results.collapsed, f"{at_one} of a set at level 1 against {plain.results.collapsed} of the set"
-    )
+    must(at_one == plain.results.collapsed, f"{at_one} of a set at level 1 against {plain.results.collapsed} of the set")
 
 
 @relation("rocking", st.tuples(decks(*ROCKING), pulses(0.1, 1.2)), 1e-4)
@@ -144,9 +130,7 @@ def a_finer_integrator(deck: Deck, motion: Deck, within: float) -> None:
     near("peak rotation", one.results.peak_rotation_ratio, other.results.peak_rotation_ratio, within, 1e-4)
 
 
-@relation(
-    "dem", st.tuples(decks("block", "column"), st.sampled_from([0.001, 0.002])), 0.01, share=0.15, exception=INTERVAL
-)
+@relation("dem", st.tuples(decks("block", "column"), st.sampled_from([0.001, 0.002])), 0.01, share=0.15, exception=INTERVAL)
 def half_the_time_step(deck: Deck, step: float, within: float) -> None:
     """Rigid contacts under a slow tilt, in steps half as long."""
     one, other = (ask(deck, "dem", **{**SLOW, "time_step": s}) for s in (step, 0.5 * step))
@@ -188,31 +172,26 @@ PIERS = st.tuples(number(0.8, 3.0), number(2.0, 4.0), number(0.2, 0.6), number(1
 
 
 @relation("code-checks", PIERS, 1e-6)
-def strengths_of_piers_in_proportion(
-    width: float, height: float, thickness: float, load: float, factor: float, within: float
-) -> None:
+def strengths_of_piers_in_proportion(width: float, height: float, thickness: float, load: float, factor: float, within: float) -> None:
     """Forces and strengths times f give capacities times f; so does the thickness with the force."""
     strengths = {"compressive_strength": 4e6, "tensile_strength": 1e5, "fracture_energy": 50.0, "density": 0.0}
 
     def pier(thick: float, f: float, force: float) -> Answer:
         material = {k: v * f for k, v in strengths.items()}
         return ask(
-            {"structure": {"kind": "panel", "width": width, "height": height, "thickness": thick}, "material": material,
-             "joints": {"cohesion": 1e5 * f, "friction": 0.4}},
-            "code-checks", axial_load=force,
-        )  # fmt: skip
+            {
+                "structure": {"kind": "panel", "width": width, "height": height, "thickness": thick},
+                "material": material,
+                "joints": {"cohesion": 1e5 * f, "friction": 0.4},
+            },
+            "code-checks",
+            axial_load=force,
+        )
 
-    one, other, thick = (
-        pier(thickness, 1.0, load),
-        pier(thickness, factor, load * factor),
-        pier(thickness * factor, 1.0, load * factor),
-    )
+    one, other, thick = (pier(thickness, 1.0, load), pier(thickness, factor, load * factor), pier(thickness * factor, 1.0, load * factor))
     ok(one, other, thick)
     for name, check in one.results.checks.items():
-        must(
-            (check.capacity is None) == (thick.results.checks[name].capacity is None),
-            f"{name}: applies to one pier alone",
-        )
+        must((check.capacity is None) == (thick.results.checks[name].capacity is None), f"{name}: applies to one pier alone")
         if check.unit == "N" and check.capacity is not None:
             near(name, check.capacity * factor, thick.results.checks[name].capacity, within, 1.0)
             if "ASCE" not in check.code and "psi" not in check.source:

@@ -93,17 +93,25 @@ def filled(there: Any) -> Any:
 
 #: Of results: what depends on the way to the answer, on the order of what is equal, or on which of many lines of thrust it is
 OF_THE_WAY = (
-    "gap", "residual", "joint", "hinge", "touching", "steps", "factor_bytes", "opening_contacts", "fastest", "sliding", "reactions",
+    "gap",
+    "residual",
+    "joint",
+    "hinge",
+    "touching",
+    "steps",
+    "factor_bytes",
+    "opening_contacts",
+    "fastest",
+    "sliding",
+    "reactions",
     "required_friction",
-)  # fmt: skip
+)
 
 
 def alike(told: str, one: Answer, other: Answer, within: float) -> None:
     """Two answers have the same outcome and the same numbers; words and counts of work may differ."""
     same(told, one, other)
-    a, b = (
-        {k: v for k, v in _flat(x.numbers).items() if not any(word in k for word in OF_THE_WAY)} for x in (one, other)
-    )
+    a, b = ({k: v for k, v in _flat(x.numbers).items() if not any(word in k for word in OF_THE_WAY)} for x in (one, other))
     must(set(a) == set(b), f"{told}: other results: {sorted(set(a) ^ set(b))}")
     scale: dict[str, float] = {}  # of all numbers of one unit: one of them may be what is left of a sum
     for name, value in a.items():
@@ -167,7 +175,7 @@ RECTANGLES = st.tuples(number(0.2, 2.0), number(1.5, 8.0)).map(lambda t: (t[0], 
 
 SLIDERS = st.tuples(number(0.5, 2.0), number(0.3, 0.9), number(0.1, 0.5)).map(
     lambda t: {"structure": {"kind": "block", "width": t[0], "height": float(f"{t[0] * t[1]:.4g}")}, "joints": {"friction": round(t[2], 4)}}
-)  # fmt: skip
+)
 
 
 SLIDES = {"structure": {"kind": "block", "width": 0.5, "height": 0.3}, "joints": {"friction": 0.2}}

@@ -53,26 +53,32 @@ def shares_counted_again(deck: Deck, keys: Deck, within: float) -> None:
     r, rows = answer.results, {k: np.asarray(v) for k, v in answer.result.tables["ensemble"].columns.items()}
     levels = r.levels if "levels" in keys else [None]
     must(list(levels) == sorted(levels) if "levels" in keys else True, f"levels {levels}")
-    must(
-        len(rows["member"]) == keys["count"] * len(levels)
-        and list(rows["member"]) == list(range(1, len(rows["member"]) + 1)),
-        "members",
-    )
+    must(len(rows["member"]) == keys["count"] * len(levels) and list(rows["member"]) == list(range(1, len(rows["member"]) + 1)), "members")
     start = deck.get("initial", {}).get("rotation_ratio", 0.0)
     near("start", r.initial_rotation_ratio, start, within, 1e-3)
     for k, level in enumerate(levels):
         at = np.ones(len(rows["member"]), bool) if level is None else rows["level"] == level
         here = {name: column[at] for name, column in rows.items()}
-        got = {name: getattr(r, name) if level is None else getattr(r, name)[k] for name in (
-            "count", "collapsed", "collapse_probability", "confidence_interval", "uplifted", "uplift_probability", "uplift_confidence_interval",
-            "mean_peak_rotation_ratio", "deviation_peak_rotation_ratio", "median_peak_rotation_ratio", "median_pga_g")}  # fmt: skip
+        got = {
+            name: getattr(r, name) if level is None else getattr(r, name)[k]
+            for name in (
+                "count",
+                "collapsed",
+                "collapse_probability",
+                "confidence_interval",
+                "uplifted",
+                "uplift_probability",
+                "uplift_confidence_interval",
+                "mean_peak_rotation_ratio",
+                "deviation_peak_rotation_ratio",
+                "median_peak_rotation_ratio",
+                "median_pga_g",
+            )
+        }
         down = here["outcome"] == "collapse"
         ratio = np.where(down, 1.0, np.minimum(here["peak_ratio"], 1.0))
         rose = here["outcome"] != "no-hinging" if not start else here["peak_ratio"] > abs(start) * (1.0 + 1e-9)
-        must(
-            (got["count"], got["collapsed"], got["uplifted"]) == (len(down), down.sum(), rose.sum()),
-            f"{got} of {here['outcome']}",
-        )
+        must((got["count"], got["collapsed"], got["uplifted"]) == (len(down), down.sum(), rose.sum()), f"{got} of {here['outcome']}")
         near("share", [got["collapse_probability"], got["uplift_probability"]], [down.mean(), rose.mean()], within)
         for name, hits in (("confidence_interval", down.sum()), ("uplift_confidence_interval", rose.sum())):
             ends = binomtest(int(hits), len(down)).proportion_ci(keys["confidence"], "wilson")
@@ -82,9 +88,7 @@ def shares_counted_again(deck: Deck, keys: Deck, within: float) -> None:
         near("median", got["median_peak_rotation_ratio"], np.median(ratio), within, 1e-3)
         near("median peak acceleration", got["median_pga_g"], np.median(here["pga"]), within)
         if level is None:
-            counts = np.histogram(np.minimum(here["peak_ratio"][~down], 1.0), np.linspace(0.0, 1.0, keys["bins"] + 1))[
-                0
-            ]
+            counts = np.histogram(np.minimum(here["peak_ratio"][~down], 1.0), np.linspace(0.0, 1.0, keys["bins"] + 1))[0]
             must(list(np.asarray(answer.result.arrays["bin_count"].data)) == list(counts), "bins")
             near("velocity", r.median_pgv_m_s, np.median(here["pgv"]), within)
             near("Arias", r.median_arias_m_s, np.median(here["arias"]), within)
@@ -96,15 +100,15 @@ def shares_counted_again(deck: Deck, keys: Deck, within: float) -> None:
         else:
             unit = r.uplift_acceleration_g
             slow = 1.0 / _rate(deck)
-            reached = {"pga": here["pga"], "scale": here["scale"], "arias": here["arias"], "pga-ratio": here["pga"] / unit,
-                       "pgv-ratio": here["pgv"] / (unit * GRAVITY * slow) if slow else None}[keys["intensity"]]  # fmt: skip
+            reached = {
+                "pga": here["pga"],
+                "scale": here["scale"],
+                "arias": here["arias"],
+                "pga-ratio": here["pga"] / unit,
+                "pgv-ratio": here["pgv"] / (unit * GRAVITY * slow) if slow else None,
+            }[keys["intensity"]]
             if reached is not None:
-                near(
-                    "level reached",
-                    reached,
-                    np.full(len(down), level),
-                    1e-4 if keys["intensity"] != "pga-ratio" else 1e-3,
-                )
+                near("level reached", reached, np.full(len(down), level), 1e-4 if keys["intensity"] != "pga-ratio" else 1e-3)
             for percent in (16, 50, 84):
                 want = np.quantile(np.where(down, np.inf, here["peak_ratio"]), percent / 100.0, method="inverted_cdf")
                 found = getattr(r, f"peak_rotation_ratio_{percent}")[k]
@@ -114,8 +118,7 @@ def shares_counted_again(deck: Deck, keys: Deck, within: float) -> None:
         fell = (rows["outcome"] == "collapse").reshape(keys["count"], -1)[:, np.argsort(rows["level"][: len(levels)])]
         must(r.motions_that_collapse == fell.any(axis=1).sum(), f"{r.motions_that_collapse} motions of {fell}")
         must(
-            r.resurrections
-            == sum(bool(row[row.argmax() :].size and not row[row.argmax() :].all()) for row in fell if row.any()),
+            r.resurrections == sum(bool(row[row.argmax() :].size and not row[row.argmax() :].all()) for row in fell if row.any()),
             f"{r.resurrections} of {fell}",
         )
 
@@ -155,10 +158,7 @@ def medians_of_pieces(pieces: list, few: int, bins: int, hits: int, more: int, w
     one = summaries.shares(outcome, np.linspace(0.0, 1.5, len(outcome)), 0.9, 0.0)
     two = summaries.shares_of(
         lambda: iter(
-            [
-                (outcome[:half], np.linspace(0.0, 1.5, len(outcome))[:half]),
-                (outcome[half:], np.linspace(0.0, 1.5, len(outcome))[half:]),
-            ]
+            [(outcome[:half], np.linspace(0.0, 1.5, len(outcome))[:half]), (outcome[half:], np.linspace(0.0, 1.5, len(outcome))[half:])]
         ),
         0.9,
         0.0,
@@ -175,9 +175,7 @@ def plans(draw: st.DrawFn) -> Deck:
     corners = [[0.0, 0.0], [a, 0.0], [a, b], [0.0, b]]
     walls: list[Deck] = []
     for k, name in enumerate(("south", "east", "north", "west")):
-        walls.append(
-            {"name": name, "start": corners[k], "end": corners[(k + 1) % 4], "thickness": draw(number(0.25, 0.6, 7))}
-        )
+        walls.append({"name": name, "start": corners[k], "end": corners[(k + 1) % 4], "thickness": draw(number(0.25, 0.6, 7))})
     if draw(st.booleans()):
         walls[0]["openings"] = [{"storey": draw(st.integers(1, len(storeys))), "x": [0.8, 1.6], "z": [0.5, 2.0]}]
     deck: Deck = {"kind": "building", "storeys": storeys, "walls": walls}
@@ -219,9 +217,7 @@ def walls_of_a_plan_by_hand(deck: Deck, within: float) -> None:
                 bears = floor.get("bears_on") or [w["name"] for w in s["walls"]]
                 if floor["storey"] > first and wall["name"] in bears:
                     around = sum(math.dist(w["start"], w["end"]) for w in s["walls"] if w["name"] in bears)
-                    area = math.dist(s["walls"][0]["start"], s["walls"][0]["end"]) * math.dist(
-                        s["walls"][1]["start"], s["walls"][1]["end"]
-                    )
+                    area = math.dist(s["walls"][0]["start"], s["walls"][0]["end"]) * math.dist(s["walls"][1]["start"], s["walls"][1]["end"])
                     loads.append((floor["load"] * area * length / around, levels[floor["storey"]] - levels[first]))
             want[wall["name"], first + 1] = (
                 0.5 * t * sum(w for w, _ in loads) / sum(w * z for w, z in loads),
@@ -262,11 +258,7 @@ def a_wall_beside_stops_one_side(deck: Deck, lean: float, side: str, within: flo
     codes = ask(beside, "local-mechanism", mechanism="building")
     if codes.answers:
         near("codes", codes.results.multiplier, free, within)
-    rocks = ask(
-        changed(beside, motion={"kind": "sine-pulse", "amplitude": f"{1.3 * free:.4g} g", "period": 0.4}),
-        "rocking",
-        end_time=1.0,
-    )
+    rocks = ask(changed(beside, motion={"kind": "sine-pulse", "amplitude": f"{1.3 * free:.4g} g", "period": 0.4}), "rocking", end_time=1.0)
     if rocks.answers:
         near("rocking", rocks.results.uplift_acceleration_g, free, within)
         rotation = np.asarray(rocks.result.arrays["rotation"].data) * {"left": 1.0, "right": -1.0}[side]
@@ -277,14 +269,8 @@ def a_wall_beside_stops_one_side(deck: Deck, lean: float, side: str, within: flo
         near("without a wall", bare.results.multiplier, min(right, left), within)
 
 
-@relation(
-    "tilt thrust",
-    st.tuples(asymmetric("tilt"), number(0.1, 0.5), number(0.6, 0.9), number(0.2, 0.8), st.booleans()),
-    1e-6,
-)
-def spread_loads_are_their_parts(
-    question: tuple, low: float, high: float, share: float, sways: bool, within: float
-) -> None:
+@relation("tilt thrust", st.tuples(asymmetric("tilt"), number(0.1, 0.5), number(0.6, 0.9), number(0.2, 0.8), st.booleans()), 1e-6)
+def spread_loads_are_their_parts(question: tuple, low: float, high: float, share: float, sways: bool, within: float) -> None:
     """A load spread over a stretch is two over its parts, in proportion to their lengths; and one at a point its two halves there."""
     deck = changed(question[0], joints={"friction": "no-sliding"})
     deck.pop("ties", None)
@@ -292,60 +278,42 @@ def spread_loads_are_their_parts(
     ends = [round(float(x.min() + s * np.ptp(x)), 4) for s in (low, low + share * (high - low), high)]
     weight = float(building(deck).blocks().mass.sum()) * GRAVITY
     force = float(f"{0.2 * weight:.4g}")
-    parts = [{"x": a, "x_end": b, "force": force * (b - a) / (ends[2] - ends[0]), "horizontal": 0.02 * force * (b - a) / (ends[2] - ends[0]), "sways": sways}
-             for a, b in itertools.pairwise(ends)]  # fmt: skip
+    parts = [
+        {
+            "x": a,
+            "x_end": b,
+            "force": force * (b - a) / (ends[2] - ends[0]),
+            "horizontal": 0.02 * force * (b - a) / (ends[2] - ends[0]),
+            "sways": sways,
+        }
+        for a, b in itertools.pairwise(ends)
+    ]
     whole = {"x": ends[0], "x_end": ends[2], "force": force, "horizontal": 0.02 * force, "sways": sways}
     one, two = ask(deck, "tilt", load=[whole]), ask(deck, "tilt", load=parts)
     ok(one, two)
     near("spread", one.capacity, two.capacity, 0.03, 0.1)  # its pieces act at their middles
-    fine = ask(
-        deck,
-        "tilt",
-        load=[{**p, "force": 0.5 * p["force"], "horizontal": 0.5 * p["horizontal"]} for p in parts for _ in range(2)],
-    )
+    fine = ask(deck, "tilt", load=[{**p, "force": 0.5 * p["force"], "horizontal": 0.5 * p["horizontal"]} for p in parts for _ in range(2)])
     near("halves", two.capacity, fine.capacity, within, 1e-2)
     up = sum(row.vertical_N for row in one.results.reactions)
     near("reactions", up, weight + force, within)
     along = sum(row.horizontal_N for row in one.results.reactions)
-    near(
-        "push",
-        abs(along),
-        abs(one.capacity[0] * (weight + (force if sways else 0.0)) + 0.02 * force),
-        1e-5,
-        1e-3 * weight,
-    )
+    near("push", abs(along), abs(one.capacity[0] * (weight + (force if sways else 0.0)) + 0.02 * force), 1e-5, 1e-3 * weight)
 
 
-TILT_KEYS = {
-    "end_time": 1.0,
-    "output_step": 0.02,
-    "stop_at_collapse": False,
-    "snapshot_times": [0.1],
-    "find_friction": True,
-    "slip": 1e-3,
-}
+TILT_KEYS = {"end_time": 1.0, "output_step": 0.02, "stop_at_collapse": False, "snapshot_times": [0.1], "find_friction": True, "slip": 1e-3}
 
 
 @relation(
-    "dem",
-    st.tuples(decks("block", "column"), st.sets(st.sampled_from(sorted(TILT_KEYS)), max_size=2), st.booleans()),
-    0.0,
-    share=0.5,
+    "dem", st.tuples(decks("block", "column"), st.sets(st.sampled_from(sorted(TILT_KEYS)), max_size=2), st.booleans()), 0.0, share=0.5
 )
 def what_a_tilt_test_does_not_use_is_said(deck: Deck, keys: set, moving: bool, within: float) -> None:
     """Keys of a run under a motion are named by a tilt test, and those alone that the deck has."""
     if moving:
         deck = changed(deck, motion={"kind": "sine-pulse", "amplitude": "0.2 g", "period": 0.5})
-    answer = ask(
-        deck, "dem", test="tilt", tilt_accuracy=0.05, time_step=0.002, **RIGID, **{k: TILT_KEYS[k] for k in keys}
-    )
+    answer = ask(deck, "dem", test="tilt", tilt_accuracy=0.05, time_step=0.002, **RIGID, **{k: TILT_KEYS[k] for k in keys})
     ok(answer)
     for key in (*TILT_KEYS, "vtk", "vary_friction", "vary_damping", "[[initial.movements]]", "rotation_ratio"):
-        said = (
-            bool(re.search(rf"(?<![\w.]){re.escape(key)}\b", answer.warnings))
-            if key[0] != "["
-            else key in answer.warnings
-        )
+        said = bool(re.search(rf"(?<![\w.]){re.escape(key)}\b", answer.warnings)) if key[0] != "[" else key in answer.warnings
         must(said == (key in keys), f"{key}: {answer.warnings}")
     must(("[motion]" in answer.warnings) == moving, f"[motion]: {answer.warnings}")
 
@@ -362,17 +330,9 @@ def modes_of_a_stack(deck: Deck, motion: Deck, within: float) -> None:
     near("as one", r.stack.uplift_as_one_g, 0.5 * b / level, within)
     near("upper alone", r.stack.uplift_upper_g, u / v, within)
     near("uplift", r.uplift_acceleration_g, min(0.5 * b / level, u / v), within)
-    near(
-        "critical",
-        [r.critical_rotation_rad, r.stack.critical_rotation_upper_rad],
-        [math.atan2(0.5 * b, level), math.atan2(u, v)],
-        within,
-    )
+    near("critical", [r.critical_rotation_rad, r.stack.critical_rotation_upper_rad], [math.atan2(0.5 * b, level), math.atan2(u, v)], within)
     m = np.array([b * h, u * v])
-    around = (
-        m @ [(b * b + h * h) / 12.0 + 0.25 * h * h, (u * u + v * v) / 12.0 + (h + 0.5 * v) ** 2]
-        + 0.25 * b * b * m.sum()
-    )
+    around = m @ [(b * b + h * h) / 12.0 + 0.25 * h * h, (u * u + v * v) / 12.0 + (h + 0.5 * v) ** 2] + 0.25 * b * b * m.sum()
     near("p", r.frequency_parameter_rad_s**2, m.sum() * GRAVITY * math.hypot(0.5 * b, level) / around, within)
     near("c_v", r.restitution, max(0.0, 1.0 - 2.0 * 0.25 * b * b * m.sum() / around), within)
     one, two = arrays["rotation"], arrays["rotation_upper"]
@@ -383,30 +343,21 @@ def modes_of_a_stack(deck: Deck, motion: Deck, within: float) -> None:
         1e-3,
         1e-3,
     )
-    must(
-        r.impacts == r.stack.impacts_on_ground + r.stack.impacts_between == len(r.impact_times_s),
-        f"{r.impacts} impacts of {r.stack}",
-    )
+    must(r.impacts == r.stack.impacts_on_ground + r.stack.impacts_between == len(r.impact_times_s), f"{r.impacts} impacts of {r.stack}")
     mode = arrays["mode"]
     names = answer.result.tables["rocking"].columns["mode"]
     if (mode != 0).any():
         for row in r.stack.modes:
             near(row.mode, row.share, float((np.asarray(names)[mode != 0] == row.mode).mean()), within)
         most = max(r.stack.modes, key=lambda row: row.share)
-        must(
-            f"{100.0 * most.share:.0f} % of the rocking time {most.mode}" in answer.result.answer,
-            f"{most}: {answer.result.answer}",
-        )
+        must(f"{100.0 * most.share:.0f} % of the rocking time {most.mode}" in answer.result.answer, f"{most}: {answer.result.answer}")
         far = np.abs(one) > 1e-5
         same = np.abs(one - two) < 1e-9
         for k, name in enumerate(np.asarray(names)):
             if far[k]:
                 must((name == "both as one") == bool(same[k]), f"{name} at {one[k]}, {two[k]}")
                 if not same[k] and name != "upper alone":
-                    must(
-                        (name == "both in the same sense") == (one[k] * (two[k] - one[k]) > 0.0),
-                        f"{name} at {one[k]}, {two[k]}",
-                    )
+                    must((name == "both in the same sense") == (one[k] * (two[k] - one[k]) > 0.0), f"{name} at {one[k]}, {two[k]}")
     near(
         "ledger",
         arrays["kinetic"] + arrays["potential"] - arrays["kinetic"][0] - arrays["potential"][0],
@@ -426,23 +377,12 @@ def modes_of_a_stack(deck: Deck, motion: Deck, within: float) -> None:
 @relation("tilt", st.integers(1, 3), 0.0, share=0.5)
 def names_of_joints_are_looked_for_where_they_stand(count: int, within: float) -> None:
     """A wrong joint is told at the table that names it, among several tables."""
-    lines = [
-        "[structure]",
-        "kind = 'column'",
-        "width = 1.0",
-        "height = 4.0",
-        "drums = 3",
-        "[[analysis]]",
-        "kind = 'tilt'",
-    ]
+    lines = ["[structure]", "kind = 'column'", "width = 1.0", "height = 4.0", "drums = 3", "[[analysis]]", "kind = 'tilt'"]
     for name in ["base", "joint 1"][: count - 1]:
         lines += ["[[joints.types]]", "friction = 0.6", f"joints = ['{name}']"]
     lines += ["[[joints.types]]", "friction = 0.6", "joints = ['joint 99']"]
     (result,) = extrados.run(read_text("\n".join(lines).encode()), threads=1).results
-    must(
-        result.status == "refused" and f"deck.toml:{len(lines)}: " in result.reason and "'joint 99'" in result.reason,
-        result.reason,
-    )
+    must(result.status == "refused" and f"deck.toml:{len(lines)}: " in result.reason and "'joint 99'" in result.reason, result.reason)
 
 
 @relation("motion rocking", st.tuples(number(0.1, 0.5), number(0.5, 3.0), number(0.2, 2.0)), 1e-6, share=0.5)
@@ -485,9 +425,7 @@ def tilts_are_those_of_their_accelerations(deck: Deck, within: float) -> None:
         near(f"tilt{sense}", angle, math.degrees(math.atan(acceleration)), within)
 
 
-@relation(
-    "failure-domain", st.tuples(decks("block", "arch"), st.sampled_from(["step", "sine"]), number(0.3, 1.0)), 1e-9
-)
+@relation("failure-domain", st.tuples(decks("block", "arch"), st.sampled_from(["step", "sine"]), number(0.3, 1.0)), 1e-9)
 def curves_and_pockets_of_a_map(deck: Deck, pulse: str, period: float, within: float) -> None:
     """The curves of a failure domain lie at the first failing amplitude of its map, pockets are safe amplitudes above."""
     answer = ask(deck, "failure-domain", pulse=pulse, durations=[period, 2.0 * period], amplitudes=12, accuracy=1e-3)
@@ -501,10 +439,7 @@ def curves_and_pockets_of_a_map(deck: Deck, pulse: str, period: float, within: f
         if least is not None:
             first = int(fails.argmax())
             step = arrays["amplitude"][1] - arrays["amplitude"][0]
-            must(
-                -step - 1e-9 <= least - arrays["amplitude"][first] <= 1e-9,
-                f"{least} beside {arrays['amplitude'][first]}",
-            )
+            must(-step - 1e-9 <= least - arrays["amplitude"][first] <= 1e-9, f"{least} beside {arrays['amplitude'][first]}")
             safe = (~fails) & (arrays["amplitude"] > least)
             pockets += bool(safe.any())
             must((r.pocket_begins_g[k] is not None) == bool(safe.any()), f"pocket {r.pocket_begins_g[k]}: {codes}")

@@ -6,12 +6,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from assess_model import (
-    FACTORS,
-    QUICK,
-    TABLES,
-    concluded,
-)
+from assess_model import FACTORS, QUICK, TABLES, concluded
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -43,11 +38,9 @@ def test_the_overall_answer_follows_from_the_rows(table: list[StrategyVerdict]) 
         want = "open"
     assert found.overall == want
     verdict = found.judged(Demanded(0.2, "sine", 0.4, 0.2))
-    assert verdict.outcome == {
-        "stands under all": "stands",
-        "collapses under all": "collapses",
-        "cannot stand": "cannot-stand",
-    }.get(want, "open")
+    assert verdict.outcome == {"stands under all": "stands", "collapses under all": "collapses", "cannot stand": "cannot-stand"}.get(
+        want, "open"
+    )
     for row in table:
         if row.status == "ok" and row.outcome != "not-applicable" and (len(judged) > 1 or want == "open"):
             assert row.label in found.statement or (want == "cannot stand" and row.outcome == "collapses")
@@ -98,9 +91,13 @@ OVERALL = st.sampled_from(["stands under all", "collapses under all", "cannot st
 
 
 BUILDINGS = st.builds(
-    lambda overall, margin, status: Assessed("a", overall if status == "ok" else "", margin if status == "ok" else np.nan, "", status, "", Path()),
-    OVERALL, st.just(np.nan) | FACTORS, st.sampled_from(["ok", "ok", "failed", "refused"]),
-)  # fmt: skip
+    lambda overall, margin, status: Assessed(
+        "a", overall if status == "ok" else "", margin if status == "ok" else np.nan, "", status, "", Path()
+    ),
+    OVERALL,
+    st.just(np.nan) | FACTORS,
+    st.sampled_from(["ok", "ok", "failed", "refused"]),
+)
 
 
 @QUICK
@@ -111,11 +108,7 @@ def test_a_ranking_puts_the_worst_first(buildings: list[Assessed]) -> None:
         assert better.overall != "cannot stand" or worse.overall == "cannot stand"
         if worse.overall == "stands under all" and not np.isfinite(worse.least_margin):
             assert better.overall == "stands under all" and not np.isfinite(better.least_margin)
-        if (
-            np.isfinite(worse.least_margin)
-            and np.isfinite(better.least_margin)
-            and "cannot stand" not in (worse.overall, better.overall)
-        ):
+        if np.isfinite(worse.least_margin) and np.isfinite(better.least_margin) and "cannot stand" not in (worse.overall, better.overall):
             assert worse.least_margin <= better.least_margin
         if np.isfinite(worse.least_margin) and worse.overall != "cannot stand":
             assert np.isfinite(better.least_margin) or better.overall == "stands under all"

@@ -14,12 +14,7 @@ from extrados.results.codes import LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Array, Result
-from extrados.results.rocking import (
-    Assessment,
-    PrimaryImpulse,
-    Rocking,
-    RuleOutcome,
-)
+from extrados.results.rocking import Assessment, PrimaryImpulse, Rocking, RuleOutcome
 from extrados.results.statistics import OverLevels
 
 ENDS = st.sampled_from(["no-hinging", "recovery", "collapse"])
@@ -31,34 +26,22 @@ RULES = ("thesis", "energy-safe", "inelastic")
 @QUICK
 @given(TABLES, FACTORS, FACTORS, st.none() | FACTORS, st.tuples(ENDS, ENDS, ENDS), st.booleans())
 def test_reasons_follow_from_the_results(
-    table: list[StrategyVerdict],
-    right: float,
-    left: float,
-    cracked: float | None,
-    ends: tuple[str, str, str],
-    chaotic: bool,
+    table: list[StrategyVerdict], right: float, left: float, cracked: float | None, ends: tuple[str, str, str], chaotic: bool
 ) -> None:
     """Rules on a crack, on impacts and on last digits: spoken where their numbers show it, of the pairs that they explain."""
     asked = {row.strategy: row for row in table if row.status == "ok"}
     fracture = None if cracked is None else Fracture.model_construct(stands=None, collapse_acceleration_g=cracked)
-    by_rule = [
-        RuleOutcome.model_construct(rule=rule, restitution=0.8, outcome=end)
-        for rule, end in zip(RULES, ends, strict=True)
-    ]
+    by_rule = [RuleOutcome.model_construct(rule=rule, restitution=0.8, outcome=end) for rule, end in zip(RULES, ends, strict=True)]
     results = {
         "tilt": Tilt.model_construct(collapse_acceleration_g=right, collapse_acceleration_opposite_g=left, fracture=fracture),
         "rocking": Rocking.model_construct(
             outcome=ends[2], outcomes_by_rule=by_rule, decided_by_last_digits=chaotic, peak_rotation_ratio=0.3
         ),
-    }  # fmt: skip
+    }
     found = concluded(table, {name: Result(name, results=r) for name, r in results.items() if name in asked})
-    differing = {
-        tuple(sorted((a, b))) for a, there in found.agreement.items() for b, said in there.items() if said != "agree"
-    }
+    differing = {tuple(sorted((a, b))) for a, there in found.agreement.items() for b, said in there.items() if said != "agree"}
     told = {reason.rule: {tuple(sorted(pair)) for pair in reason.explains} for reason in found.reasons}
-    dynamic = {
-        pair for pair in differing if set(pair) <= {"rocking", "assessment", "probability", "dem"} and "rocking" in pair
-    }
+    dynamic = {pair for pair in differing if set(pair) <= {"rocking", "assessment", "probability", "dem"} and "rocking" in pair}
     split = len({end == "collapse" for end in ends}) == 2
     assert told.get("impact-rule", set()) == (dynamic if split else set())
     assert told.get("last-digits", set()) == (dynamic if chaotic else set())
@@ -76,9 +59,7 @@ def test_reasons_follow_from_the_results(
 
 def facts_of(draw: st.DrawFn) -> Facts:
     """Rows of all strategies, with results and probes whose few numbers the rules look at."""
-    rows_ = {
-        row.strategy: row for row in draw(st.lists(rows(), min_size=4, max_size=9, unique_by=lambda row: row.strategy))
-    }
+    rows_ = {row.strategy: row for row in draw(st.lists(rows(), min_size=4, max_size=9, unique_by=lambda row: row.strategy))}
     ends, far = st.sampled_from(["recovery", "collapse"]), st.sampled_from([0.01, 0.3, 0.8, 1.5])
 
     def rocks() -> Rocking:
@@ -99,21 +80,32 @@ def facts_of(draw: st.DrawFn) -> Facts:
         )
 
     def pushed() -> Tilt:
-        return Tilt.model_construct(
-            collapse_acceleration_g=draw(FACTORS), collapse_acceleration_opposite_g=draw(FACTORS), fracture=None
-        )
+        return Tilt.model_construct(collapse_acceleration_g=draw(FACTORS), collapse_acceleration_opposite_g=draw(FACTORS), fracture=None)
 
     impulse = PrimaryImpulse.model_construct(amplitude_g=0.3, period_s=0.5, goodness_of_fit=0.8)
     criterion = Assessment.model_construct(verdict=draw(st.sampled_from(["stands", "fails"])), primary_impulse=impulse)
     made = {"rocking": rocks(), "dem": falls(), "tilt": pushed(), "assessment": criterion}
-    probes = {"sine": rocks(), "without-restraints": rocks(), "tilt-without": pushed(), "tilt-no-sliding": pushed(), "no-sliding": falls(),
-              "monolith": falls()}  # fmt: skip
+    probes = {
+        "sine": rocks(),
+        "without-restraints": rocks(),
+        "tilt-without": pushed(),
+        "tilt-no-sliding": pushed(),
+        "no-sliding": falls(),
+        "monolith": falls(),
+    }
     kept = {name: Result(name, results=r) for name, r in probes.items() if draw(st.booleans())}
     bare = {name: draw(st.sampled_from([("a tie",), ("a tie", "a damper")])) for name in rows_ if draw(st.booleans())}
     return Facts(
-        CONTEXT.building, CONTEXT.motion, CONTEXT.motion.peak / 9.80665, rows_, {n: Result(n, results=r) for n, r in made.items() if n in rows_},
-        1.2, kept, lambda amplitude: draw(st.none() | st.sampled_from([0.01, 5.0])), bare,
-    )  # fmt: skip
+        CONTEXT.building,
+        CONTEXT.motion,
+        CONTEXT.motion.peak / 9.80665,
+        rows_,
+        {n: Result(n, results=r) for n, r in made.items() if n in rows_},
+        1.2,
+        kept,
+        lambda amplitude: draw(st.none() | st.sampled_from([0.01, 5.0])),
+        bare,
+    )
 
 
 @QUICK
@@ -143,60 +135,79 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
     sine = probe("sine")
     told(
         reasons.sine_for_record,
-        rocking is not None and criterion is not None and sine is not None
+        rocking is not None
+        and criterion is not None
+        and sine is not None
         and (sine.outcome == "collapse") is (criterion.verdict == "fails")
         and (rocking.peak_rotation_ratio > 1.2 * sine.peak_rotation_ratio or rocking.outcome != sine.outcome),
         [p for p in both if "assessment" in p],
-        **({"sine_rotation_ratio": sine.peak_rotation_ratio, "motion_rotation_ratio": rocking.peak_rotation_ratio} if sine and rocking else {}),
-    )  # fmt: skip
+        **(
+            {"sine_rotation_ratio": sine.peak_rotation_ratio, "motion_rotation_ratio": rocking.peak_rotation_ratio}
+            if sine and rocking
+            else {}
+        ),
+    )
     every = {w for there in facts.bare.values() for w in there}
     without = {n for n, there in facts.bare.items() if set(there) == every}
     free = probe("without-restraints")
     told(
-        reasons.left_out, rocking is not None and free is not None and free.peak_rotation_ratio > 1.2 * rocking.peak_rotation_ratio,
+        reasons.left_out,
+        rocking is not None and free is not None and free.peak_rotation_ratio > 1.2 * rocking.peak_rotation_ratio,
         [p for p in pairs if "rocking" in p and set(p) & without],
         **({"rotation_ratio_without": free.peak_rotation_ratio, "rotation_ratio": rocking.peak_rotation_ratio} if free and rocking else {}),
-    )  # fmt: skip
+    )
     bare, sla = probe("tilt-without"), facts.rows.get("sla")
     least = None if bare is None else min(bare.collapse_acceleration_g, bare.collapse_acceleration_opposite_g)
     told(
         reasons.ties_of_statics,
-        bare is not None and sla is not None and "tilt" in facts.rows and sla.capacity is not None and abs(least - sla.capacity) <= 0.1 * least,
+        bare is not None
+        and sla is not None
+        and "tilt" in facts.rows
+        and sla.capacity is not None
+        and abs(least - sla.capacity) <= 0.1 * least,
         [p for p in pairs if set(p) == {"tilt", "sla"} and "sla" in facts.bare],
         **({"without_ties": least, "elements": sla.capacity} if bare and sla and sla.capacity else {}),
-    )  # fmt: skip
+    )
     chaotic = dem is not None and dem.decided_by_last_digits
     told(reasons.elements_of_last_digits, chaotic, [p for p in pairs if "dem" in p])
     share = facts.rows["probability"].demand if "probability" in facts.rows else None
-    told(reasons.chance, share is not None and 0.05 < share < 0.95,
-         [p for p in pairs if "probability" in p and not set(p) & {"tilt", "sla", "push-x", "push-y"}])  # fmt: skip
+    told(
+        reasons.chance,
+        share is not None and 0.05 < share < 0.95,
+        [p for p in pairs if "probability" in p and not set(p) & {"tilt", "sla", "push-x", "push-y"}],
+    )
     stuck, shortest = probe("no-sliding"), float(CONTEXT.building.blocks().length.min())
     told(
         reasons.sliding,
         dem is not None and stuck is not None and not chaotic and dem.peak_slip_m >= 0.01 * shortest and not alike(dem, stuck),
         [p for p in pairs if "dem" in p and set(p) & {"rocking", "assessment", "probability", "tilt"}],
         **({"slip_m": dem.peak_slip_m, "displacement_without_sliding_m": stuck.peak_displacement_m} if dem and stuck else {}),
-    )  # fmt: skip
+    )
     one = probe("monolith")
     told(
         reasons.drums,
-        dem is not None and one is not None and not chaotic and rocking is not None
-        and (one.outcome == "collapse") is (rocking.outcome == "collapse") and not alike(one, dem),
+        dem is not None
+        and one is not None
+        and not chaotic
+        and rocking is not None
+        and (one.outcome == "collapse") is (rocking.outcome == "collapse")
+        and not alike(one, dem),
         [p for p in both if "dem" in p],
         **({"displacement_of_one_body_m": one.peak_displacement_m, "displacement_m": dem.peak_displacement_m} if one and dem else {}),
-    )  # fmt: skip
+    )
     held = probe("tilt-no-sliding")
     if tilt is not None and sla is not None and sla.capacity is not None and not CONTEXT.building.meshed_by_stones:
-        weak, stiff = (
-            min(t.collapse_acceleration_g, t.collapse_acceleration_opposite_g) if t else 0.0 for t in (tilt, held)
+        weak, stiff = (min(t.collapse_acceleration_g, t.collapse_acceleration_opposite_g) if t else 0.0 for t in (tilt, held))
+        told(
+            reasons.membrane,
+            held is not None and stiff > 1.05 * weak and abs(sla.capacity - stiff) < abs(sla.capacity - weak),
+            [p for p in pairs if "sla" in p and set(p) & {"tilt", "dem"}],
+            **({"with_sliding": weak, "without_sliding": stiff}),
         )
-        told(reasons.membrane, held is not None and stiff > 1.05 * weak and abs(sla.capacity - stiff) < abs(sla.capacity - weak),
-             [p for p in pairs if "sla" in p and set(p) & {"tilt", "dem"}], **({"with_sliding": weak, "without_sliding": stiff}))  # fmt: skip
     for found in reasons.static_peak(facts, pairs):
         mine = [tuple(p) for p in found.explains]
         assert mine and all(
-            p in pairs and facts.split(p)[0] in ("tilt", "sla", "push-x", "push-y") and facts.split(p)[1] in follow
-            for p in mine
+            p in pairs and facts.split(p)[0] in ("tilt", "sla", "push-x", "push-y") and facts.split(p)[1] in follow for p in mine
         )
         names = {facts.split(p)[0] for p in mine}
         weakest = min((facts.rows[n].capacity for n in names), default=0.0)
@@ -207,30 +218,47 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
         else:
             factors = [facts.interval(facts.split(p)[1])[0] for p in mine]
             assert (
-                abs(found.numbers["peak"] - min(factors) * facts.peak_g) < 1e-9
-                or len(names) > 1
-                or "displacement_ratio" in found.numbers
+                abs(found.numbers["peak"] - min(factors) * facts.peak_g) < 1e-9 or len(names) > 1 or "displacement_ratio" in found.numbers
             )
 
 
-PLAN = make_deck({
-    "structure": {"kind": "building", "storeys": [3.0], "walls": [
-        {"name": n, "start": a, "end": b, "thickness": t} for n, a, b, t in (
-            ("south", [0.0, 0.0], [5.0, 0.0], 0.4), ("east", [5.0, 0.0], [5.0, 4.0], 0.3), ("north", [5.0, 4.0], [0.0, 4.0], 0.4), ("west", [0.0, 4.0], [0.0, 0.0], 0.3))]},
-    "analysis": [{"kind": "local-mechanism", "mechanism": "building"}],
-})  # fmt: skip
+PLAN = make_deck(
+    {
+        "structure": {
+            "kind": "building",
+            "storeys": [3.0],
+            "walls": [
+                {"name": n, "start": a, "end": b, "thickness": t}
+                for n, a, b, t in (
+                    ("south", [0.0, 0.0], [5.0, 0.0], 0.4),
+                    ("east", [5.0, 0.0], [5.0, 4.0], 0.3),
+                    ("north", [5.0, 4.0], [0.0, 4.0], 0.4),
+                    ("west", [0.0, 4.0], [0.0, 0.0], 0.3),
+                )
+            ],
+        },
+        "analysis": [{"kind": "local-mechanism", "mechanism": "building"}],
+    }
+)
 
 
-STONES = make_deck({
-    "structure": {"kind": "column", "width": 1.0, "height": 3.0, "drums": 3}, "joints": {"tension": 1e5, "cohesion": 2e5},
-    "analysis": [{"kind": "tilt"}],
-})  # fmt: skip
+STONES = make_deck(
+    {
+        "structure": {"kind": "column", "width": 1.0, "height": 3.0, "drums": 3},
+        "joints": {"tension": 1e5, "cohesion": 2e5},
+        "analysis": [{"kind": "tilt"}],
+    }
+)
 
 
-MESHED = make_deck({
-    "structure": {"kind": "panel", "width": 1.8, "height": 1.6, "thickness": 0.3, "unit_length": 0.6, "unit_height": 0.4}, "joints": {"friction": 0.6},
-    "material": {"tensile_strength": 2e5, "fracture_energy": 50.0}, "analysis": [{"kind": "tilt"}],
-})  # fmt: skip
+MESHED = make_deck(
+    {
+        "structure": {"kind": "panel", "width": 1.8, "height": 1.6, "thickness": 0.3, "unit_length": 0.6, "unit_height": 0.4},
+        "joints": {"friction": 0.6},
+        "material": {"tensile_strength": 2e5, "fracture_energy": 50.0},
+        "analysis": [{"kind": "tilt"}],
+    }
+)
 
 
 @st.composite
@@ -248,29 +276,32 @@ def other_facts(draw: st.DrawFn) -> Facts:
         )
     )
     tilt = Tilt.model_construct(
-        collapse_acceleration_g=draw(FACTORS), collapse_acceleration_opposite_g=draw(FACTORS), fracture=fracture,
-        dilating_joints=draw(st.sampled_from([[], [1]])), dilating_joints_opposite=draw(st.sampled_from([[], [1]])), non_dilatant=None,
-        non_dilatant_opposite=None, collapse_acceleration_non_associated_g=draw(FACTORS), collapse_acceleration_non_associated_opposite_g=draw(FACTORS),
-    )  # fmt: skip
+        collapse_acceleration_g=draw(FACTORS),
+        collapse_acceleration_opposite_g=draw(FACTORS),
+        fracture=fracture,
+        dilating_joints=draw(st.sampled_from([[], [1]])),
+        dilating_joints_opposite=draw(st.sampled_from([[], [1]])),
+        non_dilatant=None,
+        non_dilatant_opposite=None,
+        collapse_acceleration_non_associated_g=draw(FACTORS),
+        collapse_acceleration_non_associated_opposite_g=draw(FACTORS),
+    )
     dem = DemRun.model_construct(
-        outcome=draw(st.sampled_from(["recovery", "slid", "collapse"])), peak_displacement_m=draw(FACTORS), peak_slip_m=draw(FACTORS),
-        collapse_displacement_m=4.0, decided_by_last_digits=draw(st.booleans()), perturbed_outcome="slid", perturbation_growth=1e5,
-    )  # fmt: skip
+        outcome=draw(st.sampled_from(["recovery", "slid", "collapse"])),
+        peak_displacement_m=draw(FACTORS),
+        peak_slip_m=draw(FACTORS),
+        collapse_displacement_m=4.0,
+        decided_by_last_digits=draw(st.booleans()),
+        perturbed_outcome="slid",
+        perturbation_growth=1e5,
+    )
     wall = WallMechanism.model_construct(wall="south", storey=1, multiplier=draw(FACTORS))
     other = WallMechanism.model_construct(wall="east", storey=1, multiplier=9.0)
     codes = LocalMechanism.model_construct(walls=draw(st.sampled_from([[], [wall, other]])), checks={}, bound=None)
-    line = np.array(
-        draw(
-            st.lists(
-                st.lists(st.sampled_from([-0.5, 0.5, 1.2, np.nan]), min_size=3, max_size=3), min_size=4, max_size=4
-            )
-        )
-    )
+    line = np.array(draw(st.lists(st.lists(st.sampled_from([-0.5, 0.5, 1.2, np.nan]), min_size=3, max_size=3), min_size=4, max_size=4)))
     rocking = Result(
         "rocking",
-        results=Rocking.model_construct(
-            outcome="recovery", outcomes_by_rule=None, decided_by_last_digits=False, peak_rotation_ratio=0.3
-        ),
+        results=Rocking.model_construct(outcome="recovery", outcomes_by_rule=None, decided_by_last_digits=False, peak_rotation_ratio=0.3),
     )
     rocking.arrays = {"thrust_position": Array(line, ("time", "joint"), "")}
     made = {
@@ -279,9 +310,7 @@ def other_facts(draw: st.DrawFn) -> Facts:
         "code-checks": Result("local-mechanism", results=codes),
         "rocking": rocking,
     }
-    return Facts(
-        deck.building, CONTEXT.motion, CONTEXT.motion.peak / 9.80665, rows_, {n: r for n, r in made.items() if n in rows_}, 1.2,
-    )  # fmt: skip
+    return Facts(deck.building, CONTEXT.motion, CONTEXT.motion.peak / 9.80665, rows_, {n: r for n, r in made.items() if n in rows_}, 1.2)
 
 
 @QUICK
@@ -306,23 +335,35 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
     if tilt is not None and tilt.fracture is not None:
         whole = min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g)
         cracked = 0.0 if tilt.fracture.stands is False else tilt.fracture.collapse_acceleration_g
-        told(reasons.crack, cracked < whole and whole > facts.peak_g, [p for p in pairs if weaker(p, "tilt")], cracked=cracked, whole=whole, peak=facts.peak_g)  # fmt: skip
+        told(
+            reasons.crack,
+            cracked < whole and whole > facts.peak_g,
+            [p for p in pairs if weaker(p, "tilt")],
+            cracked=cracked,
+            whole=whole,
+            peak=facts.peak_g,
+        )
     else:
         told(reasons.crack, False, [])
     with_mortar = {"dem", "sla"} if stones else {"dem"}
     told(
-        reasons.mortar, bool(building.joints.tension),
+        reasons.mortar,
+        bool(building.joints.tension),
         [p for p in pairs if facts.split(p)[1] in with_mortar and facts.split(p)[0] not in with_mortar],
         **({"tension": 1e5, "cohesion": 2e5} if building.joints.tension else {}),
-    )  # fmt: skip
+    )
     if tilt is not None and dem is not None:
         ends = [
             (None if joints else own, least, joints)
             for own, least, joints in (
                 (tilt.collapse_acceleration_g, tilt.collapse_acceleration_non_associated_g, tilt.dilating_joints),
-                (tilt.collapse_acceleration_opposite_g, tilt.collapse_acceleration_non_associated_opposite_g, tilt.dilating_joints_opposite),
+                (
+                    tilt.collapse_acceleration_opposite_g,
+                    tilt.collapse_acceleration_non_associated_opposite_g,
+                    tilt.dilating_joints_opposite,
+                ),
             )
-        ]  # fmt: skip
+        ]
         upper = [tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g]
         least = min(up if end[0] is None else end[0] for end, up in zip(ends, upper, strict=True))
         slides = any(end[2] and end[0] == least for end in ends)
@@ -331,7 +372,7 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
             slides and not dem.decided_by_last_digits and dem.outcome != "collapse" and dem.peak_slip_m >= 0.5 * dem.peak_displacement_m,
             [p for p in pairs if "dem" in p and facts.split(p)[0] in (("tilt", "sla") if stones else ("tilt",))],
             **({"static_capacity": least, "slip_m": dem.peak_slip_m} if slides else {}),
-        )  # fmt: skip
+        )
     if "rocking" in facts.results and (mine := reasons.dynamic(pairs, "dem")):
         line = facts.results["rocking"].arrays["thrust_position"].data
         moving = line[~np.isnan(line).all(axis=1)]
@@ -344,16 +385,20 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
             **({"share_of_time": share, "farthest_ratio": float(out.max())} if len(out) else {}),
         )
     reached = {
-        n: r.capacity if r.capacity is not None else (None if (m := r.margin if r.margin is not None else r.margin_at_least) is None else m * facts.peak_g)
+        n: r.capacity
+        if r.capacity is not None
+        else (None if (m := r.margin if r.margin is not None else r.margin_at_least) is None else m * facts.peak_g)
         for n, r in facts.rows.items()
-    }  # fmt: skip
+    }
     mine = [p for p in pairs if weaker(p, "code-checks") and set(p) & {"push-x", "push-y"}]
     pushes = {n: reached[n] for p in mine for n in p if n != "code-checks" and reached[n] is not None}
     first = codes.walls[0].multiplier if codes is not None and codes.walls else None
     told(
-        reasons.torn_off, first is not None and bool(pushes) and first < min(pushes.values(), default=0.0), mine,
+        reasons.torn_off,
+        first is not None and bool(pushes) and first < min(pushes.values(), default=0.0),
+        mine,
         **({"multiplier": first, "whole_g": min(pushes.values())} if first is not None and pushes else {}),
-    )  # fmt: skip
+    )
     both = [p for p in pairs if set(p) == {"push-x", "push-y"}]
     areas = {"push-x": 2.0 * 5.0 * 0.4, "push-y": 2.0 * 4.0 * 0.3}
     found = reasons.weaker_direction(facts, pairs)
@@ -361,10 +406,7 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
     assert (found is not None) == want
     if found is not None:
         assert [tuple(p) for p in found.explains] == both
-        assert (
-            abs(found.numbers["weak_m2"] / areas["push-y"] - 1.0) < 0.3
-            and found.numbers["weak_m2"] < found.numbers["strong_m2"]
-        )
+        assert abs(found.numbers["weak_m2"] / areas["push-y"] - 1.0) < 0.3 and found.numbers["weak_m2"] < found.numbers["strong_m2"]
 
 
 def deck_of(facts: Facts) -> object:
@@ -374,9 +416,7 @@ def deck_of(facts: Facts) -> object:
 
 @QUICK
 @given(st.lists(st.tuples(FACTORS, st.booleans(), st.booleans()), min_size=1, max_size=8, unique_by=lambda row: row[0]))
-def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(
-    rows: list[tuple[float, bool, bool]],
-) -> None:
+def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(rows: list[tuple[float, bool, bool]]) -> None:
     """And below the first at which blocks slide: beyond it rocking does not say what brings the building down."""
     rows.sort()
     results = OverLevels.model_construct(

@@ -12,35 +12,16 @@ from extrados.analyses.assess.asking import row_of
 from extrados.analyses.assess.hazard import Demanded
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Result
-from extrados.results.rocking import (
-    AssessedImpulse,
-    Assessment,
-    Conditions,
-    FailureDomain,
-    ModeCurve,
-    Rocking,
-)
+from extrados.results.rocking import AssessedImpulse, Assessment, Conditions, FailureDomain, ModeCurve, Rocking
 from extrados.results.statistics import Ensemble, OverDurations, OverLevels
 from extrados.results.verdict import KindResults, Verdict, judge
 
 
 @QUICK
-@given(
-    st.none() | FACTORS,
-    st.none() | FACTORS,
-    st.sampled_from([None, *OUTCOMES]),
-    BOUNDS,
-    st.lists(st.just("It slides."), max_size=1),
-)
+@given(st.none() | FACTORS, st.none() | FACTORS, st.sampled_from([None, *OUTCOMES]), BOUNDS, st.lists(st.just("It slides."), max_size=1))
 def test_a_verdict_is_no_better_than_what_it_rests_on(demand, capacity, outcome, bound, violated) -> None:
     found = judge("It is so.", demand, capacity, "g", outcome, bound, violated)
-    assert (found.demand, found.capacity, found.unit, found.bound, found.violated) == (
-        demand,
-        capacity,
-        "g",
-        bound,
-        violated,
-    )
+    assert (found.demand, found.capacity, found.unit, found.bound, found.violated) == (demand, capacity, "g", bound, violated)
     whole = demand is not None and capacity is not None
     assert (found.ratio == capacity / demand) if whole else found.ratio is None
     assert all(text in found.statement for text in ["It is so.", *violated])
@@ -67,17 +48,18 @@ class Judged(KindResults):
 
 VERDICTS = st.builds(
     lambda demand, capacity, bound, violated: judge("So it is.", demand, capacity, "g", None, bound, violated),
-    FACTORS, FACTORS, BOUNDS, st.lists(st.just("It slides."), max_size=1),
-)  # fmt: skip
+    FACTORS,
+    FACTORS,
+    BOUNDS,
+    st.lists(st.just("It slides."), max_size=1),
+)
 
 
 @QUICK
 @given(VERDICTS, st.sampled_from(NAMES))
 def test_a_row_says_what_its_strategy_says(verdict: Verdict, name: str) -> None:
     strategy = strategies.of(name)
-    row = row_of(
-        strategy, Result(strategy.kind, results=Judged(verdict=verdict)), "so", Demanded(0.2, "sine", 0.4, 0.2), 0.05
-    )
+    row = row_of(strategy, Result(strategy.kind, results=Judged(verdict=verdict)), "so", Demanded(0.2, "sine", 0.4, 0.2), 0.05)
     for same in ("demand", "capacity", "unit", "outcome", "bound", "violated", "statement"):
         assert getattr(row, same) == getattr(verdict, same)
     assert row.status == "ok" and row.strategy == name
@@ -93,16 +75,11 @@ def test_a_row_says_what_its_strategy_says(verdict: Verdict, name: str) -> None:
     st.sampled_from(NAMES),
     st.lists(st.sampled_from(["[[ties]]", "[supports] abutting_wall", "[supports] damping_ratio"]), unique=True),
 )
-def test_no_collapse_without_the_restraints_of_the_deck_decides(
-    verdict: Verdict, name: str, without: list[str]
-) -> None:
+def test_no_collapse_without_the_restraints_of_the_deck_decides(verdict: Verdict, name: str, without: list[str]) -> None:
     """Asked without a tie, a strategy looks at a weaker building: where that stands this one does, and no more follows."""
     strategy = strategies.of(name)
     result, demand = Result(strategy.kind, results=Judged(verdict=verdict)), Demanded(0.2, "sine", 0.4, 0.2)
-    row, whole = (
-        row_of(strategy, result, "", demand, 0.05, None, tuple(without)),
-        row_of(strategy, result, "", demand, 0.05),
-    )
+    row, whole = (row_of(strategy, result, "", demand, 0.05, None, tuple(without)), row_of(strategy, result, "", demand, 0.05))
     restrained = {"[[ties]]", "[supports] abutting_wall"} & set(without)
     if whole.outcome == "collapses" and restrained:
         assert (row.outcome, row.margin) == ("open", None) and all(what in row.violated[-1] for what in restrained)
@@ -112,34 +89,21 @@ def test_no_collapse_without_the_restraints_of_the_deck_decides(
 
 @QUICK
 @given(VERDICTS, st.sampled_from(["left", "right", None]), FACTORS)
-def test_no_row_stands_by_an_upper_bound_or_beside_what_is_violated(
-    verdict: Verdict, wall: str | None, cracked: float
-) -> None:
+def test_no_row_stands_by_an_upper_bound_or_beside_what_is_violated(verdict: Verdict, wall: str | None, cracked: float) -> None:
     class Pushed(Tilt):
         def judged(self, demand: Demanded) -> Verdict:
             return verdict
 
     fracture = Fracture.model_construct(stands=None, collapse_acceleration_g=cracked)
-    results = Pushed.model_construct(
-        collapse_acceleration_g=cracked, collapse_acceleration_opposite_g=cracked, fracture=fracture
-    )
-    row = row_of(
-        strategies.of("tilt"), Result("tilt", results=results), "", Demanded(0.2, "sine", 0.4, 0.2), 0.05, wall
-    )
+    results = Pushed.model_construct(collapse_acceleration_g=cracked, collapse_acceleration_opposite_g=cracked, fracture=fracture)
+    row = row_of(strategies.of("tilt"), Result("tilt", results=results), "", Demanded(0.2, "sine", 0.4, 0.2), 0.05, wall)
     assert not (row.outcome == "stands" and (row.bound == "upper" or row.violated))
     assert not (row.outcome == "collapses" and (row.bound == "lower" or row.violated))
 
 
 @QUICK
-@given(
-    st.integers(0, 40),
-    st.integers(0, 40),
-    st.sampled_from([0.02, 0.05, 0.2]),
-    st.lists(st.just("It slides."), max_size=1),
-)
-def test_a_share_of_collapses_decides_by_its_bounds(
-    count: int, collapsed: int, acceptable: float, violated: list[str]
-) -> None:
+@given(st.integers(0, 40), st.integers(0, 40), st.sampled_from([0.02, 0.05, 0.2]), st.lists(st.just("It slides."), max_size=1))
+def test_a_share_of_collapses_decides_by_its_bounds(count: int, collapsed: int, acceptable: float, violated: list[str]) -> None:
     collapsed = min(collapsed, count)
 
     class Shares(Ensemble):
@@ -170,22 +134,16 @@ def test_shares_over_factors_bracket_the_margin(rows: list, acceptable: float) -
             return judge("Shares.")
 
     results = Levels.model_construct(
-        levels=[level for level, _ in rows], count=[0 if hits is None else 10 for _, hits in rows], collapsed=[hits or 0 for _, hits in rows],
+        levels=[level for level, _ in rows],
+        count=[0 if hits is None else 10 for _, hits in rows],
+        collapsed=[hits or 0 for _, hits in rows],
         collapse_probability=[None if hits is None else hits / 10.0 for _, hits in rows],
-    )  # fmt: skip
-    row = row_of(
-        strategies.of("probability"),
-        Result("fragility", results=results),
-        "",
-        Demanded(0.2, "sine", 0.4, 0.2),
-        acceptable,
     )
+    row = row_of(strategies.of("probability"), Result("fragility", results=results), "", Demanded(0.2, "sine", 0.4, 0.2), acceptable)
     _, hits = min(rows, key=lambda r: (abs(r[0] - 1.0), rows.index(r)))
     assert row.demand == (None if hits is None else hits / 10.0)
     high = min((x for x, n in rows if n is not None and n / 10.0 > acceptable), default=None)
-    low = max(
-        (x for x, n in rows if n is not None and n / 10.0 <= acceptable and (high is None or x < high)), default=None
-    )
+    low = max((x for x, n in rows if n is not None and n / 10.0 <= acceptable and (high is None or x < high)), default=None)
     assert (row.margin_at_least, row.margin_below) == (low, high)
     assert hits is not None or row.outcome == "open"
 
@@ -197,19 +155,9 @@ DEMANDED = Demanded(0.2, "sine", 0.4, 0.2)
 
 
 @QUICK
-@given(
-    CONDITIONS,
-    st.sampled_from(["no-hinging", "recovery", "collapse"]),
-    st.booleans(),
-    FACTORS,
-    st.lists(st.just("Chaos."), max_size=1),
-)
-def test_a_run_ends_as_its_outcome_says(
-    conditions: Conditions, outcome: str, ends: bool, ratio: float, more: list[str]
-) -> None:
-    run = Rocking.model_construct(
-        outcome=outcome, settled=ends, peak_rotation_ratio=ratio, conditions=conditions, violated=more
-    )
+@given(CONDITIONS, st.sampled_from(["no-hinging", "recovery", "collapse"]), st.booleans(), FACTORS, st.lists(st.just("Chaos."), max_size=1))
+def test_a_run_ends_as_its_outcome_says(conditions: Conditions, outcome: str, ends: bool, ratio: float, more: list[str]) -> None:
+    run = Rocking.model_construct(outcome=outcome, settled=ends, peak_rotation_ratio=ratio, conditions=conditions, violated=more)
     want = "collapses" if outcome == "collapse" else "stands" if ends else "open"
     found = run.judged(DEMANDED)
     decided(found, want, [*conditions.violated, *more])
@@ -229,9 +177,13 @@ def test_a_motion_is_compared_with_the_curve_at_its_duration(
     durations, amplitudes = [k / 4.0 for k, _ in curve], [a for _, a in curve]
     pulse = Demanded(0.2, "sine" if same else "step", place / 16.0, 0.6)
     made = FailureDomain.model_construct(
-        pulse="sine", mode_I=ModeCurve.model_construct(durations_s=durations, amplitudes_g=amplitudes), conditions=conditions,
-        sliding_from_g=[slides] * len(curve), hinges_elsewhere_from_g=[leaves] * len(curve), amplitudes_by_rule=None,
-    )  # fmt: skip
+        pulse="sine",
+        mode_I=ModeCurve.model_construct(durations_s=durations, amplitudes_g=amplitudes),
+        conditions=conditions,
+        sliding_from_g=[slides] * len(curve),
+        hinges_elsewhere_from_g=[leaves] * len(curve),
+        amplitudes_by_rule=None,
+    )
     found = made.judged(pulse)
     order = sorted(zip(durations, amplitudes, strict=True), key=lambda p: p[0])
     ends = [
@@ -239,9 +191,7 @@ def test_a_motion_is_compared_with_the_curve_at_its_duration(
         min((p for p in order if p[0] >= pulse.duration_s), default=None),
     ]
     if same and None not in ends and None not in (ends[0][1], ends[1][1]):
-        want = float(
-            np.interp(pulse.duration_s, [p[0] for p in order], [np.nan if p[1] is None else p[1] for p in order])
-        )
+        want = float(np.interp(pulse.duration_s, [p[0] for p in order], [np.nan if p[1] is None else p[1] for p in order]))
         if ends[0] == ends[1]:
             want = ends[0][1]
         assert math.isclose(found.capacity, want) and found.demand == 0.6
@@ -262,13 +212,9 @@ def test_a_motion_is_compared_with_the_curve_at_its_duration(
     st.sampled_from(["stands", "fails"]),
     st.lists(st.just("Chaos."), max_size=1),
 )
-def test_the_impulse_of_the_least_margin_decides(
-    rows: list, conditions: Conditions, static: str, more: list[str]
-) -> None:
+def test_the_impulse_of_the_least_margin_decides(rows: list, conditions: Conditions, static: str, more: list[str]) -> None:
     impulses = [
-        AssessedImpulse.model_construct(
-            margin=None if a is None else a / size, failing_amplitude_g=a, amplitude_g=-size, period_s=0.5
-        )
+        AssessedImpulse.model_construct(margin=None if a is None else a / size, failing_amplitude_g=a, amplitude_g=-size, period_s=0.5)
         for a, size in rows
     ]
     found = Assessment.model_construct(
@@ -287,12 +233,7 @@ SHARES = st.sampled_from([None, 0.0, 0.25, 1.0])
 
 
 @QUICK
-@given(
-    st.lists(SHARES, min_size=1, max_size=4),
-    CONDITIONS,
-    st.none() | FACTORS,
-    st.none() | st.tuples(*[st.sampled_from([0.0, 0.5])] * 2),
-)
+@given(st.lists(SHARES, min_size=1, max_size=4), CONDITIONS, st.none() | FACTORS, st.none() | st.tuples(*[st.sampled_from([0.0, 0.5])] * 2))
 def test_shares_of_collapses_decide_where_all_agree(
     shares: list, conditions: Conditions, middle: float | None, by_rule: tuple | None
 ) -> None:
@@ -319,9 +260,7 @@ def test_shares_of_collapses_decide_where_all_agree(
     else:
         told = [*one.violated[len(conditions.violated) :]]
         assert bool(told) == (by_rule is not None and by_rule[0] != by_rule[1])
-        decided(
-            one, "stands" if share == 0.0 else "collapses" if share == 1.0 else "open", [*conditions.violated, *told]
-        )
+        decided(one, "stands" if share == 0.0 else "collapses" if share == 1.0 else "open", [*conditions.violated, *told])
         assert f"{100.0 * share:.3g} % of {count}" in one.statement and one.demand == share
     levels = OverLevels.model_construct(
         count=[count],

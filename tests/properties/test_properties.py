@@ -54,10 +54,22 @@ COSTLY = 0.3
 MOST, MOST_OF_SLOW = 18, 5
 #: Relations whose buildings take more than a second each: the quick suite asks none
 SLOW = {
-    "a-deck-as-text-and-as-objects", "a-deck-through-json", "a-dome-turned-by-a-lune", "a-plinth-by-codes", "a-section-through-files",
-    "a-stronger-tie", "bounds-of-solids", "dilatancy-helps", "layers-that-are-switched-off", "noise-of-solids", "rougher",
-    "solids-through-compas", "statics-of-another-density", "stouter", "translation-of-a-section",
-}  # fmt: skip
+    "a-deck-as-text-and-as-objects",
+    "a-deck-through-json",
+    "a-dome-turned-by-a-lune",
+    "a-plinth-by-codes",
+    "a-section-through-files",
+    "a-stronger-tie",
+    "bounds-of-solids",
+    "dilatancy-helps",
+    "layers-that-are-switched-off",
+    "noise-of-solids",
+    "rougher",
+    "solids-through-compas",
+    "statics-of-another-density",
+    "stouter",
+    "translation-of-a-section",
+}
 #: Those whose examples take as long
 SLOW_EXAMPLES = {"noise-of-solids", "solids-through-compas"}
 SEED = int(os.environ.get("EXTRADOS_SEED", "1"))
@@ -103,9 +115,14 @@ def random_cases(relation: Relation, count: int) -> None:
 
     @seed(zlib.crc32(relation.name.encode()) + SEED)
     @settings(
-        max_examples=count, database=None, deadline=None, suppress_health_check=list(HealthCheck), report_multiple_bugs=False,
-        phases=(Phase.generate, Phase.shrink), print_blob=False,
-    )  # fmt: skip
+        max_examples=count,
+        database=None,
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+        report_multiple_bugs=False,
+        phases=(Phase.generate, Phase.shrink),
+        print_blob=False,
+    )
     @given(relation.case)
     def one(case: Any) -> None:
         last[:] = [case]
@@ -173,8 +190,5 @@ def test_a_broken_relation_shows_the_smallest_deck() -> None:
         assert ask(deck, "tilt").capacity[0] < 0.3, "bears too much"
 
     decks = st.integers(2, 30).map(lambda k: {"structure": {"kind": "block", "width": k / 20, "height": 1.0}})
-    with pytest.raises(
-        AssertionError,
-        match=r"bears too much(.|\n)*The smallest case:\n\[structure\]\nkind = \"block\"\nwidth = 0\.3\n",
-    ):
+    with pytest.raises(AssertionError, match=r"bears too much(.|\n)*The smallest case:\n\[structure\]\nkind = \"block\"\nwidth = 0\.3\n"):
         random_cases(Relation("never", ("tilt",), decks, never, 0.0), 50)

@@ -45,9 +45,7 @@ def one(function: Callable[..., Any], keys: dict[str, Any], k: int, right: bytes
     return end, "" if bits(function(**keys)) == right else "the next call gives other bits"
 
 
-def in_children(
-    function: Callable[..., Any], keys: dict[str, Any], todo: list[int], right: bytes
-) -> Iterator[tuple[int, str, str]]:
+def in_children(function: Callable[..., Any], keys: dict[str, Any], todo: list[int], right: bytes) -> Iterator[tuple[int, str, str]]:
     """The same for many allocations, with their numbers; a child that dies is followed by one that goes on after it."""
     while todo:
         with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as told:

@@ -5,11 +5,51 @@ import re
 
 #: Values that stand where another was
 HOSTILE = (
-    "nan", "inf", "-inf", "0", "-1", "1e308", "-1e308", "5e-324", "1e-300", "9" * 400, "2147483648", "-2147483649", "true", "[]",
-    "[1]", "[[]]", "{}", "{ a = 1 }", '""', '"\\u0000"', '"\\u001b[31m"', '"../../etc/passwd"', '"/dev/zero"', '"1,5 m"',
-    '"9**9**9 m"', '"1e400 m"', '"1 kg"', '"nan m"', "1979-05-27", "07:32:00", "'''\n\n'''", "0x7fffffff", "0b1", "1_0", '"' + "a" * 5000 + '"',
-    "[" * 50 + "]" * 50, "[1.0, 2.0, 3.0]", '["a", 1]', "1.5", "1", '"1.0 g"', '"arch"', "\"0.3 m\"", "-0.0",
-)  # fmt: skip
+    "nan",
+    "inf",
+    "-inf",
+    "0",
+    "-1",
+    "1e308",
+    "-1e308",
+    "5e-324",
+    "1e-300",
+    "9" * 400,
+    "2147483648",
+    "-2147483649",
+    "true",
+    "[]",
+    "[1]",
+    "[[]]",
+    "{}",
+    "{ a = 1 }",
+    '""',
+    '"\\u0000"',
+    '"\\u001b[31m"',
+    '"../../etc/passwd"',
+    '"/dev/zero"',
+    '"1,5 m"',
+    '"9**9**9 m"',
+    '"1e400 m"',
+    '"1 kg"',
+    '"nan m"',
+    "1979-05-27",
+    "07:32:00",
+    "'''\n\n'''",
+    "0x7fffffff",
+    "0b1",
+    "1_0",
+    '"' + "a" * 5000 + '"',
+    "[" * 50 + "]" * 50,
+    "[1.0, 2.0, 3.0]",
+    '["a", 1]',
+    "1.5",
+    "1",
+    '"1.0 g"',
+    '"arch"',
+    '"0.3 m"',
+    "-0.0",
+)
 _VALUE = re.compile(r"=\s*(.+)$", re.M)
 _NUMBER = re.compile(r"(?<![\w.\"])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w.])")
 _KEY = re.compile(r"^(\w[\w.-]*)\s*=", re.M)
@@ -49,9 +89,7 @@ def _value(deck: str, rng: random.Random) -> str:
 
 
 def _extreme(deck: str, rng: random.Random) -> str:
-    return _put(
-        deck, _span(_NUMBER, deck, rng, 0), rng.choice(("1e308", "5e-324", "1e-9", "1e9", "0", "-1", "1e-100", "1e100"))
-    )
+    return _put(deck, _span(_NUMBER, deck, rng, 0), rng.choice(("1e308", "5e-324", "1e-9", "1e9", "0", "-1", "1e-100", "1e100")))
 
 
 def _scaled(deck: str, rng: random.Random) -> str:
@@ -66,10 +104,14 @@ def _scaled(deck: str, rng: random.Random) -> str:
 
 def _bytes(deck: str, rng: random.Random) -> str:
     k = rng.randrange(len(deck) + 1)
-    return rng.choice((
-        deck[:k] + chr(rng.choice((0, 7, 9, 10, 13, 27, 34, 61, 91, 93, 127, 160, 0x202E, 0x1F600))) + deck[k:],
-        deck[:k], deck[:k] + deck[k + rng.randint(1, 8) :], deck[:k] + deck[max(0, k - 10) :],
-    ))  # fmt: skip
+    return rng.choice(
+        (
+            deck[:k] + chr(rng.choice((0, 7, 9, 10, 13, 27, 34, 61, 91, 93, 127, 160, 0x202E, 0x1F600))) + deck[k:],
+            deck[:k],
+            deck[:k] + deck[k + rng.randint(1, 8) :],
+            deck[:k] + deck[max(0, k - 10) :],
+        )
+    )
 
 
 def _line(deck: str, rng: random.Random) -> str:
@@ -92,16 +134,7 @@ def _key(deck: str, rng: random.Random) -> str:
 
 def _table(deck: str, rng: random.Random) -> str:
     new = rng.choice(
-        (
-            "[structure]",
-            "[[analysis]]",
-            "[motion]",
-            "[material]",
-            "[joints]",
-            "[[structure]]",
-            "[analysis.mesh]",
-            "[materials.x]",
-        )
+        ("[structure]", "[[analysis]]", "[motion]", "[material]", "[joints]", "[[structure]]", "[analysis.mesh]", "[materials.x]")
     )
     lines = deck.split("\n")
     lines.insert(rng.randrange(len(lines) + 1), new)

@@ -17,7 +17,7 @@ def abuse(trial: trials.Trial, least: int, python: list[str], **how) -> None:
     while first < least:
         child = subprocess.run(
             [*python, str(WORKER), str(SEED), str(first), str(least - first)], capture_output=True, text=True, errors="replace", **how
-        )  # fmt: skip
+        )
         lines = child.stdout.splitlines()
         rows = [line.split("\t") for line in lines if line[:1].isdigit()]
         assert rows, f"the set-up fails: {child.returncode}: {child.stderr[-3000:]}"
@@ -34,9 +34,7 @@ def abuse(trial: trials.Trial, least: int, python: list[str], **how) -> None:
 
 
 def test_the_core_is_abused() -> None:
-    trial = trials.Trial(
-        "api-abused", "wrong calls of the core's Python API that end the process or change later results"
-    )
+    trial = trials.Trial("api-abused", "wrong calls of the core's Python API that end the process or change later results")
     abuse(trial, least := trials.count_of(20_000, 120), [sys.executable])
     trial.close(least)
 
@@ -45,7 +43,4 @@ def test_every_function_of_the_core_is_reached() -> None:
     """A new facade gets a call in the worker, or nothing abuses it."""
     child = subprocess.run([sys.executable, str(WORKER), "unreached"], capture_output=True, text=True, check=True)
     called_as_it_loads = {"api_support.init_libraries", "api_support.list_entry"}
-    assert set(child.stdout.split()) <= called_as_it_loads | {
-        "api_support.cancel_requested",
-        "api_support.handle_count",
-    }
+    assert set(child.stdout.split()) <= called_as_it_loads | {"api_support.cancel_requested", "api_support.handle_count"}

@@ -43,9 +43,7 @@ def test_mutated_decks_are_read_or_complained_of() -> None:
                 read_text(raw, "deck.toml", Path("/nowhere"))
             valid += 1
         except DeckError as error:
-            if not error.complaints or not all(
-                c.startswith("deck.toml:") and printable(c) == c for c in error.complaints
-            ):
+            if not error.complaints or not all(c.startswith("deck.toml:") and printable(c) == c for c in error.complaints):
                 trial.fail(f"{error.complaints!r:.300}: {raw!r:.3000}")
         except (Exception, trials.TooLong) as error:
             trial.fail(f"{type(error).__name__}: {error!s:.300}: {raw!r:.3000}")
@@ -62,9 +60,12 @@ def test_mutated_decks_are_run() -> None:
     statuses: dict[str, int] = {}
     while todo:
         worker = subprocess.run(
-            [sys.executable, str(Path(__file__).with_name("deck_worker.py"))], input=json.dumps(todo), capture_output=True,
-            text=True, env={**os.environ, "OMP_NUM_THREADS": "2"},
-        )  # fmt: skip
+            [sys.executable, str(Path(__file__).with_name("deck_worker.py"))],
+            input=json.dumps(todo),
+            capture_output=True,
+            text=True,
+            env={**os.environ, "OMP_NUM_THREADS": "2"},
+        )
         rows = [json.loads(line) for line in worker.stdout.splitlines() if line.startswith("[")]
         for deck, (status, reason) in zip(todo, rows, strict=False):
             trial.tried += 1

@@ -39,14 +39,18 @@ root = pytest.mark.skipif(os.getuid() != 0, reason="mounting a file system needs
 TILT = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n[analysis]\nkind = "tilt"\n'
 
 
-def command(
-    *words: str | Path, cwd: Path, before: tuple[str, ...] = (), **more: str
-) -> subprocess.CompletedProcess[str]:
+def command(*words: str | Path, cwd: Path, before: tuple[str, ...] = (), **more: str) -> subprocess.CompletedProcess[str]:
     """A command of extrados that has ended."""
     return subprocess.run(
-        [*before, sys.executable, "-m", "extrados", *map(str, words)], cwd=cwd, capture_output=True, text=True, errors="replace",
-        timeout=WAIT, env={**os.environ, **more}, stdin=subprocess.DEVNULL,
-    )  # fmt: skip
+        [*before, sys.executable, "-m", "extrados", *map(str, words)],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        timeout=WAIT,
+        env={**os.environ, **more},
+        stdin=subprocess.DEVNULL,
+    )
 
 
 def state(out: Path) -> str:
@@ -80,7 +84,9 @@ SQUARES = "".join(
     f"0\nLWPOLYLINE\n100\nAcDbEntity\n8\n0\n100\nAcDbPolyline\n90\n4\n70\n1\n10\n0\n20\n{k}\n10\n1\n20\n{k}\n10\n1\n20\n{k + 1}\n10\n0\n20\n{k + 1}\n"
     for k in range(3)
 )
-DRAWING = f"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{SQUARES}0\nENDSEC\n0\nEOF\n"
+DRAWING = (
+    f"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{SQUARES}0\nENDSEC\n0\nEOF\n"
+)
 PHASED = """[structure]
 kind = "blocks"
 file = "a.dxf"
@@ -107,25 +113,14 @@ def test_signals_in_each_phase(tmp_path: Path) -> None:
             trial.tried += 1
             out = tmp_path / "out"
             shutil.rmtree(out, ignore_errors=True)
-            words = [
-                sys.executable,
-                str(HERE / "phase_worker.py"),
-                str(int(sent)),
-                PHASES[phase],
-                "run",
-                "deck.toml",
-                "--out",
-                "out",
-            ]
+            words = [sys.executable, str(HERE / "phase_worker.py"), str(int(sent)), PHASES[phase], "run", "deck.toml", "--out", "out"]
             run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=WAIT)
             if run.returncode != 128 + sent or "Traceback" in run.stderr:
                 trial.fail(f"{phase}: {sent.name}: ended with {run.returncode}: {run.stderr[-500:]}")
             reached += run.returncode == 128 + sent
             if (found := state(out)) not in ("whole", "nothing"):
                 trial.fail(f"{phase}: {sent.name}: {found}")
-            left = sorted(
-                p.name for p in tmp_path.iterdir() if p.name not in ("deck.toml", "a.dxf", "out", "out.checkpoint")
-            )
+            left = sorted(p.name for p in tmp_path.iterdir() if p.name not in ("deck.toml", "a.dxf", "out", "out.checkpoint"))
             if left:
                 trial.fail(f"{phase}: {sent.name}: {left} is left")
     trial.notes.append(f"{len(phases)} phases, {reached} ended by their signal")
@@ -133,10 +128,43 @@ def test_signals_in_each_phase(tmp_path: Path) -> None:
 
 
 ODD = (
-    "/", ".", "..", "./", "/dev/null", "/dev/full", "/dev/stdin", "/proc/self/x", "/sys/x", "a/../b", "x" * 200, "x" * 248, "x" * 300, "é" * 120,
-    "a\nb", "a\tb", "\x1b[31m", "-x", " ", "  a", "~", "$HOME", "*", "%s%n", "{}", "CON", "deck.toml", "deck.toml/x", "link", "pipe", "full/x",
-    "/".join(["d" * 200] * 30), "a\udcffb", "=1+1", ".hidden", "..x",
-)  # fmt: skip
+    "/",
+    ".",
+    "..",
+    "./",
+    "/dev/null",
+    "/dev/full",
+    "/dev/stdin",
+    "/proc/self/x",
+    "/sys/x",
+    "a/../b",
+    "x" * 200,
+    "x" * 248,
+    "x" * 300,
+    "é" * 120,
+    "a\nb",
+    "a\tb",
+    "\x1b[31m",
+    "-x",
+    " ",
+    "  a",
+    "~",
+    "$HOME",
+    "*",
+    "%s%n",
+    "{}",
+    "CON",
+    "deck.toml",
+    "deck.toml/x",
+    "link",
+    "pipe",
+    "full/x",
+    "/".join(["d" * 200] * 30),
+    "a\udcffb",
+    "=1+1",
+    ".hidden",
+    "..x",
+)
 
 
 def test_results_at_odd_places(tmp_path: Path) -> None:
@@ -212,9 +240,7 @@ def test_a_full_disk_of_ext4(tmp_path: Path) -> None:
     for size in (256, 512, 1024, 4096):
         image = tmp_path / "image"
         image.write_bytes(bytes(size * 1024))
-        if subprocess.run(
-            ["mkfs.ext4", "-q", "-O", "^has_journal", "-m", "0", str(image)], capture_output=True
-        ).returncode:
+        if subprocess.run(["mkfs.ext4", "-q", "-O", "^has_journal", "-m", "0", str(image)], capture_output=True).returncode:
             pytest.skip("no ext4 can be made here")
         with mounted(tmp_path / "disk", "-o", "loop", str(image)) as place:
             full(trial, place, deck, f"ext4 of {size} kB")
@@ -238,7 +264,7 @@ def test_without_shared_memory(tmp_path: Path) -> None:
         trial.tried += 1
         run = subprocess.run(
             [*hidden, sys.executable, *words], cwd=tmp_path, capture_output=True, text=True, timeout=WAIT, stdin=subprocess.DEVNULL
-        )  # fmt: skip
+        )
         if run.returncode == 77:
             pytest.skip(f"/dev/shm cannot be hidden here: {run.stderr.strip()}")
         if run.returncode:
@@ -286,23 +312,34 @@ def _packed_hdf5(name: str) -> bytes:
 #: Files that stand for more than a machine has, by the name that says their format
 BOMBS: dict[str, Callable[[], bytes]] = {
     "points.vtu": lambda: _vtu(4 * 10**9),
-    "entities.vtu": lambda: b'<!DOCTYPE a [<!ENTITY a "' + b"x" * 1000 + b'">' + b"".join(
-        b'<!ENTITY %c "%s">' % (98 + k, b"&%c;" % (97 + k) * 100) for k in range(8)) + b"]><VTKFile>&i;</VTKFile>",
+    "entities.vtu": lambda: (
+        b'<!DOCTYPE a [<!ENTITY a "'
+        + b"x" * 1000
+        + b'">'
+        + b"".join(b'<!ENTITY %c "%s">' % (98 + k, b"&%c;" % (97 + k) * 100) for k in range(8))
+        + b"]><VTKFile>&i;</VTKFile>"
+    ),
     "deep.vtu": lambda: b"<a>" * 1_000_000,
     "packed.med": lambda: _packed_hdf5("COO"),
     "packed.h5m": lambda: _packed_hdf5("tstt"),
     "points.vtk": lambda: b"# vtk DataFile Version 3.0\na\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 1000000000000 double\n",
-    "cells.vtk": lambda: b"# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 double\n0 0 0\nCELLS 99999999999 99999999999\n",
+    "cells.vtk": lambda: (
+        b"# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 double\n0 0 0\nCELLS 99999999999 99999999999\n"
+    ),
     "nodes.msh": lambda: b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 1000000000000 1 1000000000000\n2 1 0 1000000000000\n",
     "old.msh": lambda: b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1000000000000\n1 0 0 0\n$EndNodes\n",
-    "points.ply": lambda: b"ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty double x\nproperty double y\nproperty double z\nend_header\n",
+    "points.ply": lambda: (
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty double x\nproperty double y\nproperty double z\nend_header\n"
+    ),
     "faces.off": lambda: b"OFF\n1000000000000 1000000000000 0\n",
     "lines.inp": lambda: b"*NODE\n" + b"1, 0, 0\n" * 1_000_000,
-    "sets.inp": lambda: b"*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*ELSET, ELSET=a, GENERATE\n1, 1000000000000, 1\n",
+    "sets.inp": lambda: (
+        b"*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*ELSET, ELSET=a, GENERATE\n1, 1000000000000, 1\n"
+    ),
     "cells.su2": lambda: b"NDIME= 2\nNELEM= 1000000000000\n",
     "grid.mesh": lambda: b"MeshVersionFormatted 2\nDimension 3\nVertices\n1000000000000\n",
     "card.bdf": lambda: b"BEGIN BULK\n" + b"GRID    1               0.0     0.0     0.0\n" * 300_000,
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", BOMBS if trials.SHARE > 0.0 else ["points.vtu", "nodes.msh", "sets.inp"])
@@ -336,24 +373,24 @@ def test_planted_modules(tmp_path: Path) -> None:
     """A file for every module that a run loads lies beside the deck, and none of them is run."""
     trial = trials.Trial("planted", "commands that run a module of the folder that they are started in")
     listed = subprocess.run(
-        [sys.executable, "-c", "import sys; from extrados.cli import main; sys.argv[1:] = ['explain', 'tilt']\n"
-         "try: main()\nexcept SystemExit: pass\nimport matplotlib.pyplot, scipy.stats, h5py, uvicorn, meshio\n"
-         "print('MODULES', *sorted({n.partition('.')[0] for n in sys.modules}))"],
-        capture_output=True, text=True, cwd=tmp_path, check=True,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-c",
+            "import sys; from extrados.cli import main; sys.argv[1:] = ['explain', 'tilt']\n"
+            "try: main()\nexcept SystemExit: pass\nimport matplotlib.pyplot, scipy.stats, h5py, uvicorn, meshio\n"
+            "print('MODULES', *sorted({n.partition('.')[0] for n in sys.modules}))",
+        ],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=True,
+    )
     names = [n for n in listed.stdout.rpartition("MODULES")[2].split() if n.isidentifier() and n != "__main__"]
     (tmp_path / "deck.toml").write_text(TILT)
     for name in names:
         (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'a').write(__name__ + ' ')\n")
     script = str(Path(sys.executable).with_name("extrados"))
-    commands = (
-        "run deck.toml --out r",
-        "report r",
-        "check deck.toml",
-        "export deck.toml --to compas",
-        "assess . --out all",
-        "schema",
-    )
+    commands = ("run deck.toml --out r", "report r", "check deck.toml", "export deck.toml --to compas", "assess . --out all", "schema")
     for words in commands if trials.SHARE > 0.0 else commands[:1]:
         trial.tried += 1
         run = subprocess.run([script, *words.split()], cwd=tmp_path, capture_output=True, text=True, timeout=WAIT)
@@ -372,9 +409,7 @@ def test_runs_go_to_other_processes(tmp_path: Path) -> None:
         run = compute(Context(read_text(starter(kind).encode(), "deck.toml", tmp_path)))
         (tmp_path / "run").write_bytes(pickle.dumps(run))
         again = pickle.loads((tmp_path / "run").read_bytes())
-        other = subprocess.run(
-            [sys.executable, "-c", read, str(tmp_path / "run")], capture_output=True, text=True, timeout=WAIT
-        )
+        other = subprocess.run([sys.executable, "-c", read, str(tmp_path / "run")], capture_output=True, text=True, timeout=WAIT)
         trial.tried += 1
         if again.summary != run.summary or other.returncode or not other.stdout.strip():
             trial.fail(f"{kind}: {other.returncode} {other.stderr[-300:]}")
@@ -404,19 +439,7 @@ def test_workers_of_a_cluster_are_killed(cluster, tmp_path: Path) -> None:
     for k in range(least := trials.count_of(10, 1)):
         trial.tried += 1
         out = tmp_path / f"out-{k}"
-        words = [
-            sys.executable,
-            "-m",
-            "extrados",
-            "run",
-            "deck.toml",
-            "--no-figures",
-            "--quiet",
-            "--out",
-            out.name,
-            "--scheduler",
-            address,
-        ]
+        words = [sys.executable, "-m", "extrados", "run", "deck.toml", "--no-figures", "--quiet", "--out", out.name, "--scheduler", address]
         run = subprocess.Popen(words, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
         seen, left = 0, KILLED
         while run.poll() is None:
@@ -427,9 +450,7 @@ def test_workers_of_a_cluster_are_killed(cluster, tmp_path: Path) -> None:
                 arguments = processes[place].args
                 processes[place].kill()
                 processes[place].wait()
-                processes[place] = subprocess.Popen(
-                    arguments, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-                )
+                processes[place] = subprocess.Popen(arguments, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
                 seen, left, killed = kept, left - 1, killed + 1
             time.sleep(0.02)
         assert run.stderr is not None

@@ -29,7 +29,7 @@ def worked(shim: str, script: str, *words: str) -> list[list]:
     environment = {**os.environ, "LD_PRELOAD": shim, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     child = subprocess.run(
         [sys.executable, str(HERE / script), shim, *words], capture_output=True, text=True, errors="replace", env=environment
-    )  # fmt: skip
+    )
     assert child.returncode == 0, f"{child.returncode}: {child.stderr[-3000:]}"
     return [json.loads(line) for line in child.stdout.splitlines() if line.startswith("[")]
 
@@ -60,9 +60,7 @@ def test_every_allocation_fails_once(shim: str) -> None:
                 trial.fail(f"{name}: {text}")
     trial.notes.append(", ".join(f"{n} {end}" for end, n in sorted(ends.items(), key=lambda e: -e[1])))
     if finalised:
-        trial.notes.append(
-            f"{finalised} of them in finalisers that gfortran writes and that check nothing (16 bytes each)"
-        )
+        trial.notes.append(f"{finalised} of them in finalisers that gfortran writes and that check nothing (16 bytes each)")
     trial.close(20)
 
 
@@ -86,9 +84,7 @@ count = 200
 @pytest.mark.verify
 def test_every_write_fails_once(shim: str, tmp_path: Path) -> None:
     """The run says so, and its folder holds the results, those from before, or none; never a part, nothing beside it."""
-    trial = trials.Trial(
-        "failed-writes", "writes, renames and syncs of a run that fail and are not told, or leave a part"
-    )
+    trial = trials.Trial("failed-writes", "writes, renames and syncs of a run that fail and are not told, or leave a part")
     deck = tmp_path / "deck.toml"
     deck.write_text(DECK)
     codes: dict[int, int] = {}

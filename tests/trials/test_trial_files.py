@@ -62,9 +62,7 @@ def test_damaged_records() -> None:
                 case 2:
                     del raw[k : k + rng.randint(1, 50)]
                 case 3:
-                    raw[k:k] = rng.choice(
-                        (b"nan", b"1e999", b"-", b"9" * 300, b"\r", b"\0", b"\xff\xfe", b" " * 5000, b"#")
-                    )
+                    raw[k:k] = rng.choice((b"nan", b"1e999", b"-", b"9" * 300, b"\r", b"\0", b"\xff\xfe", b" " * 5000, b"#"))
                 case 4:
                     lines = raw.split(b"\n")
                     i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
@@ -75,9 +73,7 @@ def test_damaged_records() -> None:
                     at = rng.randrange(len(other))
                     raw[k:k] = other[at : at + 300]
                 case _:
-                    raw[k:] = raw[k:].replace(
-                        rng.choice((b"0", b"1", b" ", b".")), rng.choice((b"", b"9", b"e", b"-")), 3
-                    )
+                    raw[k:] = raw[k:].replace(rng.choice((b"0", b"1", b" ", b".")), rng.choice((b"", b"9", b"e", b"-")), 3)
             raw = raw or bytearray(b" ")
         tried(trial, name, bytes(raw))
     trial.close(least)
@@ -120,14 +116,12 @@ HOSTILE = {
     "a table of nothing": b"name,thickness\n",
     "a table of other keys": b"name,kind,kind\na,b,c\n",
     "a quote without an end": b'name,thickness\n"a,1\n' + b"x" * 200_000,
-}  # fmt: skip
+}
 
 
 def test_hostile_files(tmp_path) -> None:
     """Each through every door: an answer or a reason, no internal error."""
-    trial = trials.Trial(
-        "files-hostile", "hostile files that a deck names and that are neither read nor refused in words"
-    )
+    trial = trials.Trial("files-hostile", "hostile files that a deck names and that are neither read nor refused in words")
     for key, deck in DOORS.items():
         if key == "resume_from":
             continue

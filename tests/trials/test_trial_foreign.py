@@ -28,17 +28,13 @@ def _found_by_the_reader(monkeypatch: pytest.MonkeyPatch):
 
 @pytest.mark.parametrize("sort", foreign.SORTS)
 def test_files_by_the_grammar_of_their_format(sort: str, tmp_path: Path) -> None:
-    trial = trials.Trial(
-        f"foreign{sort}", f"files of the format {sort[1:].upper()} that are neither read nor refused in words"
-    )
+    trial = trials.Trial(f"foreign{sort}", f"files of the format {sort[1:].upper()} that are neither read nor refused in words")
     least = trials.count_of(20_000, 200)
     read = refused = 0
     for first in range(0, least, BATCH):
         end = min(first + BATCH, least)
         try:
-            found = read_contained(
-                "foreign:try_many", b"", ["ezdxf"], 20 * foreign.SECONDS, sort=sort, seed=SEED, first=first, end=end
-            )
+            found = read_contained("foreign:try_many", b"", ["ezdxf"], 20 * foreign.SECONDS, sort=sort, seed=SEED, first=first, end=end)
         except Unreadable as error:
             trial.fail(f"{sort} {first} to {end}: {error}")
             continue

@@ -43,8 +43,7 @@ def test_memory_that_is_lowered_after_the_start() -> None:
     """Every size from none to plenty: OpenBLAS would wait for ever, or crash, where its buffer finds no room, and OpenMP
     would end the process where a thread finds none. One thread of OpenBLAS, as the command has it."""
     trial = trials.Trial(
-        "memory-lowered",
-        "runs with lowered memory that end in a signal, hang, or neither answer nor say that memory lacked",
+        "memory-lowered", "runs with lowered memory that end in a signal, hang, or neither answer nor say that memory lacked"
     )
     tried = tuple(kinds.ANALYSES) if trials.SHARE > 0.0 else ("sla", "dem")
     rooms = (0, 4, 16, 64, 128, 200, 260, 280, 320, 400) if trials.SHARE > 0.0 else (64, 280)
@@ -57,7 +56,7 @@ def test_memory_that_is_lowered_after_the_start() -> None:
             try:
                 run = subprocess.run(
                     [sys.executable, "-c", LIMITED, kind, str(room)], capture_output=True, text=True, timeout=600, env=environment
-                )  # fmt: skip
+                )
             except subprocess.TimeoutExpired:
                 trial.fail(f"{kind}, {room} MB: hangs")
                 continue

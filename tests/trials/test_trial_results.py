@@ -26,9 +26,7 @@ DRAWN = 4
 def damaged(content: bytes, rng: random.Random) -> bytes:
     """One to four faults: bits, bytes, lengths, parts put elsewhere; half of them among the words of HDF5, not the numbers."""
     raw = bytearray(content)
-    words = [
-        i for i in range(0, len(raw) - 4, 8) if raw[i : i + 4] in (b"TREE", b"HEAP", b"SNOD", b"OHDR", b"GCOL", b"OCHK")
-    ]
+    words = [i for i in range(0, len(raw) - 4, 8) if raw[i : i + 4] in (b"TREE", b"HEAP", b"SNOD", b"OHDR", b"GCOL", b"OCHK")]
     for _ in range(rng.randint(1, 4)):
         near = words and rng.random() < 0.5
         k = min(rng.choice(words) + rng.randrange(200), len(raw) - 1) if near else rng.randrange(len(raw))
@@ -38,9 +36,7 @@ def damaged(content: bytes, rng: random.Random) -> bytes:
             case 1:
                 raw[k] = rng.randrange(256)
             case 2:
-                raw[k : k + 8] = rng.choice(
-                    (b"\xff" * 8, b"\0" * 8, (2**40).to_bytes(8, "little"), k.to_bytes(8, "little"))
-                )
+                raw[k : k + 8] = rng.choice((b"\xff" * 8, b"\0" * 8, (2**40).to_bytes(8, "little"), k.to_bytes(8, "little")))
             case 3:
                 del raw[k : k + rng.randint(1, 64)]
             case 4:
@@ -91,9 +87,7 @@ def put(folder: Path, content: bytes) -> None:
 
 def test_damaged_results_with_a_right_checksum(tmp_path: Path) -> None:
     """Read, or refused with the name of the folder; what is read can be drawn, or it is said why not."""
-    trial = trials.Trial(
-        "results-damaged", "damaged results with a right checksum that are neither read nor refused, or hang"
-    )
+    trial = trials.Trial("results-damaged", "damaged results with a right checksum that are neither read nor refused, or hang")
     rng = random.Random(SEED)
     kinds = KINDS if trials.SHARE > 0.0 else KINDS[:1]
     sound = {}

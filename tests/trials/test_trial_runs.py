@@ -24,8 +24,7 @@ from extrados.running.run import run_to
 
 #: Longer than the starters, so that there is something to be killed
 MORE = {
-    "fragility": BLOCK
-    + '[motion]\nkind = "generated"\nmmi = 8\nduration = 5.0\n[[analysis]]\nkind = "fragility"\ncount = 2000\n',
+    "fragility": BLOCK + '[motion]\nkind = "generated"\nmmi = 8\nduration = 5.0\n[[analysis]]\nkind = "fragility"\ncount = 2000\n',
     "failure-domain": BLOCK
     + '[[analysis]]\nkind = "failure-domain"\nmax_amplitude = "1.2 g"\namplitudes = 40\ndurations = [0.2, 0.4, 0.8]\n',
 }
@@ -84,9 +83,7 @@ def differs(one: Path, two: Path) -> str:
 def test_stopped_at_any_time_and_resumed(tmp_path, number) -> None:
     """Stopped again and again at random times; when it has ended, its bytes are those of a run that was left alone."""
     word = {signal.SIGKILL: "killed", signal.SIGINT: "signalled"}[number]
-    trial = trials.Trial(
-        f"runs-{word}", f"runs {word} at a random time that end otherwise than they should, or give other bytes"
-    )
+    trial = trials.Trial(f"runs-{word}", f"runs {word} at a random time that end otherwise than they should, or give other bytes")
     rng = random.Random(int(number))
     least = trials.count_of(200, 1)
     names, seconds, finished, early, waits = list(ALL), {}, 0, 0, []
@@ -117,11 +114,7 @@ def test_stopped_at_any_time_and_resumed(tmp_path, number) -> None:
             said = told.read()
         if wait:
             # an interpreter that is still starting ends as Python would have it, and no code of ours has run yet
-            if (
-                sent != signal.SIGKILL
-                and process.returncode in (1, -sent)
-                and "/extrados/" not in said.replace(str(tmp_path), "")
-            ):
+            if sent != signal.SIGKILL and process.returncode in (1, -sent) and "/extrados/" not in said.replace(str(tmp_path), ""):
                 early += 1
                 continue
             waits.append(wait)
@@ -142,17 +135,11 @@ def test_stopped_at_any_time_and_resumed(tmp_path, number) -> None:
             trial.fail(f"{name}: resumed: {last.returncode} {last.stderr[-300:] or where}")
         if folder_of(out).exists():
             trial.fail(f"{name}: {folder_of(out).name} is left")
-    trial.notes.append(
-        f"{len(seconds)} decks of {len({kind_of(ALL[n]) for n in seconds})} kinds, {finished} runs came to their end"
-    )
+    trial.notes.append(f"{len(seconds)} decks of {len({kind_of(ALL[n]) for n in seconds})} kinds, {finished} runs came to their end")
     if number == signal.SIGINT:
         trial.notes.append(f"{early} more came while Python itself was starting, before the first instruction of ours")
-        for what, times in zip(
-            ("of the clock", "of the processors"), map(sorted, zip(*waits, strict=True)), strict=True
-        ):
-            trial.notes.append(
-                f"from the signal to the end {times[len(times) // 2]:.2f} s {what} in the median, {times[-1]:.2f} s at most"
-            )
+        for what, times in zip(("of the clock", "of the processors"), map(sorted, zip(*waits, strict=True)), strict=True):
+            trial.notes.append(f"from the signal to the end {times[len(times) // 2]:.2f} s {what} in the median, {times[-1]:.2f} s at most")
     trial.close(least)
 
 

@@ -15,10 +15,26 @@ sys.path.insert(0, str(trials.ROOT / "tools"))
 import apart
 
 #: Tests that call the core, room by room
-TESTS = ("unit/test_border.py", "unit/test_block.py", "unit/test_dem_core.py", "unit/test_mechanism.py", "unit/test_motion_core.py",
-         "unit/test_sla_elements.py", "unit/test_sla_events.py", "unit/test_sla_teeth.py", "unit/test_vertex.py", "unit/test_stack.py",
-         "unit/test_soft_base.py", "unit/test_restraints.py", "unit/test_dem3_core.py", "unit/test_dem_nonsmooth.py",
-         "unit/test_dem3_nonsmooth.py", "unit/test_shell_elements.py", "unit/test_shell_events.py", "unit/test_shell_joints.py")  # fmt: skip
+TESTS = (
+    "unit/test_border.py",
+    "unit/test_block.py",
+    "unit/test_dem_core.py",
+    "unit/test_mechanism.py",
+    "unit/test_motion_core.py",
+    "unit/test_sla_elements.py",
+    "unit/test_sla_events.py",
+    "unit/test_sla_teeth.py",
+    "unit/test_vertex.py",
+    "unit/test_stack.py",
+    "unit/test_soft_base.py",
+    "unit/test_restraints.py",
+    "unit/test_dem3_core.py",
+    "unit/test_dem_nonsmooth.py",
+    "unit/test_dem3_nonsmooth.py",
+    "unit/test_shell_elements.py",
+    "unit/test_shell_events.py",
+    "unit/test_shell_joints.py",
+)
 BUILDS = {
     "sanitized": ("-Dsanitize=true", "-Dbuildtype=plain", "-Doptimization=1"),
     "checked": ("-Dchecks=true", "-Dbuildtype=plain", "-Doptimization=1"),
@@ -37,9 +53,7 @@ def test_the_core_under_a_watch(name: str) -> None:
     if name == "sanitized":
         # The library of C++ too: what other packages throw goes through the sanitizer, which must have found it
         libraries = [
-            subprocess.run(
-                ["gcc", f"-print-file-name={name}"], capture_output=True, text=True, check=True
-            ).stdout.strip()
+            subprocess.run(["gcc", f"-print-file-name={name}"], capture_output=True, text=True, check=True).stdout.strip()
             for name in ("libasan.so", "libstdc++.so.6")
         ]
         # Python frees little at its end, and f2py asks for a size of zero where it has none
@@ -58,8 +72,10 @@ def test_the_core_under_a_watch(name: str) -> None:
         trial.fail(f"tests: exit {run.returncode}: {run.stdout[-1500:]} {run.stderr[-1500:]}")
     native = subprocess.run(
         [str(Path(sys.executable).with_name("meson")), "test", "-C", str(place / "build"), "--no-rebuild", "--print-errorlogs", "-t", "20"],
-        env={**environment, "LD_PRELOAD": ""}, capture_output=True, text=True,
-    )  # fmt: skip
+        env={**environment, "LD_PRELOAD": ""},
+        capture_output=True,
+        text=True,
+    )
     trial.tried += len(re.findall(r"^ *\d+/\d+ .* OK ", native.stdout, re.M))
     if native.returncode:
         trial.fail(f"tests in Fortran and C: {native.stdout[-2000:]}")

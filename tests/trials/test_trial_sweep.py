@@ -43,9 +43,7 @@ def resident(pid: int) -> int:
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is read from /proc")
 def test_a_million_members(cluster, tmp_path: Path) -> None:
     """The driver is killed twice, a worker once; memory of the workers and of the driver is flat."""
-    trial = trials.Trial(
-        "sweep-of-a-million", "members of a sweep on a cluster, killed thrice, that are lost or have other bytes"
-    )
+    trial = trials.Trial("sweep-of-a-million", "members of a sweep on a cluster, killed thrice, that are lost or have other bytes")
     address, processes = cluster
     count = trials.count_of(1_000_000, 5_000)
     deck, out = tmp_path / "deck.toml", tmp_path / "out"

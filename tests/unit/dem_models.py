@@ -42,9 +42,10 @@ def pieces(breaks: list[float], values: list[float]) -> Ground:
 
 def cosine(amplitude: float, omega: float, duration: float = 100.0) -> Ground:
     return Ground(
-        breaks=np.array([0.0, duration]), linear=np.zeros((1, 1, 2)),
+        breaks=np.array([0.0, duration]),
+        linear=np.zeros((1, 1, 2)),
         harmonic=np.array([amplitude, 0.0, omega, 0.5 * np.pi]).reshape(1, 1, 1, 4),
-    )  # fmt: skip
+    )
 
 
 def housner(width: float, height: float, amplitude: float, omega: float, times: np.ndarray) -> np.ndarray:
@@ -70,9 +71,8 @@ def housner(width: float, height: float, amplitude: float, omega: float, times: 
 
         crossing.direction = -side
         part = solve_ivp(
-            rate, (t, times[-1]), state, method="DOP853", rtol=1e-10, atol=1e-13, events=crossing, dense_output=True,
-            max_step=0.01,
-        )  # fmt: skip
+            rate, (t, times[-1]), state, method="DOP853", rtol=1e-10, atol=1e-13, events=crossing, dense_output=True, max_step=0.01
+        )
         now = (times >= t) & (times <= part.t[-1])
         out[now] = part.sol(times[now])[0]
         if part.status != 1:

@@ -29,12 +29,7 @@ def drawn_ticks(fig: Figure) -> Iterator[Text]:
 def texts(fig: Figure) -> list[tuple[str, Bbox]]:
     """Every text that is drawn with its box in pixels; those of a slant, whose boxes are wider than they are, are left out."""
     renderer = FigureCanvasAgg(fig).get_renderer()
-    of_axes = {
-        id(t)
-        for axis in fig.findobj(Axis)
-        for tick in (*axis.majorTicks, *axis.minorTicks)
-        for t in (tick.label1, tick.label2)
-    }
+    of_axes = {id(t) for axis in fig.findobj(Axis) for tick in (*axis.majorTicks, *axis.minorTicks) for t in (tick.label1, tick.label2)}
     of_axes |= {id(axis.get_offset_text()) for axis in fig.findobj(Axis)}
     hidden = {id(t) for ax in fig.axes if not ax.get_visible() for t in ax.findobj(Text)}
     bare = {id(t) for ax in fig.axes if not ax.axison for axis in (ax.xaxis, ax.yaxis) for t in axis.findobj(Text)}

@@ -21,21 +21,12 @@ def fixed(values: np.ndarray, columns: int, form: str) -> list[str]:
 def at2(a: np.ndarray, step: float = STEP, *, old: bool = False) -> str:
     """PEER; `old` puts the numbers before the words."""
     npts = f"{len(a):5d}    {step:6.4f}    NPTS, DT" if old else f"NPTS= {len(a):6d}, DT= {step:7.4f} SEC,"
-    head = [
-        "PEER NGA STRONG MOTION DATABASE RECORD",
-        "Quake, 1/1/2000, Station, 000",
-        "ACCELERATION TIME SERIES IN UNITS OF G",
-        npts,
-    ]
+    head = ["PEER NGA STRONG MOTION DATABASE RECORD", "Quake, 1/1/2000, Station, 000", "ACCELERATION TIME SERIES IN UNITS OF G", npts]
     return "\n".join([*head, *fixed(a / 980.665, 5, "15.7E")]) + "\n"
 
 
 def vt2(v: np.ndarray, step: float = STEP) -> str:
-    head = [
-        "PEER NGA STRONG MOTION DATABASE RECORD",
-        "Quake, 1/1/2000, Station, 000",
-        "VELOCITY TIME SERIES IN UNITS OF CM/S",
-    ]
+    head = ["PEER NGA STRONG MOTION DATABASE RECORD", "Quake, 1/1/2000, Station, 000", "VELOCITY TIME SERIES IN UNITS OF CM/S"]
     return "\n".join([*head, f"NPTS= {len(v):6d}, DT= {step:7.4f} SEC", *fixed(v, 5, "15.7E")]) + "\n"
 
 
@@ -44,9 +35,20 @@ def cosmos(channels: list[list[tuple[str, str, np.ndarray]]], step: float = STEP
     lines = []
     for number, blocks in enumerate(channels, start=1):
         lines.append("Corrected acceleration    (Format v01.20 with 13 text lines)")
-        text = ["Record of Test Earthquake", "Hypocenter: 39.5 -123.7", "Origin: 2019/05/05", "Statn No: 02-001795 Code:NP-1795",
-                "Coords: 37.7 -122.4", "Recorder: x", "Rcrd start time: 2019/05/05", f"Sta Chan   {number}: {90 * number} Deg (Rcrdr Chan  1) Location:Ground",
-                "Raw record length", "Processed: 2019/05/05", "Filtered", "Values used when parameter is unknown:  -999, -999.000"]  # fmt: skip
+        text = [
+            "Record of Test Earthquake",
+            "Hypocenter: 39.5 -123.7",
+            "Origin: 2019/05/05",
+            "Statn No: 02-001795 Code:NP-1795",
+            "Coords: 37.7 -122.4",
+            "Recorder: x",
+            "Rcrd start time: 2019/05/05",
+            f"Sta Chan   {number}: {90 * number} Deg (Rcrdr Chan  1) Location:Ground",
+            "Raw record length",
+            "Processed: 2019/05/05",
+            "Filtered",
+            "Values used when parameter is unknown:  -999, -999.000",
+        ]
         lines += text
         integers, reals = np.full(100, -999), np.full(100, -999.0)
         reals[61] = 1000.0 * step
@@ -66,14 +68,15 @@ def csmip_v2(a: np.ndarray, step: float = STEP, channels: int = 1, width: int = 
     """CSMIP volume 2: acceleration, velocity, displacement of each channel, columns that may touch."""
     lines = []
     for number in range(1, channels + 1):
-        lines += [f"Corrected accelerogram   58667-L2866-14236.52       Chan  {number}:  {90 * number} Deg         from   ",
-                  "Uncorrected Accelerogram Data             Processed: 08/24/14, CGS", "Rcrd of Sun Aug 24, 2014"]  # fmt: skip
+        lines += [
+            f"Corrected accelerogram   58667-L2866-14236.52       Chan  {number}:  {90 * number} Deg         from   ",
+            "Uncorrected Accelerogram Data             Processed: 08/24/14, CGS",
+            "Rcrd of Sun Aug 24, 2014",
+        ]
         lines += [f"header line {k}" for k in range(4, 26)]
         lines += fixed(np.zeros(100, dtype=int), 16, "5d") + fixed(np.zeros(100), 8, f"{width}.{width - 4}f")
         for what, unit in (("accel", "cm/sec2"), ("veloc", "cm/sec"), ("displ", "cm")):
-            lines.append(
-                f"  {len(a)} points of {what} data equally spaced at  {step:.3f} sec, in {unit}. (8f{width}.3)"
-            )
+            lines.append(f"  {len(a)} points of {what} data equally spaced at  {step:.3f} sec, in {unit}. (8f{width}.3)")
             lines += fixed(a * number, 8, f"{width}.3f")
         lines.append("/&  ----------  End of data for channel  1  ----------")
     return "\n".join(lines) + "\n"
@@ -90,9 +93,19 @@ def cdmg_v1(a_g: np.ndarray, step: float = STEP) -> str:
 
 def smc(a: np.ndarray, step: float = STEP, rate: float | None = None) -> str:
     """USGS SMC: values such as 1.2345E+1 in columns of ten."""
-    text = ["2 CORRECTED ACCELEROGRAM", "*", "DVD0A", "     1989  10  18    0004 Test", "Moment Mag=      7.1",
-            "station = Test Dam, crest               component=     65", "epicentral dist =     66.0       pk acc =    -80.2",
-            "inst type=SMA-1      data source = USGS", "*", "*", "*"]  # fmt: skip
+    text = [
+        "2 CORRECTED ACCELEROGRAM",
+        "*",
+        "DVD0A",
+        "     1989  10  18    0004 Test",
+        "Moment Mag=      7.1",
+        "station = Test Dam, crest               component=     65",
+        "epicentral dist =     66.0       pk acc =    -80.2",
+        "inst type=SMA-1      data source = USGS",
+        "*",
+        "*",
+        "*",
+    ]
     whole = np.full(48, -32768)
     whole[15], whole[16] = 3, len(a)
     real = np.full(50, 1.7e38)
@@ -109,11 +122,25 @@ def _short(value: float) -> str:
 
 def knet(counts: np.ndarray, rate: float = 100.0, scale: str = "3920(gal)/6182761") -> str:
     """K-NET: the header's 17 lines have their value from column 19 on."""
-    pairs = [("Origin Time", "2011/03/11 14:46:00"), ("Lat.", "38.103"), ("Long.", "142.861"), ("Depth. (km)", "24"),
-             ("Mag.", "9.0"), ("Station Code", "MYG004"), ("Station Lat.", "38.7292"), ("Station Long.", "141.0217"),
-             ("Station Height(m)", "40"), ("Record Time", "2011/03/11 14:46:36"), ("Sampling Freq(Hz)", f"{rate:g}Hz"),
-             ("Duration Time(s)", f"{len(counts) / rate:g}"), ("Dir.", "N-S"), ("Scale Factor", scale),
-             ("Max. Acc. (gal)", "2699.885"), ("Last Correction", "2011/03/11 14:46:21"), ("Memo.", "")]  # fmt: skip
+    pairs = [
+        ("Origin Time", "2011/03/11 14:46:00"),
+        ("Lat.", "38.103"),
+        ("Long.", "142.861"),
+        ("Depth. (km)", "24"),
+        ("Mag.", "9.0"),
+        ("Station Code", "MYG004"),
+        ("Station Lat.", "38.7292"),
+        ("Station Long.", "141.0217"),
+        ("Station Height(m)", "40"),
+        ("Record Time", "2011/03/11 14:46:36"),
+        ("Sampling Freq(Hz)", f"{rate:g}Hz"),
+        ("Duration Time(s)", f"{len(counts) / rate:g}"),
+        ("Dir.", "N-S"),
+        ("Scale Factor", scale),
+        ("Max. Acc. (gal)", "2699.885"),
+        ("Last Correction", "2011/03/11 14:46:21"),
+        ("Memo.", ""),
+    ]
     lines = [f"{key:18s}{value}" for key, value in pairs]
     words = [f"{int(c):8d} " for c in counts]
     return "\n".join(lines + ["".join(words[k : k + 8]) for k in range(0, len(words), 8)]) + "\n"
@@ -121,7 +148,15 @@ def knet(counts: np.ndarray, rate: float = 100.0, scale: str = "3920(gal)/618276
 
 def esm(a: np.ndarray, step: float = STEP) -> str:
     """ESM: 64 lines KEY: value, then one column."""
-    known = {"EVENT_NAME": "TEST", "EVENT_ID": "IT-0001", "STREAM": "HGE", "UNITS": "cm/s^2", "SAMPLING_INTERVAL_S": f"{step:.6f}",
-             "NDATA": str(len(a)), "DATA_TYPE": "ACCELERATION", "PGA_CM/S^2": "-180.0"}  # fmt: skip
+    known = {
+        "EVENT_NAME": "TEST",
+        "EVENT_ID": "IT-0001",
+        "STREAM": "HGE",
+        "UNITS": "cm/s^2",
+        "SAMPLING_INTERVAL_S": f"{step:.6f}",
+        "NDATA": str(len(a)),
+        "DATA_TYPE": "ACCELERATION",
+        "PGA_CM/S^2": "-180.0",
+    }
     keys = [*known.items(), *((f"USER{k}", "") for k in range(64 - len(known)))]
     return "\n".join([*(f"{k}: {v}" for k, v in keys), *(f"{v:.6f}" for v in a)]) + "\n"

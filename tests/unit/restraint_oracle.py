@@ -53,7 +53,7 @@ class Spring:
             self.mode = "elastic"
 
 
-def rock(coefficients, springs, ground, end, *, side, q, v, restitution, limit, rest_rate, breaks=(), wall=None, rtol=1e-11):  # fmt: skip
+def rock(coefficients, springs, ground, end, *, side, q, v, restitution, limit, rest_rate, breaks=(), wall=None, rtol=1e-11):
     """Rotations at turning points and ends of phases [(time, signed rotation)], impacts [time], outcome of rocking from (q, v).
 
     coefficients(side, q) -> M, M'/2, V', H; ground(t) [m/s^2]; wall: rate after over before on the only open side.
@@ -86,9 +86,7 @@ def rock(coefficients, springs, ground, end, *, side, q, v, restitution, limit, 
             watch.direction, watch.terminal = -1, True
             events.append(watch)
         answer = solve_ivp(rhs, (t, stop), [q, v], "DOP853", args=(side,), rtol=rtol, atol=1e-14, events=events)
-        peaks += [
-            (x, side * y[0]) for x, y in zip(answer.t_events[1], answer.y_events[1], strict=True) if x > 1e-9 < y[0]
-        ]
+        peaks += [(x, side * y[0]) for x, y in zip(answer.t_events[1], answer.y_events[1], strict=True) if x > 1e-9 < y[0]]
         t, (q, v) = answer.t[-1], answer.y[:, -1]
         peaks.append((t, side * q))
         if answer.status != 1:

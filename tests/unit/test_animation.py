@@ -31,15 +31,28 @@ def pictures(path: Path) -> list[np.ndarray]:
     ("name", "deck"),
     [
         ("tilt", {"structure": ARCH, "analysis": [{"kind": "tilt", **FAST}]}),
-        ("rocking", {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]}),
-        ("rocking", {"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]}),
-        ("rocking", {"structure": STACK, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]}),
+        (
+            "rocking",
+            {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]},
+        ),
+        (
+            "rocking",
+            {
+                "structure": {"kind": "block", "width": 1.0, "height": 4.0},
+                "motion": PULSE,
+                "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}],
+            },
+        ),
+        (
+            "rocking",
+            {"structure": STACK, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]},
+        ),
         ("supports", {"structure": ARCH, "analysis": [{"kind": "supports", **FAST}]}),
         ("dem", {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "dem", "end_time": 0.6, **FAST, "animation_speed": 1.0}]}),
         ("sla", None),
     ],
     ids=["tilt", "rocking of an arch", "rocking of a block", "rocking of a stack", "supports", "dem", "sla"],
-)  # fmt: skip
+)
 def test_what_moves_is_filmed(tmp_path: Path, name: str, deck: dict | None) -> None:
     if deck is None:
         deck = extrados.live(Path(__file__).resolve().parents[2] / "cases" / "sla" / "tension.toml").deck.data

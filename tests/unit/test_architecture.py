@@ -28,23 +28,31 @@ LAYERS = {
     "tables": {"kinds", "model", "views", "schema"},
     "decks": {"kinds", "tables", "model", "views", "schema"},
     "results": {"kinds", "schema"},
-    "analyses": {
-        "kinds", "tables", "decks", "model", "views", "motions", "limit", "core", "results", "schema", "interrupts", "room",
-    },
+    "analyses": {"kinds", "tables", "decks", "model", "views", "motions", "limit", "core", "results", "schema", "interrupts", "room"},
     "show": {"interrupts", "kinds", "results", "schema"},
     "objects": {"kinds", "decks", "schema"},
     "bridges": {"decks", "model", "views", "schema"},
-    "running": {
-        "interrupts", "objects", "kinds", "analyses", "tables", "model", "views", "decks", "motions", "results", "show", "schema",
-    },
+    "running": {"interrupts", "objects", "kinds", "analyses", "tables", "model", "views", "decks", "motions", "results", "show", "schema"},
     "explore": {
-        "interrupts", "kinds", "analyses", "tables", "model", "views", "limit", "decks", "motions", "core", "results", "show",
-        "running", "schema",
+        "interrupts",
+        "kinds",
+        "analyses",
+        "tables",
+        "model",
+        "views",
+        "limit",
+        "decks",
+        "motions",
+        "core",
+        "results",
+        "show",
+        "running",
+        "schema",
     },
     "": {"analyses", "bridges", "decks", "objects", "results", "running", "explore"},
     "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "show", "running", "explore", "schema", "room"},
     "__main__": {"cli", "interrupts"},
-}  # fmt: skip
+}
 #: Made by the build, which knows no sources of ours
 BUILT = ("extrados._core", "extrados._build_info")
 #: Names of the standard library that begin with an underscore and are public
@@ -181,9 +189,7 @@ def of_itself(node: ast.Attribute) -> bool:
     return isinstance(node.value, ast.Name) and node.value.id in ("self", "cls")
 
 
-@pytest.mark.parametrize(
-    "path", sorted((ROOT / "fortran").rglob("*.f90")), ids=lambda p: str(p.relative_to(ROOT / "fortran"))
-)
+@pytest.mark.parametrize("path", sorted((ROOT / "fortran").rglob("*.f90")), ids=lambda p: str(p.relative_to(ROOT / "fortran")))
 def test_fortran_rooms(path: Path) -> None:
     room, text = path.parent.name, path.read_text(encoding="utf-8")
     module = re.search(r"^module (\w+)", text, re.M)[1]
@@ -194,15 +200,7 @@ def test_fortran_rooms(path: Path) -> None:
     else:
         assert used <= MAY_USE[room] | {room}
     code = re.sub(r"!.*", "", text).lower()
-    for word in (
-        r"\bstop\b",
-        r"\bprint\b",
-        r"\bwrite\s*\(",
-        r"\bread\s*\(",
-        r"\bopen\s*\(",
-        r"\bsave\b",
-        r"\bcommon\s*/",
-    ):
+    for word in (r"\bstop\b", r"\bprint\b", r"\bwrite\s*\(", r"\bread\s*\(", r"\bopen\s*\(", r"\bsave\b", r"\bcommon\s*/"):
         assert not re.search(word, code), f"{path.name} must not {word}"
 
 

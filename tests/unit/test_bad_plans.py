@@ -10,7 +10,8 @@ from extrados.decks.reader import DeckError, make_deck
 
 GOOD = {
     "structure": {
-        "kind": "building", "storeys": [3.0, 2.8],
+        "kind": "building",
+        "storeys": [3.0, 2.8],
         "walls": [
             {"name": "front", "start": [0, 0], "end": [6, 0], "thickness": 0.4, "openings": [{"storey": 1, "x": [2, 3], "z": [0, 2.2]}]},
             {"name": "right", "start": [6, 0], "end": [6, 5], "thickness": 0.4},
@@ -22,7 +23,7 @@ GOOD = {
     "material": {"density": 1800, "young": 1.5e9, "poisson": 0.25, "compressive_strength": 3e6},
     "joints": {"cohesion": 0.1e6},
     "analysis": [{"kind": "frame-modes"}],
-}  # fmt: skip
+}
 
 
 def wall(k, **changes):
@@ -72,7 +73,7 @@ BAD = {
         ),
         "'wing' and 'front'|'front' and 'wing'",
     ),
-}  # fmt: skip
+}
 
 
 def complaint(change):

@@ -87,9 +87,7 @@ def test_only_missing_batches_run_again(tmp_path: Path, monkeypatch: pytest.Monk
     begins = [int(path.stem.split("-")[0]) for path in kept]
     ran = []
     real = Squares.run
-    monkeypatch.setattr(
-        Squares, "run", lambda self, first, count, threads: ran.append(first) or real(self, first, count, threads)
-    )
+    monkeypatch.setattr(Squares, "run", lambda self, first, count, threads: ran.append(first) or real(self, first, count, threads))
     s = sweep(context(out, resume=True), "t", Squares(), 3000, "squares")
     assert s.complete and np.array_equal(s["value"], np.arange(3000) ** 2)
     assert ran and min(ran) == begins[1] and max(ran) < begins[2]
@@ -271,18 +269,7 @@ count = {count}
 def test_resume_after_kill_gives_the_same_bytes(tmp_path: Path) -> None:
     deck = tmp_path / "deck.toml"
     deck.write_text(FRAGILITY.format(count=12000))
-    command = [
-        sys.executable,
-        "-m",
-        "extrados.cli",
-        "run",
-        str(deck),
-        "--no-figures",
-        "--quiet",
-        "--threads",
-        "1",
-        "--out",
-    ]
+    command = [sys.executable, "-m", "extrados.cli", "run", str(deck), "--no-figures", "--quiet", "--threads", "1", "--out"]
     # The same run, killed by itself as it has kept its third batch
     code = (
         "import os, signal, sys; from extrados.results.checkpoint import Checkpoint; keep, kept = Checkpoint.keep, [];"

@@ -20,8 +20,7 @@ def rectangle(width=1.0, height=4.0, **options) -> BlockModel:
 
 
 @pytest.mark.parametrize(
-    ("share", "period"),
-    [(0.1, 1.86858), (0.25, 3.18146), (0.5, 5.26783), (0.75, 8.25375), (0.9, 11.97289), (0.99, 21.19317)],
+    ("share", "period"), [(0.1, 1.86858), (0.25, 3.18146), (0.5, 5.26783), (0.75, 8.25375), (0.9, 11.97289), (0.99, 21.19317)]
 )
 def test_free_period_of_the_linear_form(share: float, period: float) -> None:
     """p T = 4 acosh(1/(1 - theta0/alpha)) (Housner 1963)."""
@@ -60,9 +59,7 @@ def lowest_overturning(m: BlockModel, motion, low: float, high: float) -> float:
     return high
 
 
-@pytest.mark.parametrize(
-    ("x", "length"), [(1.1, 2.39790), (1.5, 1.09861), (2.0, 0.69315), (3.0, 0.40547), (4.0, 0.28768)]
-)
+@pytest.mark.parametrize(("x", "length"), [(1.1, 2.39790), (1.5, 1.09861), (2.0, 0.69315), (3.0, 0.40547), (4.0, 0.28768)])
 def test_rectangular_pulse(x: float, length: float) -> None:
     """p t1 = ln(x/(x - 1)), linear form, no return after the pulse."""
     m = rectangle(linear=True)
@@ -86,12 +83,17 @@ def test_pulses_on_a_block_that_starts_off_rest(ratio: float) -> None:
             "structure": {"kind": "block", "width": 1.0, "height": 4.0},
             "initial": {"rotation_ratio": ratio},
             "analysis": {
-                "kind": "failure-domain", "pulse": "rectangular", "form": "linear", "durations": lengths.tolist(), "amplitudes": 20,
-                "accuracy": 1e-6, "at_amplitudes": [f"{a!r} g" for a in (x * alpha).tolist()],
+                "kind": "failure-domain",
+                "pulse": "rectangular",
+                "form": "linear",
+                "durations": lengths.tolist(),
+                "amplitudes": 20,
+                "accuracy": 1e-6,
+                "at_amplitudes": [f"{a!r} g" for a in (x * alpha).tolist()],
             },
         },
         threads=1,
-    )  # fmt: skip
+    )
     found = run["failure-domain"]
     grown = np.exp(p * lengths)
     assert found.mode_I.amplitudes_g == pytest.approx((1.0 - ratio) * alpha * grown / (grown - 1.0), abs=2e-6)
@@ -101,8 +103,16 @@ def test_pulses_on_a_block_that_starts_off_rest(ratio: float) -> None:
 
 @pytest.mark.parametrize(
     ("ratio", "half", "whole"),
-    [(1, 1.3224, 1.4183), (2, 1.8007, 2.3499), (3, 2.2939, 3.6311), (4, 2.7908, 5.2390), (5, 3.2891, 7.1681), (8, 4.7871, 14.871), (10, 5.7865, 21.600)],
-)  # fmt: skip
+    [
+        (1, 1.3224, 1.4183),
+        (2, 1.8007, 2.3499),
+        (3, 2.2939, 3.6311),
+        (4, 2.7908, 5.2390),
+        (5, 3.2891, 7.1681),
+        (8, 4.7871, 14.871),
+        (10, 5.7865, 21.600),
+    ],
+)
 def test_sine_pulses_without_impact(ratio: float, half: float, whole: float) -> None:
     """sqrt(x^2 - 1) +- x exp(-p (pi or 2 pi - psi)/omega) = omega/p, linear form."""
     m = rectangle(linear=True, rule=0.0)
@@ -133,9 +143,7 @@ def test_fig_7_1() -> None:
     m = rectangle()
     r = rocking.history(m.body, pulses.harmonic(0.5 * G, 10.88 / (2 * np.pi), 5.0, "cosine").ground, 5.0, 0.01)
     impacts = [t for kind, t, _ in r.events if kind == "impact"]
-    assert impacts[:10] == pytest.approx(
-        [0.2576, 0.8048, 1.0647, 1.1967, 1.5393, 1.9515, 2.1565, 2.366, 2.7574, 3.0659], abs=1e-3
-    )
+    assert impacts[:10] == pytest.approx([0.2576, 0.8048, 1.0647, 1.1967, 1.5393, 1.9515, 2.1565, 2.366, 2.7574, 3.0659], abs=1e-3)
     assert len(impacts) == 16
     peaks = [x for kind, _, x in r.events if kind == "peak"][:4]
     assert peaks == pytest.approx([-0.00625, 0.05391, -0.01626, 0.00534], abs=1e-4)
@@ -243,12 +251,11 @@ def test_an_ensemble_has_the_bits_of_runs_one_by_one(channels: int, linear: bool
     m = BlockModel(make_block(0.3, 1.2), linear=linear)
     rng = np.random.default_rng(8)
     t = 0.01 * np.arange(400)
-    waves = [
-        np.sin(2 * np.pi * rng.uniform(0.4, 6.0, 8)[:, None] * t + rng.uniform(0, 6.0, 8)[:, None]) for _ in range(30)
-    ]
+    waves = [np.sin(2 * np.pi * rng.uniform(0.4, 6.0, 8)[:, None] * t + rng.uniform(0, 6.0, 8)[:, None]) for _ in range(30)]
     window = np.sin(np.pi * t / t[-1]) ** 2
-    grounds = [Ground(samples=np.stack([w.sum(axis=0) * window, 0.5 * w.cumsum(axis=0)[3] * window])[:channels] * 1.6,
-                      step=0.01) for w in waves]  # fmt: skip
+    grounds = [
+        Ground(samples=np.stack([w.sum(axis=0) * window, 0.5 * w.cumsum(axis=0)[3] * window])[:channels] * 1.6, step=0.01) for w in waves
+    ]
     each = np.arange(len(grounds))
     e = rocking.ensemble([m.body], grounds, 0 * each, each, 1.0, 4.6, stop_when_safe=False)
     assert {1, 2} <= set(e.outcome) and e.impacts.max() > 10
@@ -263,10 +270,7 @@ def test_an_ensemble_stops_only_past_the_greatest_rotation() -> None:
     p, uplift = float(m.frequency[0]), G * float(np.tan(m.alpha[0]))
     grounds = [pulses.pulse("cosine", a * uplift, 2.4 / p).ground for a in np.linspace(1.05, 2.5, 30)]
     each = np.arange(30)
-    stopped, whole = (
-        rocking.ensemble([m.body], grounds, 0 * each, each, 1.0, 40.0 / p, stop_when_safe=safe)
-        for safe in (True, False)
-    )
+    stopped, whole = (rocking.ensemble([m.body], grounds, 0 * each, each, 1.0, 40.0 / p, stop_when_safe=safe) for safe in (True, False))
     assert np.array_equal(stopped.outcome, whole.outcome) and (stopped.stop_time < whole.stop_time).any()
     assert stopped.peak == pytest.approx(whole.peak, rel=1e-12)
 
@@ -287,8 +291,14 @@ BLOCK = {"kind": "block", "width": 0.5, "height": 2.0}
 )
 def test_bad_properties(tables: dict, said: str) -> None:
     with pytest.raises(DeckError, match=said):
-        make_deck({"structure": BLOCK, "motion": {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0},
-                   "analysis": {"kind": "rocking"}, **tables})  # fmt: skip
+        make_deck(
+            {
+                "structure": BLOCK,
+                "motion": {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0},
+                "analysis": {"kind": "rocking"},
+                **tables,
+            }
+        )
 
 
 @pytest.mark.parametrize(
@@ -304,11 +314,7 @@ def test_bad_blocks(change: dict, said: str) -> None:
     table = {k: v for k, v in {**BLOCK, **change}.items() if v is not None}
     with pytest.raises(DeckError, match=said):
         make_deck(
-            {
-                "structure": table,
-                "motion": {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0},
-                "analysis": {"kind": "rocking"},
-            }
+            {"structure": table, "motion": {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}, "analysis": {"kind": "rocking"}}
         )
 
 
@@ -323,11 +329,7 @@ def test_column_is_taken_as_one_body() -> None:
 
     motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
     one = extrados.run(
-        {
-            "structure": {"kind": "block", "width": 0.5, "height": 2.0},
-            "motion": motion,
-            "analysis": {"kind": "rocking", "hand_over": False},
-        }
+        {"structure": {"kind": "block", "width": 0.5, "height": 2.0}, "motion": motion, "analysis": {"kind": "rocking", "hand_over": False}}
     )
     two = extrados.run(
         {
@@ -339,9 +341,7 @@ def test_column_is_taken_as_one_body() -> None:
     assert two["rocking"]["impact_times_s"] == pytest.approx(one["rocking"]["impact_times_s"], abs=1e-9)
     assert two["rocking"]["peak_rotation_rad"] == pytest.approx(one["rocking"]["peak_rotation_rad"], rel=1e-9)
     tapered = {"kind": "column", "width": 0.5, "top_width": 0.4, "height": 2.0, "drums": 4}
-    r = extrados.run({"structure": tapered, "motion": motion, "analysis": {"kind": "rocking", "hand_over": False}})[
-        "rocking"
-    ]
+    r = extrados.run({"structure": tapered, "motion": motion, "analysis": {"kind": "rocking", "hand_over": False}})["rocking"]
     centre = 2.0 / 3.0 * (0.5 + 2 * 0.4) / (0.5 + 0.4)  # of a trapezium
     assert r["critical_rotation_rad"] == pytest.approx(np.arctan(0.25 / centre), rel=1e-9)
 
@@ -349,9 +349,7 @@ def test_column_is_taken_as_one_body() -> None:
 def test_an_answer_names_the_energy_ratio_that_it_rests_on() -> None:
     motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
     block = {"kind": "block", "width": 0.5, "height": 2.0}
-    run = extrados.run(
-        {"structure": block, "motion": motion, "joints": {"energy_ratio": 0.5}, "analysis": {"kind": "rocking"}}
-    )
+    run = extrados.run({"structure": block, "motion": motion, "joints": {"energy_ratio": 0.5}, "analysis": {"kind": "rocking"}})
     rests = run.analysis("rocking")["assumptions"]
     assert rests["joints.energy_ratio"]["value"] == 0.5 and rests["joints.energy_ratio"]["from"] == "deck"
     assert "joints.restitution" not in rests and "energy ratio 0.5 (deck)" in run.analysis("rocking")["answer"]

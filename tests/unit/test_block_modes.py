@@ -11,9 +11,10 @@ YOUNG, DENSITY = 2e9, 2000.0
 
 def modes(structure, count=6, **joints):
     deck = {
-        "structure": structure, "material": {"density": DENSITY, "young": YOUNG, "poisson": 0.2},
+        "structure": structure,
+        "material": {"density": DENSITY, "young": YOUNG, "poisson": 0.2},
         "analysis": {"kind": "modes", "modes": count},
-    } | ({"joints": joints} if joints else {})  # fmt: skip
+    } | ({"joints": joints} if joints else {})
     (analysis,) = extrados.run(deck, threads=1).analyses
     assert analysis["status"] == "ok", analysis["reason"]
     return analysis["results"]["modes"]
@@ -21,10 +22,7 @@ def modes(structure, count=6, **joints):
 
 def pile(count, width=0.2, height=4.0):
     h = height / count
-    blocks = [
-        {"name": f"{k}", "points": [[0, k * h], [width, k * h], [width, (k + 1) * h], [0, (k + 1) * h]]}
-        for k in range(count)
-    ]
+    blocks = [{"name": f"{k}", "points": [[0, k * h], [width, k * h], [width, (k + 1) * h], [0, (k + 1) * h]]} for k in range(count)]
     return {"kind": "blocks", "depth": 0.3, "ground": [[0, 0, width, 0]], "block": blocks}
 
 
@@ -54,10 +52,7 @@ def test_frequencies_fall_with_size_and_with_soft_joints():
     assert modes(arch(16, 3.0))[0]["frequency_Hz"] == pytest.approx(modes(arch(16))[0]["frequency_Hz"] / 3.0)
     # joints as soft as a metre of block: a column of n blocks of height h has the modulus E h/(h + 1)
     stiff = YOUNG / 1.0
-    soft, firm = (
-        modes(pile(40), 1, **joints)[0]["frequency_Hz"]
-        for joints in ({"normal_stiffness": stiff, "shear_stiffness": stiff}, {})
-    )
+    soft, firm = (modes(pile(40), 1, **joints)[0]["frequency_Hz"] for joints in ({"normal_stiffness": stiff, "shear_stiffness": stiff}, {}))
     assert soft == pytest.approx(firm * np.sqrt(0.1 / 1.1), rel=0.03)  # the whole joint at the foot counts: 1/n
 
 

@@ -13,11 +13,7 @@ DOME = {"kind": "dome", "radius": 10.0, "thickness": 1.0, "rings": 12, "lunes": 
 
 
 def tilt(structure: dict[str, Any], **keys: Any) -> Result:
-    deck = {
-        "structure": structure,
-        "joints": {"friction": 0.7},
-        "analysis": {"kind": "tilt", "direction": 0.0, "rose": 4, **keys},
-    }
+    deck = {"structure": structure, "joints": {"friction": 0.7}, "analysis": {"kind": "tilt", "direction": 0.0, "rose": 4, **keys}}
     (result,) = run_analyses(Context(make_deck(deck), threads=1))
     return result
 
@@ -35,14 +31,7 @@ def test_a_dome_by_its_blocks() -> None:
 
 def test_a_row_is_the_capacity_of_that_deck() -> None:
     """A wall in the other bond, with a tie and a load, by a deck of its own; a partition that cannot be made says why."""
-    wall = {
-        "kind": "wall",
-        "unit_length": 0.4,
-        "unit_height": 0.2,
-        "thickness": 0.2,
-        "height": 0.8,
-        "legs": [{"length": 1.6}],
-    }
+    wall = {"kind": "wall", "unit_length": 0.4, "unit_height": 0.2, "thickness": 0.2, "height": 0.8, "legs": [{"length": 1.6}]}
     load = [{"x": 0.5, "y": 0.0, "force": "2 kN"}]
     rows = {row.change: row for row in tilt(wall, block_size=True, load=load).results.block_sizes}
     for change, keys in (("begins = half", {"begins": "half"}), ("unit_height = 0.1", {"unit_height": 0.1})):

@@ -84,39 +84,48 @@ ABUSES = {
     "handle forged": ("m = wall(); m._handle = 12345; m.factorise()", "HandleError"),
     "handle negative": ("m = wall(); m._handle = -1; m.factorise()", "HandleError"),
     "handle of another kind": ("m, s = wall(), MotionSet([one]); m._handle = s.handle; m.factorise()", "HandleError"),
-    "handle of a dead one": (
-        "m = wall(); old = m.handle; m.close(); n = wall(); n._handle = old; n.factorise()", "HandleError"),
+    "handle of a dead one": ("m = wall(); old = m.handle; m.close(); n = wall(); n._handle = old; n.factorise()", "HandleError"),
     "run before loads": ("wall().run(3, watch)", "HandleError"),
-    "motions closed: ensemble": ("s = MotionSet([one]); s.close(); rocking.ensemble([block], s, [0], [0], 1.0, 1.0)",
-                                 "HandleError"),
-    "bodies closed: ensemble": ("b = rocking.BodyList([block]); b.close();"
-                                "rocking.ensemble(b, [one], [0], [0], 1.0, 1.0)", "HandleError"),
+    "motions closed: ensemble": ("s = MotionSet([one]); s.close(); rocking.ensemble([block], s, [0], [0], 1.0, 1.0)", "HandleError"),
+    "bodies closed: ensemble": ("b = rocking.BodyList([block]); b.close();rocking.ensemble(b, [one], [0], [0], 1.0, 1.0)", "HandleError"),
     "dem closed: run": ("m = dem.Model(bodies(), short); m.close(); m.run(MotionSet([one]))", "HandleError"),
     "dem state of a run that has ended": ("m = dem.Model(bodies(), short); m.run(MotionSet([one])); m.state()", "HandleError"),
     "dem state that is damaged": ("dem.Model(bodies(), short).run(MotionSet([one]), state=np.zeros(40))", "ValueError"),
     "dem state that is too short": (
         "w = np.zeros(20, int); dem.Model(bodies(), short).run(MotionSet([one]), state=np.r_[w, dem_run.state_digest(w)])",
-        "ValueError"),
+        "ValueError",
+    ),
     "dem read before a run": ("m = dem.Model(bodies(), short); m._last_run(False)", "HandleError"),
     "dem run before a start": (
         "status_of(*_core.api_dem_run.run(dem.Model(bodies(), short).handle, MotionSet([one]).handle, 1, 0, 1.0, 0))",
-        "HandleError"),
+        "HandleError",
+    ),
     "dem run after its end": (
         "m = dem.Model(bodies(), short); s = MotionSet([one]); m.run(s);"
-        "status_of(*_core.api_dem_run.run(m.handle, s.handle, 1, 0, 1.0, 0))", "HandleError"),
+        "status_of(*_core.api_dem_run.run(m.handle, s.handle, 1, 0, 1.0, 0))",
+        "HandleError",
+    ),
     "dem of solids asked for plane blocks": (
-        "m = solid(); m.run(MotionSet([one])); status_of(*_core.api_dem.bodies(m.handle, 1))", "HandleError"),
+        "m = solid(); m.run(MotionSet([one])); status_of(*_core.api_dem.bodies(m.handle, 1))",
+        "HandleError",
+    ),
     "dem of solids built as plane blocks": (
-        "status_of(_core.api_dem.surroundings(solid().handle, np.zeros(2), 0.0, 0, np.zeros(4)))", "HandleError"),
+        "status_of(_core.api_dem.surroundings(solid().handle, np.zeros(2), 0.0, 0, np.zeros(4)))",
+        "HandleError",
+    ),
     "dem of plane blocks asked for solids": (
         "m = dem.Model(bodies(), short); m.run(MotionSet([one])); status_of(*_core.api_dem3.bodies(m.handle, 2))",
-        "HandleError"),
+        "HandleError",
+    ),
     "dem state of plane blocks for solids": (
         "kept = []; m = dem.Model(bodies(), dem.Options(0.5)); w = MotionSet([one]);"
-        "m.run(w, watch=lambda reached: kept.append(m.state())); solid().run(w, state=kept[0])", "ValueError"),
+        "m.run(w, watch=lambda reached: kept.append(m.state())); solid().run(w, state=kept[0])",
+        "ValueError",
+    ),
     "dem history of rates that bodies have not": (
-        "m = dem.Model(bodies(), short); m.run(MotionSet([one]));"
-        "status_of(*_core.api_dem_run.history(m.handle, 2, 6, 1))", "CoreError"),
+        "m = dem.Model(bodies(), short); m.run(MotionSet([one]));status_of(*_core.api_dem_run.history(m.handle, 2, 6, 1))",
+        "CoreError",
+    ),
     # indices
     "connectivity too high": ("wall(plane(connect=np.array([[0, 1, 2, 4]])))", "IndexError"),
     "connectivity negative": ("wall(plane(connect=np.array([[0, 1, 2, -1]])))", "IndexError"),
@@ -126,21 +135,22 @@ ABUSES = {
     "joint of the plane in space": ("in_space(joint(sla.Joints))", "CoreError"),
     "joint of shells without its vectors": ("in_space(joint(sla.ShellJoints))", "ValueError"),
     "joint of shells to nowhere": (
-        "in_space(joint(sla.ShellJoints, row=np.zeros((1, 2, 3, 24)), connect=np.array([[0, 1, 2, 9]])))", "IndexError"),
+        "in_space(joint(sla.ShellJoints, row=np.zeros((1, 2, 3, 24)), connect=np.array([[0, 1, 2, 9]])))",
+        "IndexError",
+    ),
     "bar to nowhere": ("wall(plane(), sla.Bars(np.array([[0, 9]]), 0.1, 1e9))", "IndexError"),
-    "spring to nowhere": ("wall(plane(), sla.Springs(np.array([[0, 7]]), np.array([[0, 0]]), np.array([1e6])))",
-                          "IndexError"),
-    "spring below the ground": ("wall(plane(), sla.Springs(np.array([[0, -2]]), np.array([[0, 0]]), np.array([1e6])))",
-                                "IndexError"),
-    "spring without direction": ("wall(plane(), sla.Springs(np.array([[2, -1]]), np.array([[2, 0]]), np.array([1e6])))",
-                                 "IndexError"),
+    "spring to nowhere": ("wall(plane(), sla.Springs(np.array([[0, 7]]), np.array([[0, 0]]), np.array([1e6])))", "IndexError"),
+    "spring below the ground": ("wall(plane(), sla.Springs(np.array([[0, -2]]), np.array([[0, 0]]), np.array([1e6])))", "IndexError"),
+    "spring without direction": ("wall(plane(), sla.Springs(np.array([[2, -1]]), np.array([[2, 0]]), np.array([1e6])))", "IndexError"),
     "freedom held nowhere": ("sla.Freedoms.make(4, [(4, 0)])", "IndexError"),
     "freedom of direction -1": ("sla.Freedoms.make(4, [(0, -1)])", "IndexError"),
     "equation too high": ("f = sla.Freedoms.make(4, held); f.equation[3, 1] = 10**6; wall(freedoms=f)", "IndexError"),
     "equation below held": ("f = sla.Freedoms.make(4, held); f.equation[3, 1] = -7; wall(freedoms=f)", "IndexError"),
     "supports move that are not there": ("loaded().supports([1e-3], [0.0])", "ValueError"),
     "supports move by nothing known": (
-        "f = sla.Freedoms.make(4, held); f.moved = 1; wall(freedoms=f).supports([np.nan], [0.0])", "ValueError"),
+        "f = sla.Freedoms.make(4, held); f.moved = 1; wall(freedoms=f).supports([np.nan], [0.0])",
+        "ValueError",
+    ),
     "more supports move than there are": ("f = sla.Freedoms.make(4, held); f.moved = 9; wall(freedoms=f)", "CoreError"),
     "fewer supports than none move": ("f = sla.Freedoms.make(4, held); f.moved = -1; wall(freedoms=f)", "CoreError"),
     "monitor node": ("loaded().run(3, [sla.Monitor.of(4, 0)])", "IndexError"),
@@ -187,8 +197,7 @@ ABUSES = {
     "joint of a body with itself": ("dem.run(bodies(joints={(0, 0): 0}), short)", "CoreIndexError"),
     "joint of a law that is not there": ("dem.run(bodies(joints={(0, 1): 3}), short)", "ValueError"),
     "part of a body that is not there": ("dem.run(bodies(owner=[0, 2]), short)", "IndexError"),
-    "part of two corners": ("dem.run(bodies(parts=[box[:2], box], outer=[np.ones(2, bool), np.ones(4, bool)]), short)",
-                            "CoreError"),
+    "part of two corners": ("dem.run(bodies(parts=[box[:2], box], outer=[np.ones(2, bool), np.ones(4, bool)]), short)", "CoreError"),
     "edges of another part": ("dem.run(bodies(outer=[np.ones(3, bool)] * 2), short)", "ValueError"),
     "move of a block": ("dem.run(bodies(), short, moves=(dem.SupportMove(0, 1, 0, 0, 0, 1),))", "CoreIndexError"),
     "move of nobody": ("dem.run(bodies(), short, moves=(dem.SupportMove(-1, 1, 0, 0, 0, 1),))", "IndexError"),
@@ -197,20 +206,20 @@ ABUSES = {
     "motion that is not in the set": ("dem.Model(bodies(), short).run(MotionSet([one]), 1)", "IndexError"),
     "hinge in a joint that is not there": (
         "arch.restitution(np.ones(3), np.random.rand(3, 2), np.ones(3), np.array([0, 1, 2, 9]),"
-        " np.random.rand(4, 2), np.random.rand(4, 2))", "CoreIndexError"),
+        " np.random.rand(4, 2), np.random.rand(4, 2))",
+        "CoreIndexError",
+    ),
     # shapes
-    "ground of three channels": ("rocking.history(block, Ground(samples=np.zeros((3, 5)), step=0.01), 1.0, 0.1)",
-                                 "ValueError"),
-    "ground of no channel": ("rocking.history(block, Ground(samples=np.zeros((0, 5)), step=0.01), 1.0, 0.1)",
-                             "ValueError"),
+    "ground of three channels": ("rocking.history(block, Ground(samples=np.zeros((3, 5)), step=0.01), 1.0, 0.1)", "ValueError"),
+    "ground of no channel": ("rocking.history(block, Ground(samples=np.zeros((0, 5)), step=0.01), 1.0, 0.1)", "ValueError"),
     "ground of three channels in pieces": (
         "MotionSet([Ground(breaks=[0.0, 1.0], linear=np.zeros((1, 3, 2)), harmonic=np.zeros((1, 3, 0, 4)))])",
-        "ValueError"),
+        "ValueError",
+    ),
     "ground of nothing": ("MotionSet([Ground()])", "ValueError"),
     "ground of one sample": ("MotionSet([Ground(samples=np.zeros((1, 1)), step=0.01)])", "ValueError"),
     "ground that is not finite": ("MotionSet([Ground(samples=np.full((1, 5), np.nan), step=0.01)])", "ValueError"),
-    "ground of breaks that do not ascend": ("MotionSet([Ground(breaks=[0.0, 1.0, 1.0], linear=np.zeros((2, 1, 2)))])",
-                                            "ValueError"),
+    "ground of breaks that do not ascend": ("MotionSet([Ground(breaks=[0.0, 1.0, 1.0], linear=np.zeros((2, 1, 2)))])", "ValueError"),
     "no ground": ("MotionSet([])", "ValueError"),
     "too short a lattice": ("motion.line_spectrum([1.0], [1.0], [[1.0]], 5.0, [1.0])", "CoreError"),
     "transform of a great prime": ("motion.fourier(np.ones(3), 2**31 - 1)", "ValueError"),
@@ -219,7 +228,7 @@ ABUSES = {
     "back from a great prime": ("motion.fourier_inverse(np.ones(50002), 100003)", "ValueError"),
     "transform of more than memory": ("motion.fourier(np.ones(3), 2**30)", "ValueError"),
     "transform of another length": ("motion.fourier_inverse(np.ones(3), 100)", "ValueError"),
-}  # fmt: skip
+}
 
 
 def test_abuse_is_answered_with_an_exception() -> None:
@@ -280,12 +289,16 @@ def long_run() -> tuple[dem.Model, MotionSet]:
     box = np.array([[-0.5, 0.0], [0.5, 0.0], [0.5, 4.0], [-0.5, 4.0]])
     floor = np.array([[-20.0, -1.0], [20.0, -1.0], [20.0, 0.0], [-20.0, 0.0]])
     bodies = dem.Bodies(
-        np.array([[0.0, 2.0], [0.0, -0.5]]), np.array([8000.0, 0.0]), np.array([11333.0, 0.0]), [box, floor], [0, 1],
-        [np.ones(4, bool)] * 2, 1.0, [dem.Law(1e12, 1e12, 2.0, damping=1e-4)],
-    )  # fmt: skip
-    ground = Ground(
-        breaks=np.array([0.0, 3600.0]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[5.0, 0.0, 10.88, 0.0]]]])
+        np.array([[0.0, 2.0], [0.0, -0.5]]),
+        np.array([8000.0, 0.0]),
+        np.array([11333.0, 0.0]),
+        [box, floor],
+        [0, 1],
+        [np.ones(4, bool)] * 2,
+        1.0,
+        [dem.Law(1e12, 1e12, 2.0, damping=1e-4)],
     )
+    ground = Ground(breaks=np.array([0.0, 3600.0]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[5.0, 0.0, 10.88, 0.0]]]]))
     return dem.Model(bodies, dem.Options(3600.0, 0.5)), MotionSet([ground])
 
 
@@ -360,9 +373,15 @@ def test_an_error_is_not_hidden_by_an_object_in_use() -> None:
 def test_runs_of_one_model_do_not_know_of_each_other() -> None:
     box = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     bodies = dem.Bodies(
-        np.array([[0.5, 0.5], [0.5, -0.5]]), np.array([2000.0, 0.0]), np.array([300.0, 0.0]), [box, box - [0.0, 1.0]],
-        [0, 1], [np.ones(4, bool)] * 2, 1.0, [dem.Law(1e8, 1e8, 0.6, damping=1e-3)],
-    )  # fmt: skip
+        np.array([[0.5, 0.5], [0.5, -0.5]]),
+        np.array([2000.0, 0.0]),
+        np.array([300.0, 0.0]),
+        [box, box - [0.0, 1.0]],
+        [0, 1],
+        [np.ones(4, bool)] * 2,
+        1.0,
+        [dem.Law(1e8, 1e8, 0.6, damping=1e-3)],
+    )
     shake = Ground(samples=5.0 * np.sin(np.arange(50.0))[None], step=0.02)
     options = dem.Options(0.5, 0.05)
     with dem.Model(bodies, options) as model, MotionSet([shake]) as motions:
@@ -375,9 +394,7 @@ def test_runs_of_one_model_do_not_know_of_each_other() -> None:
 def test_a_member_does_not_depend_on_the_motions_beside_it() -> None:
     """A pulse among sines is integrated as it is alone, bit for bit."""
     pulse = Ground(breaks=np.array([0.0, 0.3]), linear=np.array([[[4.0, 0.0]]]), harmonic=np.zeros((1, 1, 0, 4)))
-    sine = Ground(
-        breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[3.0, 0.0, 6.0, 0.0]]]])
-    )
+    sine = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[3.0, 0.0, 6.0, 0.0]]]]))
     block = rocking.block_body(1000.0, 1500.0, 2.0, 0.5, 0.5, (0.9, 0.9))
     alone = rocking.ensemble([block], [pulse], [0], [0], 1.0, 3.0)
     among = rocking.ensemble([block], [sine, pulse], [0], [1], 1.0, 3.0)

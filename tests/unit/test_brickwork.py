@@ -33,9 +33,7 @@ UNIT = {"unit_length": "25 cm", "unit_height": "12 cm"}
 WINDOW = {"x": [0.9, 1.8], "y": [0.7, 1.73]}
 
 
-def run(
-    structure: dict[str, Any], *analyses: dict[str, Any], folder: Path | None = None, **tables: Any
-) -> list[Result]:
+def run(structure: dict[str, Any], *analyses: dict[str, Any], folder: Path | None = None, **tables: Any) -> list[Result]:
     deck = make_deck({"structure": structure, "analysis": list(analyses), **tables}, folder)
     return run_analyses(Context(deck, threads=1))
 
@@ -48,13 +46,9 @@ def outside_capacity(a: Assembly, friction: float) -> float:
         for block, sign in ((a.a[j], 1.0), (a.b[j], -1.0)):
             if block == GROUND:
                 continue
-            for k, (force, point) in enumerate(
-                ((a.normal[j], a.p[j]), (a.normal[j], a.q[j]), (a.tangent[j], a.middle[j]))
-            ):
+            for k, (force, point) in enumerate(((a.normal[j], a.p[j]), (a.normal[j], a.q[j]), (a.tangent[j], a.middle[j]))):
                 arm = point - a.centroid[block]
-                equations[3 * block : 3 * block + 3, 3 * j + k] = sign * np.array(
-                    [*force, arm[0] * force[1] - arm[1] * force[0]]
-                )
+                equations[3 * block : 3 * block + 3, 3 * j + k] = sign * np.array([*force, arm[0] * force[1] - arm[1] * force[0]])
     weight = a.mass / a.mass.sum()
     equations[0::3, -1] = weight
     right[1::3] = weight
@@ -74,10 +68,7 @@ WALLS = [
     ({"begins": "whole"}, []),
     ({"begins": "half"}, [(0.9, 1.8, 0.7, 1.73)]),
     ({"lintels": False}, [(0.9, 1.8, 0.7, 1.73), (2.3, 2.7, 0.0, 1.9)]),
-    (
-        {"lintel_height": 0.2, "lintel_bearing": 0.3},
-        [(0.5, 1.0, 0.0, 1.5), (1.2, 1.9, 0.51, 1.5), (2.5, 3.5, 1.0, 1.8)],
-    ),
+    ({"lintel_height": 0.2, "lintel_bearing": 0.3}, [(0.5, 1.0, 0.0, 1.5), (1.2, 1.9, 0.51, 1.5), (2.5, 3.5, 1.0, 1.8)]),
     ({}, [(-0.5, 0.7, -1.0, 1.1), (1.5, 2.0, 2.0, 3.0)]),
 ]
 
@@ -99,9 +90,7 @@ def test_stones_fill_the_wall(keys: dict, openings: list) -> None:
 
 def test_bond_and_cut_units() -> None:
     wall = make_brickwork(Bond(0.25, 0.12), 1.0, 0.36)
-    lengths = [
-        [float(np.ptp(o[:, 0])) for o in wall.outlines if o[0, 1] == pytest.approx(y)] for y in (0.0, 0.12, 0.24)
-    ]
+    lengths = [[float(np.ptp(o[:, 0])) for o in wall.outlines if o[0, 1] == pytest.approx(y)] for y in (0.0, 0.12, 0.24)]
     assert lengths == [[0.25] * 4, [0.125, 0.25, 0.25, 0.25, 0.125], [0.25] * 4]
     half = make_brickwork(Bond(0.25, 0.12, begins="half"), 1.0, 0.12)
     assert len(half.mass) == 5
@@ -152,9 +141,7 @@ def test_a_picture_that_fails_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> N
     whole = assess(arch, 0.7)
     for name in ("central", "thrust", "recentred"):
         monkeypatch.setattr(programme.LimitAnalysis, name, gives_up)
-    (bare,) = run(
-        {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}, {"kind": "tilt"}
-    )
+    (bare,) = run({"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}, {"kind": "tilt"})
     assert bare["collapse_acceleration_g"] == pytest.approx(whole.gamma, abs=1e-12)
     assert sum("not given: it wandered" in w for w in bare.warnings) == 3
 
@@ -188,10 +175,18 @@ def test_panel_as_stones() -> None:
 
 def test_what_falls_without_lintels() -> None:
     (result,) = run(
-        {"kind": "brickwork", "unit_length": 0.4, "unit_height": 0.2, "units": 4, "courses": 5, "lintels": False,
-         "openings": [{"x": [0.4, 1.2], "y": [0.0, 0.8]}]},
-        {"kind": "tilt"}, joints={"friction": 0.5},
-    )  # fmt: skip
+        {
+            "kind": "brickwork",
+            "unit_length": 0.4,
+            "unit_height": 0.2,
+            "units": 4,
+            "courses": 5,
+            "lintels": False,
+            "openings": [{"x": [0.4, 1.2], "y": [0.0, 0.8]}],
+        },
+        {"kind": "tilt"},
+        joints={"friction": 0.5},
+    )
     assert result.verdict.outcome == "cannot-stand" and "Only friction carries unit 2 of course 5" in result.answer
 
 
@@ -246,9 +241,8 @@ def test_arch_of_free_blocks_has_its_chain(tmp_path: Path) -> None:
     ground = [[*arch.p[j], *arch.q[j]] for j in (7, 0)]
     (tmp_path / "arch.json").write_text(json.dumps({"blocks": blocks, "ground": [list(map(float, g)) for g in ground]}))
     thrust, tilt, load = run(
-        {"kind": "blocks", "file": "arch.json"}, {"kind": "thrust"}, {"kind": "tilt"}, {"kind": "moving-load"},
-        folder=tmp_path,
-    )  # fmt: skip
+        {"kind": "blocks", "file": "arch.json"}, {"kind": "thrust"}, {"kind": "tilt"}, {"kind": "moving-load"}, folder=tmp_path
+    )
     assert thrust["chain"] == "chain"
     # The arch with the weight of straight-sided stones
     area, centroid, polar = zip(*(properties(s if properties(s)[0] > 0 else s[::-1]) for s in stones), strict=True)
@@ -273,13 +267,9 @@ def test_chains_of_other_assemblies() -> None:
     names = {name: [two.joint_names[j] for j in joints] for name, joints in two.chains.items()}
     assert names == {"stack 1": ["a on the ground", "a on b"], "stack 2": ["c on the ground"]}
     gate = make_blocks([box("a", 0, 0, 1, 2), box("b", 2, 0, 1, 2), box("c", 0, 2, 3, 1)], None)
-    assert [gate.joint_names[j] for j in gate.chains["chain"]] == [
-        "a on the ground", "a on c", "b on c", "b on the ground",
-    ]  # fmt: skip
+    assert [gate.joint_names[j] for j in gate.chains["chain"]] == ["a on the ground", "a on c", "b on c", "b on the ground"]
     # Its piers are pushed apart as far as they are pulled together: least and greatest thrust are opposite.
-    least, most = (
-        thrust_of(gate, s, gate.chains["chain"]) for s in LimitAnalysis(gate, 0.7).thrust(gate.chains["chain"])
-    )
+    least, most = (thrust_of(gate, s, gate.chains["chain"]) for s in LimitAnalysis(gate, 0.7).thrust(gate.chains["chain"]))
     assert least == pytest.approx(-most, rel=1e-9) and most > 0.0
     bonded = make_brickwork(Bond(0.5, 0.25), 2.0, 1.0)
     assert bonded.chains == {}
@@ -310,9 +300,7 @@ def test_the_most_central_line_of_the_smallest_wall_ends() -> None:
     wall = {"kind": "brickwork", "unit_length": 0.3, "unit_height": 0.15, "units": 2, "courses": 2}
     with warnings.catch_warnings():
         warnings.simplefilter("error", RuntimeWarning)
-        found = extrados.run({"structure": wall, "joints": {"friction": 0.7}, "analysis": {"kind": "thrust"}}).results[
-            0
-        ]
+        found = extrados.run({"structure": wall, "joints": {"friction": 0.7}, "analysis": {"kind": "thrust"}}).results[0]
     assert found.status == "ok" and found.results.geometric_safety_factor is None, "through all middles"
     assert found.results.central.greatest_eccentricity_ratio < 1e-3
 

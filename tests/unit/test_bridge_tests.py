@@ -57,16 +57,12 @@ def test_the_page_shows_the_rows() -> None:
     bias, scatter = bias_and_scatter([v for b in BRIDGES if (v := ratios(b)["fill and passive pressure"])])
     assert f"scatter by a factor of {scatter:.1f} about a bias of {bias:.1f}" in re.sub(r"\s+", " ", page)
     torksey = ratios("Torksey")
-    assert f"carry {torksey['three rings'] / torksey['fill and passive pressure']:.1f} times less" in re.sub(
-        r"\s+", " ", page
-    )
+    assert f"carry {torksey['three rings'] / torksey['fill and passive pressure']:.1f} times less" in re.sub(r"\s+", " ", page)
 
 
 def test_documented_loads_are_rows_of_experiments() -> None:
     for bridge in BRIDGES:
-        rows = tomllib.loads((ROOT / f"cases/bridge/{bridge.lower()}.expect.toml").read_text(encoding="utf-8"))[
-            "expect"
-        ]
+        rows = tomllib.loads((ROOT / f"cases/bridge/{bridge.lower()}.expect.toml").read_text(encoding="utf-8"))["expect"]
         deck = tomllib.loads((ROOT / f"cases/bridge/{bridge.lower()}.toml").read_text(encoding="utf-8"))
         measured = [row["value"] for row in rows if row["kind"] == "experiment"]
         load = 1e3 * float(deck["analysis"][0]["force"].split()[0])

@@ -51,14 +51,7 @@ def moving(places: list[float] | None = None, **keys: Any) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("shape", "rise"),
-    [
-        ("segmental", 1.5),
-        ("segmental", 4.0),
-        ("three-centred", 2.5),
-        ("pointed", 5.0),
-        ("elliptical", 2.5),
-        ("parabolic", 2.0),
-    ],
+    [("segmental", 1.5), ("segmental", 4.0), ("three-centred", 2.5), ("pointed", 5.0), ("elliptical", 2.5), ("parabolic", 2.0)],
 )
 def test_intrados_keeps_span_rise_equal_lengths_and_normals(shape: str, rise: float) -> None:
     fine = Span(shape=shape, span=8.0, rise=rise, thickness=0.5, voussoirs=400)
@@ -113,9 +106,11 @@ def test_thickness_varies_and_rings_share_it() -> None:
 
 def test_the_parts_of_a_viaduct_fill_each_others_places() -> None:
     made = bridge(
-        spans=[SPAN, {**SPAN, "shape": "elliptical", "rise": 2.5}], piers=[{"width": 2.0, "height": 4.0, "base_width": 2.6, "courses": 3}],
-        abutments={"width": 2.5, "height": 3.0}, backing={"height": 1.0, "density": 2400.0},
-    )  # fmt: skip
+        spans=[SPAN, {**SPAN, "shape": "elliptical", "rise": 2.5}],
+        piers=[{"width": 2.0, "height": 4.0, "base_width": 2.6, "courses": 3}],
+        abutments={"width": 2.5, "height": 3.0},
+        backing={"height": 1.0, "density": 2400.0},
+    )
     assert all(signed_area(o) > 0.0 for o in made.outlines)
     names = made.block_names
     assert [n for n in names if n.startswith("pier")] == ["pier course 1", "pier course 2", "pier course 3"]
@@ -251,9 +246,7 @@ def outside(a: Assembly, loads: Loads, friction: float, direction: int) -> float
         for c, (f, at) in enumerate(forces):
             for block, sign in ((a.a[j], 1.0), (a.b[j], -1.0)):
                 if block != GROUND:
-                    rows[3 * block : 3 * block + 3, 3 * j + c] += sign * np.array(
-                        [[f[0]], [f[1]], [at[0] * f[1] - at[1] * f[0]]]
-                    )
+                    rows[3 * block : 3 * block + 3, 3 * j + c] += sign * np.array([[f[0]], [f[1]], [at[0] * f[1] - at[1] * f[0]]])
     if k:
         for i, (block, wrench) in enumerate(zip(loads.resistance.block, loads.resistance.wrench, strict=True)):
             rows[3 * block : 3 * block + 3, 3 * m + i] = wrench[:, None]
@@ -267,19 +260,14 @@ def outside(a: Assembly, loads: Loads, friction: float, direction: int) -> float
     cost = np.zeros(3 * m + k + 1)
     cost[-1] = -direction
     bounds = [(0, None), (0, None), (None, None)] * m + [(0, 1)] * k + [(None, None)]
-    found = linprog(
-        cost, slide.tocsr(), np.zeros(2 * m), rows.tocsr(), -loads.dead.ravel() / unit, bounds, method="highs-ds"
-    )
+    found = linprog(cost, slide.tocsr(), np.zeros(2 * m), rows.tocsr(), -loads.dead.ravel() / unit, bounds, method="highs-ds")
     return float(found.x[-1])
 
 
 @pytest.mark.parametrize("backing", [None, {"height": 1.2}])
 def test_pushes_agree_with_an_outside_programme(backing: dict[str, float] | None) -> None:
     a = bridge(fill=FILL, surfacing=ROAD, **({"backing": backing} if backing else {}))
-    for loads in (
-        tilt_loads(a),
-        Loads(tilt_loads(a).dead, under_load(a.earth, len(a.mass), 2.0, 1e5, 0.3), tilt_loads(a).resistance),
-    ):
+    for loads in (tilt_loads(a), Loads(tilt_loads(a).dead, under_load(a.earth, len(a.mass), 2.0, 1e5, 0.3), tilt_loads(a).resistance)):
         for direction in (1, -1) if loads.live[:, 0].any() else (1,):
             expected = outside(a, loads, 0.6, direction)
             for form in ("reduced", "sparse"):
@@ -319,8 +307,7 @@ def test_weight_spread_and_pushes_of_fill_each_help() -> None:
     ]
     assert np.all(np.diff(values) > 0.01 * values[0])
     narrow, wide = (
-        run(place, fill={"cover": 0.3, "dispersal": "even", "dispersal_angle": angle})["collapse_load_N"]
-        for angle in (5.0, 50.0)
+        run(place, fill={"cover": 0.3, "dispersal": "even", "dispersal_angle": angle})["collapse_load_N"] for angle in (5.0, 50.0)
     )
     assert wide > narrow
 
@@ -360,21 +347,28 @@ def test_rings_that_crush_are_answered_at_every_place(monkeypatch: pytest.Monkey
     monkeypatch.setattr(LimitAnalysis, "_by_programme", asked)
     data = {
         "structure": {
-            "kind": "bridge", "depth": 6.0, "piers": [{"width": 2.0, "height": 4.0}], "abutments": {"width": 3.0, "height": 4.0},
+            "kind": "bridge",
+            "depth": 6.0,
+            "piers": [{"width": 2.0, "height": 4.0}],
+            "abutments": {"width": 3.0, "height": 4.0},
             "spans": [
                 {"shape": "segmental", "span": 10.0, "rise": 2.5, "thickness": 0.55, "rings": 2},
                 {"shape": "three-centred", "span": 8.0, "rise": 2.4, "thickness": 0.5},
             ],
-            "backing": {"height": 1.0}, "surfacing": {"thickness": 0.12},
+            "backing": {"height": 1.0},
+            "surfacing": {"thickness": 0.12},
             "fill": {"cover": 0.4, "density": 1900.0, "friction_angle": "32 deg", "passive": 0.5},
         },
         "material": {"density": 2300.0, "compressive_strength": 8e6},
         "joints": {"friction": 0.6, "types": [{"joints": ["rings"], "friction": 0.4}]},
         "analysis": {
-            "kind": "moving-load", "axles": [0.0, 1.2, 5.0], "axle_loads": [60e3, 60e3, 40e3], "count": 9,
+            "kind": "moving-load",
+            "axles": [0.0, 1.2, 5.0],
+            "axle_loads": [60e3, 60e3, 40e3],
+            "count": 9,
             "factors": {"live": 1.35, "dynamic": 1.4, "strength": 2.0},
         },
-    }  # fmt: skip
+    }
     (answer,) = extrados.run(data).analyses
     assert answer["status"] == "ok"
 
@@ -420,11 +414,7 @@ def test_a_train_of_the_deck_is_the_one_of_the_code() -> None:
     keys = {"fill": FILL, "surfacing": ROAD, "depth": 3.0}
     code = run(moving(train="LM71"), **keys)
     own = run(
-        moving(
-            axles=[0.0, 1.6, 3.2, 4.8],
-            axle_loads=[250e3] * 4,
-            uniform=[{"stop": -0.8, "load": 80e3}, {"start": 5.6, "load": 80e3}],
-        ),
+        moving(axles=[0.0, 1.6, 3.2, 4.8], axle_loads=[250e3] * 4, uniform=[{"stop": -0.8, "load": 80e3}, {"start": 5.6, "load": 80e3}]),
         **keys,
     )
     assert own["adequacy_factor"] == pytest.approx(code["adequacy_factor"], rel=1e-9) and own["train"] == "train"
@@ -461,9 +451,7 @@ def test_even_loads_stand_where_they_are_adverse() -> None:
     one = np.ones(1)
 
     def job(adverse: bool) -> Places:
-        return Places(
-            a, 0.6, None, True, loads, 2.0 * one, one, train, (low, high), 0.3, adverse, _top(a, low, high)
-        )  # fmt: skip
+        return Places(a, 0.6, None, True, loads, 2.0 * one, one, train, (low, high), 0.3, adverse, _top(a, low, high))
 
     found, everywhere = job(True).collapse(0), job(False).collapse(0)
     assert found.factor < 0.9 * everywhere.factor
@@ -482,11 +470,7 @@ def test_even_loads_alone_stand_where_they_are_adverse() -> None:
     arch = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 9}
 
     def factor(**keys: object) -> float:
-        deck = {
-            "structure": arch,
-            "joints": {"friction": 0.7},
-            "analysis": {"kind": "moving-load", "axles": [], "places": [0.0], **keys},
-        }
+        deck = {"structure": arch, "joints": {"friction": 0.7}, "analysis": {"kind": "moving-load", "axles": [], "places": [0.0], **keys}}
         return extrados.run(deck)["moving-load"].adequacy_factor
 
     half = factor(adverse=False, uniform=[{"load": 2e4, "start": 0.0, "stop": 10.0}])
@@ -498,9 +482,7 @@ def test_partial_factors() -> None:
     plain = run(moving(train="LM1"), depth=3.0, **keys)["adequacy_factor"]
     doubled = run(moving(train="LM1", factors={"live": 1.6, "dynamic": 1.25}), depth=3.0, **keys)
     assert doubled["adequacy_factor"] == pytest.approx(0.5 * plain) and doubled["live_load_factor"] == 2.0
-    heavy = run(
-        moving([2.0], factors={"masonry": 1.2, "fill": 1.3, "surfacing": 1.4}), fill={"cover": 0.3}, surfacing=ROAD
-    )
+    heavy = run(moving([2.0], factors={"masonry": 1.2, "fill": 1.3, "surfacing": 1.4}), fill={"cover": 0.3}, surfacing=ROAD)
     same = run(
         moving([2.0]),
         fill={"cover": 0.3, "density": 2600.0},
@@ -509,10 +491,7 @@ def test_partial_factors() -> None:
     )
     assert heavy["collapse_load_N"] == pytest.approx(same["collapse_load_N"], rel=1e-9)
     soft = run(
-        moving([2.0], factors={"strength": 2.0, "friction": 1.4}),
-        material={"compressive_strength": 6e6},
-        joints={"friction": 0.7},
-        **keys,
+        moving([2.0], factors={"strength": 2.0, "friction": 1.4}), material={"compressive_strength": 6e6}, joints={"friction": 0.7}, **keys
     )
     same = run(moving([2.0]), material={"compressive_strength": 3e6}, joints={"friction": 0.5}, **keys)
     assert soft["collapse_load_N"] == pytest.approx(same["collapse_load_N"], rel=1e-9)
@@ -536,8 +515,7 @@ def test_both_ways_mirror_each_other_on_a_symmetric_bridge() -> None:
 
 def test_zones_of_thrust_hold_the_strength() -> None:
     weak, strong = (
-        run(moving([2.0]), fill=FILL, material={"compressive_strength": f}, joints={"friction": "no-sliding"})
-        for f in (2e6, 1e12)
+        run(moving([2.0]), fill=FILL, material={"compressive_strength": f}, joints={"friction": "no-sliding"}) for f in (2e6, 1e12)
     )
     plain = run(moving([2.0]), fill=FILL, joints={"friction": "no-sliding"})
     assert weak["collapse_load_N"] < 0.95 * plain["collapse_load_N"]
@@ -582,10 +560,7 @@ def test_a_sweep_reaches_into_fill_and_spans() -> None:
     soil = run({"kind": "sweep", "vary": "fill.passive", "values": [0.0, 0.5, 1.0], "locate": False}, fill=FILL)
     assert soil["collapse_accelerations_g"][1] == pytest.approx(plain["collapse_acceleration_g"], rel=1e-9)
     assert np.all(np.diff(soil["collapse_accelerations_g"]) > 0.0)
-    assert (
-        "a number from 0 to 0 in place of '1'"
-        in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
-    )
+    assert "a number from 0 to 0 in place of '1'" in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
 
 
 def test_pushes_go_with_sliding_that_does_not_dilate() -> None:
@@ -613,14 +588,7 @@ def test_pushes_go_with_sliding_that_does_not_dilate() -> None:
 
 # What a verdict on a train supposes
 
-RING: dict[str, Any] = {
-    "kind": "arch",
-    "radius": 10.0,
-    "thickness": 1.5,
-    "embrace": 157.5,
-    "voussoirs": 21,
-    "depth": 3.0,
-}
+RING: dict[str, Any] = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 21, "depth": 3.0}
 
 
 def ring(**analysis: Any) -> Result:
@@ -646,12 +614,7 @@ def test_a_bridge_without_fill_is_a_bare_ring_and_with_it_is_not() -> None:
 
 
 @pytest.mark.parametrize(
-    "load",
-    [
-        {"force": "10 kN"},
-        {"axle_loads": ["10 kN", "10 kN"], "axles": [0.0, 1.2]},
-        {"axles": [], "uniform": [{"load": "5 kN/m"}]},
-    ],
+    "load", [{"force": "10 kN"}, {"axle_loads": ["10 kN", "10 kN"], "axles": [0.0, 1.2]}, {"axles": [], "uniform": [{"load": "5 kN/m"}]}]
 )
 def test_any_load_on_a_bare_ring_leaves_the_verdict_open(load: dict[str, Any]) -> None:
     found = ring(**load)
@@ -664,10 +627,7 @@ def test_any_load_on_a_bare_ring_leaves_the_verdict_open(load: dict[str, Any]) -
 @pytest.mark.parametrize("factors", [{}, {"live": 1.35}, {"masonry": 0.95}, {"strength": 2.0}, {"friction": 1.1}])
 def test_a_verdict_without_partial_factors_says_so(factors: dict[str, float]) -> None:
     words = "All partial factors are 1.0: characteristic loads and strengths, no code margin."
-    for found in (
-        run(moving(train="LM1", factors=factors), depth=4.0, fill={"cover": 0.4}),
-        ring(force="10 kN", factors=factors),
-    ):
+    for found in (run(moving(train="LM1", factors=factors), depth=4.0, fill={"cover": 0.4}), ring(force="10 kN", factors=factors)):
         assert (words in found.verdict.statement) == (words in found.answer) == (not factors)
 
 

@@ -49,9 +49,7 @@ def test_example_of_the_masonry_curve():
     assert cc.strength_ratio(o, spectrum) == pytest.approx(1.692, abs=5e-4)
     demand = cc.n2_displacement(o, spectrum, TC)
     assert (1e3 * demand, 1e3 * demand * o.participation) == pytest.approx((9.713, 11.954), abs=5e-4)
-    factors = [
-        cc.n2_factor(o, spectrum, TC, cc.capacity_of(curve, o, s) / o.participation) for s in ("SLC", "SLV")
-    ]  # fmt: skip
+    factors = [cc.n2_factor(o, spectrum, TC, cc.capacity_of(curve, o, s) / o.participation) for s in ("SLC", "SLV")]
     assert factors == pytest.approx([1.753, 1.405], abs=5e-4)
 
 
@@ -77,9 +75,7 @@ def test_example_by_annex_b_and_by_the_capacity_spectrum():
 def test_an_elastic_plastic_curve_is_its_own_idealisation(secant):
     curve = rigid_plastic(300e3, 3e-3, 21e-3)
     law = cc.oscillator_of(curve, secant).law
-    assert (law.yield_load, law.yield_displacement, law.ultimate_displacement) == pytest.approx(
-        (300e3, 3e-3, 21e-3), rel=1e-9
-    )
+    assert (law.yield_load, law.yield_displacement, law.ultimate_displacement) == pytest.approx((300e3, 3e-3, 21e-3), rel=1e-9)
     other = cc.annex_b_oscillator(curve, 21e-3).law
     assert (other.yield_load, other.yield_displacement) == pytest.approx((300e3, 3e-3), rel=1e-9)
 
@@ -88,9 +84,7 @@ def test_an_elastic_plastic_curve_is_its_own_idealisation(secant):
 def test_factor_by_the_crossing_in_the_acceleration_displacement_plane(start, end):
     """Another route: the ductility at which the inelastic spectrum S_e/R_mu meets the strength (R_mu of Vidic and others:
     linear below T_C, mu above), on a scale that is found until its displacement is the capacity."""
-    curve = cc.CapacityCurve(
-        np.array([0.0, start, 0.3]), np.array([0.0, 300e3, 300e3]), np.array([50e3, 90e3]), np.array([0.6, 1.0]), {}
-    )  # fmt: skip
+    curve = cc.CapacityCurve(np.array([0.0, start, 0.3]), np.array([0.0, 300e3, 300e3]), np.array([50e3, 90e3]), np.array([0.6, 1.0]), {})
     o = cc.oscillator_of(curve)
     period, strength = o.period, o.law.yield_load / o.mass
     yielded = strength * (period / (2.0 * np.pi)) ** 2
@@ -118,9 +112,7 @@ def test_factors_by_bisection_are_those_of_the_closed_form_and_of_the_spectrum()
     found = cc.greatest_factor(lambda s: cc.n2_displacement(o, lambda t, x: s * spectrum(t, x), TC), end)
     assert found == pytest.approx(cc.n2_factor(o, spectrum, TC, end), rel=1e-9)
     capacity = 8e-3
-    found = cc.greatest_factor(
-        lambda s: cc.capacity_spectrum_displacement(curve, lambda t, x: s * spectrum(t, x), 0.66), capacity
-    )
+    found = cc.greatest_factor(lambda s: cc.capacity_spectrum_displacement(curve, lambda t, x: s * spectrum(t, x), 0.66), capacity)
     d, factor = cc.capacity_spectrum_factors(curve, spectrum, 0.66)
     assert found == pytest.approx(factor[d <= capacity].max(), rel=2e-3)
 

@@ -27,10 +27,7 @@ ROCKING = '[[analysis]]\nkind = "rocking"\n'
 DEM = '[[analysis]]\nkind = "dem"\nend_time = 0.02\n'
 SLA = '[[analysis]]\nkind = "sla"\nevents = 3\n'
 PUSH = '[[analysis]]\nkind = "pushover"\nevents = 3\nmesh.layers = 3\n'
-HOUSE = (
-    '[structure]\nkind = "building"\nstoreys = [2.0]\nwalls = [{ name = "a", start = [0, 0], end = [1, 0], thickness = 0.3 }]\n'
-    + PUSH
-)
+HOUSE = '[structure]\nkind = "building"\nstoreys = [2.0]\nwalls = [{ name = "a", start = [0, 0], end = [1, 0], thickness = 0.3 }]\n' + PUSH
 #: Four walls around a floor, two storeys; what is wrong with it is put in by its own lines
 ROOMS = (
     '[structure]\nkind = "building"\nstoreys = [3.0, 3.0]\nwalls = [\n'
@@ -49,15 +46,21 @@ FACADE = '[[analysis]]\nkind = "local-mechanism"\nmechanism = "facade"\nheight =
 WRONG = {
     "tie in no stone": ("no stone is at", ARCH + "[[ties]]\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n" + TILT),
     "tie in no stone, rocking": (
-        "no stone is at", ARCH + PULSE + '[[ties]]\nstiffness = 1e6\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n' + ROCKING,
+        "no stone is at",
+        ARCH + PULSE + "[[ties]]\nstiffness = 1e6\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n" + ROCKING,
     ),
     "both ends of a tie in one stone": ("both of its ends", BLOCK + "[[ties]] # here\nstart = [-0.2, 1.0]\nend = [0.2, 2.0]\n" + TILT),
     "tie of an unknown stone": (
-        "there is no stone 'none'", ARCH + '[[ties]]\nstart = [0.0, 1.0]\nstart_stone = "none" # here\nground = [0.0, 0.0]\n' + TILT,
+        "there is no stone 'none'",
+        ARCH + '[[ties]]\nstart = [0.0, 1.0]\nstart_stone = "none" # here\nground = [0.0, 0.0]\n' + TILT,
     ),
-    "rigid tie of what rocks": ("requires its stiffness", BLOCK + PULSE + "[[ties]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\n" + ROCKING),
+    "rigid tie of what rocks": (
+        "requires its stiffness",
+        BLOCK + PULSE + "[[ties]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\n" + ROCKING,
+    ),
     "hinge at an unknown joint": (
-        "there is no joint 'sole'", ARCH + PULSE + '[[hinges]]\ndamping = 1e3\njoints = ["sole"] # here\n' + ROCKING,
+        "there is no joint 'sole'",
+        ARCH + PULSE + '[[hinges]]\ndamping = 1e3\njoints = ["sole"] # here\n' + ROCKING,
     ),
     "dampers with tilt": (
         "cannot take [[dampers]] into account",
@@ -69,31 +72,31 @@ WRONG = {
         BLOCK + PULSE + '[supports]\nabutting_wall = "left"\n[initial]\nrotation_ratio = -0.1 # here\n' + ROCKING,
     ),
     "mesh that is not there": ("none.msh", '[structure]\nkind = "mesh"\nfile = "none.msh" # here\nthickness = 0.1\n' + SLA),
-    "outline that is not there": ("none.dxf", '[structure]\nkind = "panel"\noutline = "none.dxf" # here\nthickness = 0.1\n' + SLA + 'mesh.element = "T3"\nmesh.size = 0.2\n'),
+    "outline that is not there": (
+        "none.dxf",
+        '[structure]\nkind = "panel"\noutline = "none.dxf" # here\nthickness = 0.1\n' + SLA + 'mesh.element = "T3"\nmesh.size = 0.2\n',
+    ),
     "linear form of an arch": ("is known of blocks", ARCH + PULSE + ROCKING + 'form = "linear" # here\n'),
     "block that slides off its slope": ("overturns", BLOCK.replace("[structure]\n", "[structure]\nbase_slope = 30 # here\n") + TILT),
-    "typo in a variant": (
-        "unknown key", BLOCK + '[[analysis]]\nkind = "failure-curves"\nvariants = [{ widht = 2.0 }] # here\n',
-    ),
-    "missing hazard file": (
-        "no such file", BLOCK + GENERATED + FRAGILITY + '[analysis.hazard]\nfile = "none.csv" # here\n',
-    ),
+    "typo in a variant": ("unknown key", BLOCK + '[[analysis]]\nkind = "failure-curves"\nvariants = [{ widht = 2.0 }] # here\n'),
+    "missing hazard file": ("no such file", BLOCK + GENERATED + FRAGILITY + '[analysis.hazard]\nfile = "none.csv" # here\n'),
     "unit of a hazard curve": (
-        "'m' is not a unit", BLOCK + GENERATED + FRAGILITY
-        + '[analysis.hazard]\nintensities = ["0.1 m", "0.2 m"] # here\nannual_rates = [0.1, 0.01]\n',
+        "'m' is not a unit",
+        BLOCK + GENERATED + FRAGILITY + '[analysis.hazard]\nintensities = ["0.1 m", "0.2 m"] # here\nannual_rates = [0.1, 0.01]\n',
     ),
     "unit of levels": ("'m' is not a unit", BLOCK + GENERATED + FRAGILITY.replace('"0.1 g"]', '"0.1 m"] # here')),
-    "uncertain value of another structure": (
-        "does not belong", BLOCK + GENERATED + FRAGILITY + "uncertain = { radius = 0.1 } # here\n",
-    ),
+    "uncertain value of another structure": ("does not belong", BLOCK + GENERATED + FRAGILITY + "uncertain = { radius = 0.1 } # here\n"),
     "movement of an unknown joint, rocking": (
-        "names no joint 'none'", BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + ROCKING,
+        "names no joint 'none'",
+        BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + ROCKING,
     ),
     "movement of an unknown joint, dem": (
-        "names no joint 'none'", BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + DEM,
+        "names no joint 'none'",
+        BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + DEM,
     ),
     "movement of an unknown joint, supports": (
-        "names no joint 'none'", ARCH + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n[[analysis]]\nkind = "supports"\n',
+        "names no joint 'none'",
+        ARCH + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n[[analysis]]\nkind = "supports"\n',
     ),
     "movement in the analysis": (
         "names no joint 'none'",
@@ -105,14 +108,14 @@ WRONG = {
     ),
     "unknown joint of a type": ("names no joint", ARCH + '[[joints.types]]\njoints = ["none"] # here\nfriction = 0.3\n' + TILT),
     "load beside the structure": (
-        "lies beside", ARCH + TILT + "[[analysis.load]]\nx = 0.0\nforce = 1e3\n[[analysis.load]] # here\nx = 99.0\nforce = 1e3\n",
+        "lies beside",
+        ARCH + TILT + "[[analysis.load]]\nx = 0.0\nforce = 1e3\n[[analysis.load]] # here\nx = 99.0\nforce = 1e3\n",
     ),
     "chain of another name": ("there is no 'nave'", ARCH + '[[analysis]]\nkind = "thrust"\nchain = "nave" # here\n'),
-    "sweep of no key": (
-        "has no key 'widht'", BLOCK + '[[analysis]]\nkind = "sweep"\nvary = "widht" # here\nstart = 1\nstop = 2\n',
-    ),
+    "sweep of no key": ("has no key 'widht'", BLOCK + '[[analysis]]\nkind = "sweep"\nvary = "widht" # here\nstart = 1\nstop = 2\n'),
     "sweep in another unit": (
-        "'kN' is not a unit of m", BLOCK + '[[analysis]]\nkind = "sweep"\nvary = "width"\nstart = 1\nstop = "2 kN" # here\n',
+        "'kN' is not a unit of m",
+        BLOCK + '[[analysis]]\nkind = "sweep"\nvary = "width"\nstart = 1\nstop = "2 kN" # here\n',
     ),
     "survey without its table": ("none.csv", ARCH + '[[analysis]]\nkind = "survey"\nfile = "none.csv" # here\n'),
     "fracture without a buttress": ("needs a buttress", ARCH + TILT + "fracture = true # here\n"),
@@ -123,21 +126,22 @@ WRONG = {
     "bars of a block": ("needs an arch", BLOCK + PULSE + DEM + 'merge = "three-bars" # here\n'),
     "record that is not there": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + ROCKING),
     "suite that is not there": (
-        "none of the 1 records", BLOCK + '[motion] # here\nkind = "suite"\nfiles = ["none.at2"]\n' + FRAGILITY.replace("count = 4", "count = 1"),
+        "none of the 1 records",
+        BLOCK + '[motion] # here\nkind = "suite"\nfiles = ["none.at2"]\n' + FRAGILITY.replace("count = 4", "count = 1"),
     ),
     "record of dem": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + DEM),
     "curve that is not there": ("none.csv", PANEL + SLA + 'measured = "none.csv" # here\n'),
     "seeds that change nothing": ("seeds need", PANEL + SLA + "seeds = [1, 2] # here\n"),
     "run that is not there": ("results", PANEL + SLA + 'resume_from = "results" # here\n'),
-    "load beside the wall": (
-        "no node lies", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n',
-    ),
+    "load beside the wall": ("no node lies", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n'),
     "hold beside the wall": (
-        "no node near", PANEL + SLA + '[[analysis.stages]]\n[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n'
+        "no node near",
+        PANEL + SLA + '[[analysis.stages]]\n[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n'
         "[[analysis.stages.hold]] # here\nx = 7.0\ny = 7.0\n",
     ),
     "stage that is not there": (
-        "there is no stage 'two'", PANEL + SLA + 'main_stage = "two" # here\n[[analysis.stages]]\nname = "one"\n'
+        "there is no stage 'two'",
+        PANEL + SLA + 'main_stage = "two" # here\n[[analysis.stages]]\nname = "one"\n'
         '[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n',
     ),
     "no stages": ("expected at least 1", PANEL + SLA + "stages = [] # here\n"),
@@ -147,139 +151,150 @@ WRONG = {
     "opening as wide as a hair": ("expected more than", WALL + "openings = [{ x = [1, 1.0000001], z = [0, 2] }] # here\n" + PUSH),
     "opening in no storey": ("has no storey 2", WALL + "openings = [{ storey = 2, x = [1, 2], z = [0, 2] }] # here\n" + PUSH),
     "opening through a whole wall": (
-        "is not supported", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here") + "openings = [{ x = [0, 3], z = [1, 2] }]\n" + PUSH,
+        "is not supported",
+        WALL.replace("[[structure.walls]]", "[[structure.walls]] # here") + "openings = [{ x = [0, 3], z = [1, 2] }]\n" + PUSH,
     ),
     "lintel over the top": (
-        "under 1 m of wall", WALL + "openings = [{ x = [1, 2], z = [0, 2], lintel = { depth = 1.5 } }] # here\n" + PUSH,
+        "under 1 m of wall",
+        WALL + "openings = [{ x = [1, 2], z = [0, 2], lintel = { depth = 1.5 } }] # here\n" + PUSH,
     ),
     "lintel in an opening": (
-        "lies entirely within openings", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here")
-        + "openings = [{ x = [1, 2], z = [0, 1], lintel = { depth = 0.3 } }, { x = [1, 2], z = [1, 2] }]\n" + PUSH,
+        "lies entirely within openings",
+        WALL.replace("[[structure.walls]]", "[[structure.walls]] # here")
+        + "openings = [{ x = [1, 2], z = [0, 1], lintel = { depth = 0.3 } }, { x = [1, 2], z = [1, 2] }]\n"
+        + PUSH,
     ),
     "wall without thickness": ("greater than 0", WALL.replace("thickness = 0.3", "thickness = 0.0 # here") + PUSH),
     "wall thicker than the Earth": ("beyond reason", WALL.replace("thickness = 0.3", "thickness = 1e308 # here") + PUSH),
     "wall that is nowhere": ("finite number", WALL.replace("start = [0, 0]", "start = [0, nan] # here") + PUSH),
-    "wall of no length": ("the same point", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here").replace("[3, 0]", "[0, 0]") + PUSH),
+    "wall of no length": (
+        "the same point",
+        WALL.replace("[[structure.walls]]", "[[structure.walls]] # here").replace("[3, 0]", "[0, 0]") + PUSH,
+    ),
     "wall in the air": (
-        "is not supported", WALL.replace("[3.0]", "[3.0, 3.0]")
-        + '[[structure.walls]] # here\nname = "b"\nstart = [0, 5]\nend = [3, 5]\nthickness = 0.3\nstoreys = [2, 2]\n' + PUSH,
+        "is not supported",
+        WALL.replace("[3.0]", "[3.0, 3.0]")
+        + '[[structure.walls]] # here\nname = "b"\nstart = [0, 5]\nend = [3, 5]\nthickness = 0.3\nstoreys = [2, 2]\n'
+        + PUSH,
     ),
     "two walls of one name": (
-        "stands twice", WALL + '[[structure.walls]]\nname = "a" # here\nstart = [0, 5]\nend = [3, 5]\nthickness = 0.3\n' + PUSH,
+        "stands twice",
+        WALL + '[[structure.walls]]\nname = "a" # here\nstart = [0, 5]\nend = [3, 5]\nthickness = 0.3\n' + PUSH,
     ),
-    "floor without walls": (
-        "make no simple ring", WALL + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
-    ),
+    "floor without walls": ("make no simple ring", WALL + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH),
     "floor between walls that do not meet": (
-        "make no simple ring", ROOMS.replace("end = [3, 0]", "end = [2.5, 0]") + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
+        "make no simple ring",
+        ROOMS.replace("end = [3, 0]", "end = [2.5, 0]") + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
     ),
     "floor around walls in no order": (
-        "'a' and 'c' do not meet", ROOMS + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\nwalls = ["a", "c", "b", "d"]\n' + PUSH,
+        "'a' and 'c' do not meet",
+        ROOMS + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\nwalls = ["a", "c", "b", "d"]\n' + PUSH,
     ),
     "floor that names a wall twice": (
-        "stands twice", ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "rigid"\nwalls = ["a", "b", "a"] # here\n' + PUSH,
+        "stands twice",
+        ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "rigid"\nwalls = ["a", "b", "a"] # here\n' + PUSH,
     ),
     "floor twice": (
-        "between the same walls", ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "rigid"\n[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
+        "between the same walls",
+        ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "rigid"\n[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
     ),
     "floor above its wall": (
-        "has no masonry there", ROOMS.replace('"a", start', '"a", storeys = [1, 1], start')
-        + '[[structure.floors]] # here\nstorey = 2\nkind = "rigid"\nwalls = ["a", "b", "c", "d"]\n' + PUSH,
+        "has no masonry there",
+        ROOMS.replace('"a", start', '"a", storeys = [1, 1], start')
+        + '[[structure.floors]] # here\nstorey = 2\nkind = "rigid"\nwalls = ["a", "b", "c", "d"]\n'
+        + PUSH,
     ),
     "floor above the building": ("no storey 3", ROOMS + '[[structure.floors]]\nstorey = 3 # here\nkind = "rigid"\n' + PUSH),
     "joists from a wall to itself": (
-        "the two walls", ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
+        "the two walls",
+        ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
         'bears_on = ["a", "a"] # here\n' + PUSH,
     ),
     "joists along their wall": (
-        "no joist reaches", ROOMS + '[[structure.floors]] # here\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
+        "no joist reaches",
+        ROOMS + '[[structure.floors]] # here\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
         'bears_on = ["a", "b"]\n' + PUSH,
     ),
-    "corner of walls that do not meet": (
-        "do not meet", ROOMS + '[[structure.corners]] # here\nwalls = ["a", "c"]\nbond = "open"\n' + PUSH,
-    ),
+    "corner of walls that do not meet": ("do not meet", ROOMS + '[[structure.corners]] # here\nwalls = ["a", "c"]\nbond = "open"\n' + PUSH),
     "corner of one wall": ("stands twice", ROOMS + '[[structure.corners]]\nwalls = ["a", "a"] # here\nbond = "open"\n' + PUSH),
     "corner twice": (
-        "the same two walls", ROOMS + '[[structure.corners]]\nwalls = ["a", "b"]\nbond = "open"\n[[structure.corners]]\nwalls = ["b", "a"] # here\nbond = "weak"\n' + PUSH,
+        "the same two walls",
+        ROOMS
+        + '[[structure.corners]]\nwalls = ["a", "b"]\nbond = "open"\n[[structure.corners]]\nwalls = ["b", "a"] # here\nbond = "weak"\n'
+        + PUSH,
     ),
     "rod beside the building": (
-        "from the nearest node", ROOMS + '[[structure.rods]] # here\nstart = [9, 9, 3]\nend = [0, 0, 3]\narea = 1e-4\nmaterial = "steel"\n' + STEEL + PUSH,
+        "from the nearest node",
+        ROOMS + '[[structure.rods]] # here\nstart = [9, 9, 3]\nend = [0, 0, 3]\narea = 1e-4\nmaterial = "steel"\n' + STEEL + PUSH,
     ),
-    "prestress above its wall": (
-        "has no storey 5", ROOMS + '[[structure.prestress]]\nwall = "a"\nforce = 1e4\nlevel = 5 # here\n' + PUSH,
-    ),
+    "prestress above its wall": ("has no storey 5", ROOMS + '[[structure.prestress]]\nwall = "a"\nforce = 1e4\nlevel = 5 # here\n' + PUSH),
     "prop above its wall": ("has no storey 3", ROOMS + '[[structure.props]]\nwall = "a"\nstorey = 3 # here\n' + PUSH),
-    "too many shells": (
-        "the most are", ROOMS + PUSH.replace("mesh.layers = 3", "mesh = { size = 1e-5, layers = 3 } # here"),
-    ),
+    "too many shells": ("the most are", ROOMS + PUSH.replace("mesh.layers = 3", "mesh = { size = 1e-5, layers = 3 } # here")),
     "drive on no wall": ("no wall 'b'", HOUSE + 'drives = [{ wall = "b", storey = 1 }] # here\n'),
     "ground under no foot": (
-        "no foot 'middle'", ARCH + PUSH + '[[analysis.stages]]\n[[analysis.stages.settlements]] # here\nfoot = "middle"\nout = 0.01\n',
+        "no foot 'middle'",
+        ARCH + PUSH + '[[analysis.stages]]\n[[analysis.stages.settlements]] # here\nfoot = "middle"\nout = 0.01\n',
     ),
     "piers without a strength": ("compressive_strength", HOUSE + "[analysis.frame] # here\ndiagonal_strength = 5e4\n"),
-    "mesh of shells that is not there": (
-        "none.msh", '[structure]\nkind = "mesh"\nthickness = 0.3\nfile = "none.msh" # here\n' + PUSH,
-    ),
+    "mesh of shells that is not there": ("none.msh", '[structure]\nkind = "mesh"\nthickness = 0.3\nfile = "none.msh" # here\n' + PUSH),
     "speed of no film": ("needs animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
-    "wall without a load": (
-        "give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',
-    ),
+    "wall without a load": ("give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n'),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
     "energy ratio of an arch": ("that of a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
-    "energy ratio of spectra": (
-        "square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
-    ),
+    "energy ratio of spectra": ("square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n'),
     "spectra on a soft base": (
-        "rigid ground", PULSE + '[supports]\nstiffness = "10 MPa/m" # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
+        "rigid ground",
+        PULSE + '[supports]\nstiffness = "10 MPa/m" # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
     ),
     "base too soft": ("overturns under its own weight", BLOCK + PULSE + "[supports]\nstiffness = 1e3 # here\n" + ROCKING),
     "durations of one pulse": ("'generated'", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 1\ndurations = [1, 2] # here\n'),
-    "more motions than there are": (
-        "expected at most 1", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 4 # here\n',
-    ),
+    "more motions than there are": ("expected at most 1", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 4 # here\n'),
     "buttress of an arch": (
-        "needs a buttress", ARCH + '[[analysis]]\nkind = "sweep"\nvary = "thickness"\nstart = 1\nstop = 2\nbuttress_alone = true # here\n',
+        "needs a buttress",
+        ARCH + '[[analysis]]\nkind = "sweep"\nvary = "thickness"\nstart = 1\nstop = 2\nbuttress_alone = true # here\n',
     ),
-    "ties in space": (
-        "need [x, y, z] of each point", ARCH + TIE.replace("3.0]", "3.0] # here") + TILT + "direction = 10\n",
-    ),
+    "ties in space": ("need [x, y, z] of each point", ARCH + TIE.replace("3.0]", "3.0] # here") + TILT + "direction = 10\n"),
     "loads in space": ("acts at a point", ARCH + TILT + "direction = 10\n[[analysis.load]] # here\nx = 0.0\nforce = 1e3\n"),
-    "crushing in space": (
-        "tilt of solids", ARCH + '[material]\ncompressive_strength = "5 MPa" # here\n' + TILT + "direction = 10\n",
-    ),
-    "floors of an arch": (
-        "has no floors", ARCH + PUSH + '[[analysis.variants]]\nname = "stiff"\nfloors = 2.0 # here\n',
-    ),
-    "mortar of rigid contacts": (
-        "have no mortar", ARCH + PULSE + "[joints]\ncohesion = 1e5 # here\n" + DEM + 'solver = "nonsmooth"\n',
-    ),
+    "crushing in space": ("tilt of solids", ARCH + '[material]\ncompressive_strength = "5 MPa" # here\n' + TILT + "direction = 10\n"),
+    "floors of an arch": ("has no floors", ARCH + PUSH + '[[analysis.variants]]\nname = "stiff"\nfloors = 2.0 # here\n'),
+    "mortar of rigid contacts": ("have no mortar", ARCH + PULSE + "[joints]\ncohesion = 1e5 # here\n" + DEM + 'solver = "nonsmooth"\n'),
     "springs under rigid contacts": (
-        "have no springs", ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
+        "have no springs",
+        ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
     ),
     "first swings of solids": (
-        "dem of solids cannot take mode_II into account", BLOCK + '[[analysis]]\nkind = "dem-domain"\ndirection = 10\nmode_II = true # here\n'
+        "dem of solids cannot take mode_II into account",
+        BLOCK + '[[analysis]]\nkind = "dem-domain"\ndirection = 10\nmode_II = true # here\n'
         'amplitudes = ["0.5 g"]\ndurations = [0.1, 0.2]\n',
     ),
     "movements of rigid solids": (
-        "dem of solids cannot take [[initial.movements]] into account", ARCH + "[[initial.movements]] # here\njoint = 'joint 1'\ndx = 0.1\n"
-        + DEM + 'solver = "nonsmooth"\nquasi_static = true\ndirection = 10\n',
+        "dem of solids cannot take [[initial.movements]] into account",
+        ARCH
+        + "[[initial.movements]] # here\njoint = 'joint 1'\ndx = 0.1\n"
+        + DEM
+        + 'solver = "nonsmooth"\nquasi_static = true\ndirection = 10\n',
     ),
     "restitution of many blocks": ("of a single block", ARCH + PULSE + '[joints]\ndamping = "restitution" # here\n' + DEM),
-    "facade without its thickness": ("needs thickness", '[[analysis]] # here\nkind = "local-mechanism"\nmechanism = "facade"\nheight = 6\n'),
+    "facade without its thickness": (
+        "needs thickness",
+        '[[analysis]] # here\nkind = "local-mechanism"\nmechanism = "facade"\nheight = 6\n',
+    ),
     "mechanism of no building": ("needs a [structure]", '[[analysis]]\nkind = "local-mechanism"\nmechanism = "building" # here\n'),
     "corner that turns above its top": (
-        "not below the top", '[[analysis]]\nkind = "local-mechanism"\nmechanism = "corner"\nheight = 6\nthickness = 0.5\ncrack_angle = 30\n'
+        "not below the top",
+        '[[analysis]]\nkind = "local-mechanism"\nmechanism = "corner"\nheight = 6\nthickness = 0.5\ncrack_angle = 30\n'
         "hinge_height = 7 # here\n",
     ),
     "floor above the top": ("above the top", FACADE + "[[analysis.floors]]\nload = 1e3\nheight = 30 # here\n"),
     "side walls of a corner": (
-        "does not use side_walls", FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
+        "does not use side_walls",
+        FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
     ),
     "facade without weight": ("has weight", "[material]\ndensity = 0.0 # here\n" + FACADE),
     "block without weight": ("has no weight", BLOCK + "[material]\ndensity = 0.0 # here\n" + TILT),
     "arch without weight that rocks": ("has no weight", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + ROCKING),
     "arch without weight, discrete elements": ("has no weight", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + DEM),
-}  # fmt: skip
+}
 
 
 def refused(deck: Deck) -> list[str]:
@@ -309,9 +324,10 @@ def test_check_and_run_say_the_same(tmp_path: Path, wrong: str) -> None:
 WHILE_RUNNING = {
     "no line at that gamma": ("no thrust line is admissible", ARCH + '[[analysis]]\nkind = "thrust"\ngamma = 2.0 # here\n'),
     "a pier that is crushed": (
-        "crushes the pier", PANEL + 'compressive_strength = "1 MPa"\n[[analysis]]\nkind = "code-checks"\naxial_load = "1 MN" # here\n',
+        "crushes the pier",
+        PANEL + 'compressive_strength = "1 MPa"\n[[analysis]]\nkind = "code-checks"\naxial_load = "1 MN" # here\n',
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("wrong", WHILE_RUNNING)
@@ -338,18 +354,20 @@ def test_every_complaint_at_once(tmp_path: Path) -> None:
     """Two ties and two analyses: every complaint once, and what is sound goes on."""
     path = tmp_path / "deck.toml"
     path.write_text(
-        ARCH + "[[ties]]\nstart = [0.0, 1.0]\nground = [0.0, 0.0]\n[[ties]]\nstart = [0.0, 2.0]\nground = [0.0, 0.0]\n"
-        + PULSE + ROCKING + '[[analysis]]\nkind = "thrust"\nchain = "nave"\n' + '[[analysis]]\nkind = "motion"\n'
-    )  # fmt: skip
+        ARCH
+        + "[[ties]]\nstart = [0.0, 1.0]\nground = [0.0, 0.0]\n[[ties]]\nstart = [0.0, 2.0]\nground = [0.0, 0.0]\n"
+        + PULSE
+        + ROCKING
+        + '[[analysis]]\nkind = "thrust"\nchain = "nave"\n'
+        + '[[analysis]]\nkind = "motion"\n'
+    )
     deck = read_deck(path)
     said = check_building(deck).complaints
     assert [line.split(":")[1] for line in said] == ["8", "11", "21"]
     assert [result.status for result in compute(Context(deck)).results] == ["refused", "refused", "ok"]
 
 
-@pytest.mark.parametrize(
-    "path", [p for p in sorted(CASES.rglob("*.toml")) if not p.name.endswith(".expect.toml")], ids=lambda p: p.stem
-)
+@pytest.mark.parametrize("path", [p for p in sorted(CASES.rglob("*.toml")) if not p.name.endswith(".expect.toml")], ids=lambda p: p.stem)
 def test_what_runs_is_ok(path: Path) -> None:
     """Every deck of the cases runs (tests/cases), so that `check` must say nothing against it."""
     assert check_building(read_deck(path)).complaints == []
@@ -369,7 +387,7 @@ TOO_LONG = r"analysis\.output_step: a history of 1e\+08 s in steps of \S+ s is t
         ),
     ],
     ids=lambda one: one["kind"] if isinstance(one, dict) else "",
-)  # fmt: skip
+)
 def test_what_does_not_fit_into_memory_is_refused_before_it_runs(
     analysis: dict[str, Any], words: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -404,11 +422,7 @@ def test_long_analyses_are_foretold(tmp_path: Path) -> None:
         raise Begun(text)
 
     with pytest.raises(Begun) as told:
-        complaints(
-            context := Context(read_deck(path), out=tmp_path / "out", tell=tell),
-            context.deck.analyses[0],
-            context.building,
-        )
+        complaints(context := Context(read_deck(path), out=tmp_path / "out", tell=tell), context.deck.analyses[0], context.building)
     assert re.match(words, str(told.value))
     path.write_text(path.read_text().replace("10000", "100"))
     assert check_building(read_deck(path)).foretold == []

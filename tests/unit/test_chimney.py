@@ -12,9 +12,7 @@ from extrados.views.shell.mesh import nodal_areas
 from extrados.views.shell.options import ShellOptions
 
 DENSITY = 1900.0
-TAPERED = {
-    "kind": "chimney", "height": 12.0, "width": 2.4, "top_width": 1.6, "thickness": 0.5, "top_thickness": 0.3, "rings": 6,
-}  # fmt: skip
+TAPERED = {"kind": "chimney", "height": 12.0, "width": 2.4, "top_width": 1.6, "thickness": 0.5, "top_thickness": 0.3, "rings": 6}
 
 
 def building(**change) -> Building:
@@ -35,15 +33,15 @@ def tilt(**change):
     joints = {"friction": change.pop("friction", 0.75)}
     direction = change.pop("direction", 0.0)
     deck = {
-        "structure": TAPERED | change, "material": {"density": DENSITY}, "joints": joints,
+        "structure": TAPERED | change,
+        "material": {"density": DENSITY},
+        "joints": joints,
         "analysis": [{"kind": "tilt", "direction": direction}],
-    }  # fmt: skip
+    }
     return extrados.run(deck)["tilt"]
 
 
-@pytest.mark.parametrize(
-    ("facets", "direction", "arm"), [(16, 0.0, 1.2), (16, 11.25, 1.2 * np.cos(np.pi / 16)), (6, 0.0, 1.2)]
-)
+@pytest.mark.parametrize(("facets", "direction", "arm"), [(16, 0.0, 1.2), (16, 11.25, 1.2 * np.cos(np.pi / 16)), (6, 0.0, 1.2)])
 def test_whole_rings_overturn_about_the_base(facets: int, direction: float, arm: float) -> None:
     """About a corner of the polygon, or about the middle of a side."""
     volume, centre = moments(facets)
@@ -70,24 +68,25 @@ def test_blocks_do_not_overlap_and_fill_the_rings(blocks: int) -> None:
 
 def test_the_shell_weighs_what_the_wall_does() -> None:
     """A polygon of elements is a little smaller than the circle, the less the finer it is."""
-    exact = (
-        2.0 * np.pi * DENSITY * np.polynomial.Polynomial([0.95, -0.3 / 12]) * np.polynomial.Polynomial([0.5, -0.2 / 12])
-    )
+    exact = 2.0 * np.pi * DENSITY * np.polynomial.Polynomial([0.95, -0.3 / 12]) * np.polynomial.Polynomial([0.5, -0.2 / 12])
     whole = float(exact.integ()(12.0))
     off = []
     for size in (0.6, 0.3):
         mesh = building().shell(ShellOptions(size=size))
-        mass = sum(
-            float((nodal_areas(mesh.xyz, p.connect).sum(axis=1) * p.thickness).sum()) * DENSITY for p in mesh.parts
-        )
+        mass = sum(float((nodal_areas(mesh.xyz, p.connect).sum(axis=1) * p.thickness).sum()) * DENSITY for p in mesh.parts)
         off.append(1.0 - mass / whole)
     assert 0.0 < off[1] < 0.3 * off[0] < 0.01
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
-    [({"thickness": 1.2}, "no flue"), ({"blocks": 2}, "interlock"), ({"blocks": 5}, "multiple"), ({"rings": 400, "blocks": 100, "facets": 200}, "too many")],
-)  # fmt: skip
+    [
+        ({"thickness": 1.2}, "no flue"),
+        ({"blocks": 2}, "interlock"),
+        ({"blocks": 5}, "multiple"),
+        ({"rings": 400, "blocks": 100, "facets": 200}, "too many"),
+    ],
+)
 def test_what_is_no_chimney_is_refused(change: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Chimney.model_validate(TAPERED | change)

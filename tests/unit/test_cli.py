@@ -65,26 +65,20 @@ def test_readme_deck(tmp_path) -> None:
 def test_a_deck_comes_from_a_pipe(command: str, tmp_path: Path) -> None:
     """Its files are looked for in the current folder, its results are below results/stdin."""
     deck(tmp_path, ARCH + '[motion]\nkind = "record"\nfile = "motion.csv"\n[analysis]\nkind = "tilt"\n')
-    (tmp_path / "motion.csv").write_text(
-        "time [s],acceleration [g]\n" + "".join(f"{0.01 * k:.2f},0.1\n" for k in range(50))
-    )
-    for words, code, said in (
-        ("", 0, "Results: results/stdin"),
-        ("tlit", 2, "stdin:11: analysis.kind: unknown kind 'tlit'"),
-    ):
+    (tmp_path / "motion.csv").write_text("time [s],acceleration [g]\n" + "".join(f"{0.01 * k:.2f},0.1\n" for k in range(50)))
+    for words, code, said in (("", 0, "Results: results/stdin"), ("tlit", 2, "stdin:11: analysis.kind: unknown kind 'tlit'")):
         if words:
             (tmp_path / "deck.toml").write_text((tmp_path / "deck.toml").read_text().replace("tilt", words))
         done = subprocess.run(
             ["bash", "-c", f"{command} --no-figures", "bash", sys.executable], cwd=tmp_path, capture_output=True, text=True, timeout=120
-        )  # fmt: skip
+        )
         assert done.returncode == code and said in done.stdout + done.stderr, done.stdout + done.stderr
 
 
 def test_a_pipe_that_never_ends_is_no_deck(tmp_path: Path) -> None:
     done = subprocess.run(
-        ["bash", "-c", 'yes | "$1" -m extrados check -', "bash", sys.executable], cwd=tmp_path, capture_output=True, text=True,
-        timeout=120,
-    )  # fmt: skip
+        ["bash", "-c", 'yes | "$1" -m extrados check -', "bash", sys.executable], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
     assert done.returncode == 2 and "at most" in done.stderr
 
 
@@ -241,10 +235,15 @@ def test_results_of_a_motion_lie_in_results(tmp_path, name) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    [".".join("a" * 20_000) + " = 1", "[" + " . ".join(["'a'"] * 20_000) + "]", "[x]\ny = { " + ".".join("a" * 99) + " = 1 }",
-     "title" + ".b" * 50 + "." + '."c"' * 50 + " = 1", "a = " + "[" * 61 + "]" * 61],
+    [
+        ".".join("a" * 20_000) + " = 1",
+        "[" + " . ".join(["'a'"] * 20_000) + "]",
+        "[x]\ny = { " + ".".join("a" * 99) + " = 1 }",
+        "title" + ".b" * 50 + "." + '."c"' * 50 + " = 1",
+        "a = " + "[" * 61 + "]" * 61,
+    ],
     ids=["key", "header", "inline", "title", "list"],
-)  # fmt: skip
+)
 def test_a_deck_that_is_nested_too_deeply(tmp_path, text) -> None:
     text = text.replace("..", ".")
     tracemalloc.start()
@@ -275,13 +274,10 @@ def test_names_that_are_no_text(tmp_path) -> None:
             handle.write(content)
     run = extrados(b"run", name, cwd=tmp_path)
     assert (
-        run.returncode == 0
-        and "d\\udcff" in (tmp_path / "results").joinpath(*os.listdir(tmp_path / "results"), "summary.json").read_text()
+        run.returncode == 0 and "d\\udcff" in (tmp_path / "results").joinpath(*os.listdir(tmp_path / "results"), "summary.json").read_text()
     )
     assert len(list(tmp_path.glob("results/*/report.html"))) == 1
-    named = extrados(
-        b"motion", os.fsencode(tmp_path) + b"/r\xff.csv", "--time-step", "0.01", "--unit", "g", cwd=tmp_path
-    )
+    named = extrados(b"motion", os.fsencode(tmp_path) + b"/r\xff.csv", "--time-step", "0.01", "--unit", "g", cwd=tmp_path)
     assert named.returncode == 2 and "motion.file" in named.stderr and "Traceback" not in named.stderr
 
 
@@ -326,9 +322,7 @@ main()
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize(
-    "becomes", ["SystemExit(130)", "SystemExit(1)", "ImportError('initialization failed')", "KeyboardInterrupt"]
-)
+@pytest.mark.parametrize("becomes", ["SystemExit(130)", "SystemExit(1)", "ImportError('initialization failed')", "KeyboardInterrupt"])
 def test_signals_that_a_library_makes_something_else_of(tmp_path, number, becomes) -> None:
     """The code is the signal's, though it came while the library evaluated a text, which CPython remembers to its end."""
     code = f"""
@@ -377,9 +371,7 @@ print(found[0].interrupted, answered > 0, signal.getsignal(signal.SIGINT) is sig
 def test_more_threads_than_cores_are_not_started(tmp_path) -> None:
     words = ["--threads", "100000", "--out", str(tmp_path / "o"), "--no-figures"]
     run = extrados(
-        "run",
-        deck(tmp_path, ARCH + '[analysis]\nkind = "sweep"\nvary = "thickness"\nstart = 1.2\nstop = 2.0\ncount = 9\n'),
-        *words,
+        "run", deck(tmp_path, ARCH + '[analysis]\nkind = "sweep"\nvary = "thickness"\nstart = 1.2\nstop = 2.0\ncount = 9\n'), *words
     )
     assert run.returncode == 0 and "--threads 100000: this process may use" in run.stderr
 

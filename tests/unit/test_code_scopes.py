@@ -56,12 +56,7 @@ def test_the_slenderness_of_asce_41_is_for_walls_between_anchored_diaphragms(mec
 
 
 def test_a_facade_that_ties_anchor_at_its_top_has_the_slenderness_of_asce_41() -> None:
-    keys = {
-        "height": 4.0,
-        "thickness": 0.4,
-        "ties": [{"height": 3.8, "force": 5e3}],
-        "one_second_acceleration": "0.2 g",
-    }
+    keys = {"height": 4.0, "thickness": 0.4, "ties": [{"height": 3.8, "force": 5e3}], "one_second_acceleration": "0.2 g"}
     r = run("facade", code=ASCE, **keys)["local-mechanism"]
     assert r.checks["ASCE 41 slenderness"].verdict == "holds" and r.overall().outcome == "stands"
     low = run("facade", code=ASCE, **(keys | {"ties": [{"height": 2.0, "force": 5e3}]}))["local-mechanism"]
@@ -119,31 +114,19 @@ def test_q_is_for_a_mechanism_without_a_displacement_check() -> None:
     """C8.7.1.2.1.7: where the curve is compared, the mechanism must keep within d_SLV or not start."""
     strong = {"code": "EN1998-1", "ground": "D", "acceleration": "0.2 g"}
     r = run("wall", height=3.0, thickness=0.5, spectrum=strong)["local-mechanism"]
-    linear, nonlinear, starts = (
-        r.checks[n] for n in ("NTC linear (at the ground)", "NTC nonlinear", "NTC activation (at the ground)")
-    )
+    linear, nonlinear, starts = (r.checks[n] for n in ("NTC linear (at the ground)", "NTC nonlinear", "NTC activation (at the ground)"))
     assert linear.verdict == "not-applicable" and "C8.7.1.2.1.7" in linear.reason
     assert nonlinear.verdict == starts.verdict == "fails" and r.overall().outcome == "collapses"
     assert linear.capacity == pytest.approx(2.0 * starts.capacity)
     peak = run("wall", height=3.0, thickness=0.5, peak_acceleration="0.2 g")["local-mechanism"]
-    assert (
-        peak.checks["NTC linear (at the ground)"].verdict == "holds"
-        and "NTC activation (at the ground)" not in peak.checks
-    )
+    assert peak.checks["NTC linear (at the ground)"].verdict == "holds" and "NTC activation (at the ground)" not in peak.checks
     weak = run("wall", height=3.0, thickness=0.5, spectrum={**strong, "acceleration": "0.05 g"})["local-mechanism"]
     assert weak.checks["NTC activation (at the ground)"].verdict == "holds" and weak.overall().outcome == "stands"
 
 
 @pytest.mark.parametrize("mechanism", ["parapet", "gable"])
 def test_what_is_free_to_vibrate_is_not_asked_by_the_acceleration_of_the_floor(mechanism: str) -> None:
-    place = {
-        "height": 1.0,
-        "thickness": 0.5,
-        "width": 2.0,
-        "base_height": 6.0,
-        "building_height": 7.0,
-        "spectrum": QUIET,
-    }
+    place = {"height": 1.0, "thickness": 0.5, "width": 2.0, "base_height": 6.0, "building_height": 7.0, "spectrum": QUIET}
     r = run(mechanism, **place)["local-mechanism"]
     for name in ("NTC linear (at height z)", "NTC activation (at height z)"):
         assert r.checks[name].verdict == "not-applicable" and "C8.7.1.9" in r.checks[name].reason
@@ -164,12 +147,12 @@ def test_the_confidence_factor_of_masonry_that_is_taken_not_to_crush_is_that_of_
     assert bare.outcome == "open" and "C8.7.1.2.1.3" in bare.violated[0]
     tested = judged(run("wall", {"compressive_strength": "5 MPa"}, **keys, confidence_factor=1.0))
     assert tested.outcome == "stands" and "All partial and confidence factors are 1" in tested.statement
-    block = {"structure": {"kind": "block", "width": 1.0, "height": 2.5}, "analysis": {"kind": "code-checks", "spectrum": QUIET, "peak_velocity": 0.05, "confidence_factor": 1.0}}  # fmt: skip
+    block = {
+        "structure": {"kind": "block", "width": 1.0, "height": 2.5},
+        "analysis": {"kind": "code-checks", "spectrum": QUIET, "peak_velocity": 0.05, "confidence_factor": 1.0},
+    }
     assert extrados.run(block)["code-checks"].overall().outcome == "open"
-    assert (
-        "All partial and confidence factors are 1"
-        in extrados.run(CASES / "codes" / "pier.toml")["code-checks"].overall().statement
-    )
+    assert "All partial and confidence factors are 1" in extrados.run(CASES / "codes" / "pier.toml")["code-checks"].overall().statement
 
 
 def test_a_body_that_its_weight_brings_down_cannot_stand() -> None:
@@ -179,10 +162,7 @@ def test_a_body_that_its_weight_brings_down_cannot_stand() -> None:
     held = 2000.0 * GRAVITY * 0.6 * 6.0 * 0.3
     assert f"{(60e3 - held) / 1e3:.3g} kNm" in told["verdict"]["statement"]
     thin = {"kind": "arch", "radius": 10.0, "thickness": 0.5, "embrace": 180.0, "voussoirs": 24}
-    deck = {
-        "structure": thin,
-        "analysis": {"kind": "local-mechanism", "mechanism": "building", "peak_acceleration": "0.1 g"},
-    }
+    deck = {"structure": thin, "analysis": {"kind": "local-mechanism", "mechanism": "building", "peak_acceleration": "0.1 g"}}
     assert extrados.run(deck).analyses[0]["verdict"]["outcome"] == "cannot-stand"
 
 
@@ -204,9 +184,19 @@ def test_a_block_too_squat_to_rock_is_no_matter_of_asce_43(width: float) -> None
 def one(capacity: float, demand: float | None, code: str, alternative: str = "", reason: str = "") -> Check:
     verdict = "not-applicable" if reason else "" if demand is None else "holds" if demand <= capacity else "fails"
     return Check(
-        capacity=capacity, demand=demand, unit="g", quantity="", verdict=verdict, source="", note="", code=code, limit_state="", scope="", alternative=alternative,
+        capacity=capacity,
+        demand=demand,
+        unit="g",
+        quantity="",
+        verdict=verdict,
+        source="",
+        note="",
+        code=code,
+        limit_state="",
+        scope="",
+        alternative=alternative,
         reason=reason,
-    )  # fmt: skip
+    )
 
 
 def test_the_worst_check_that_applies_governs() -> None:
@@ -225,7 +215,10 @@ def test_the_worst_check_that_applies_governs() -> None:
 
 def test_a_block_that_slides_first_is_not_said_to_hold() -> None:
     """1 x 2 m: rocking needs a friction of 0.5."""
-    deck = {"structure": {"kind": "block", "width": 1.0, "height": 2.0}, "analysis": {"kind": "code-checks", "spectrum": QUIET, "peak_velocity": 0.05}}  # fmt: skip
+    deck = {
+        "structure": {"kind": "block", "width": 1.0, "height": 2.0},
+        "analysis": {"kind": "code-checks", "spectrum": QUIET, "peak_velocity": 0.05},
+    }
     for friction, outcome in ((0.3, "open"), (0.6, "stands"), ("no-sliding", "stands")):
         verdict = extrados.run({**deck, "joints": {"friction": friction}})["code-checks"].overall()
         assert verdict.outcome == outcome, friction

@@ -38,9 +38,7 @@ def test_a_wall_between_floors_by_the_equilibrium_of_its_two_bodies() -> None:
 
     grid = np.linspace(0.05 * h, 0.95 * h, 20001)
     least = min(grid, key=multiplier)
-    assert found.crack == pytest.approx(least, abs=2e-3 * h) and found.multiplier() == pytest.approx(
-        multiplier(least), rel=1e-6
-    )
+    assert found.crack == pytest.approx(least, abs=2e-3 * h) and found.multiplier() == pytest.approx(multiplier(least), rel=1e-6)
 
 
 def test_a_wall_between_floors_moves_as_two_rigid_bodies() -> None:
@@ -63,17 +61,8 @@ def test_arching_between_side_walls_by_moments_of_half_a_strip() -> None:
     assert math.tan(strip.ultimate()) == pytest.approx(0.45 / 3.0, rel=1e-9)
     pushed = HorizontalBending(6.0, 0.45, 30e3, 12e3, push=2e3)
     assert pushed.multiplier() == pytest.approx(strip.multiplier() - 2e3 / 30e3)
-    keys = {
-        "kind": "local-mechanism",
-        "mechanism": "horizontal-bending",
-        "height": 2.0,
-        "thickness": 0.45,
-        "width": 6.0,
-    }
-    crushing = {
-        "material": {"density": 1800.0, "compressive_strength": 1e6},
-        "analysis": {**keys, "abutment_force": "90 kN"},
-    }
+    keys = {"kind": "local-mechanism", "mechanism": "horizontal-bending", "height": 2.0, "thickness": 0.45, "width": 6.0}
+    crushing = {"material": {"density": 1800.0, "compressive_strength": 1e6}, "analysis": {**keys, "abutment_force": "90 kN"}}
     free = {"material": {"density": 1800.0}, "analysis": {**keys, "abutment_force": "90 kN"}}
     low, high = (extrados.run(d)["local-mechanism"].multiplier for d in (crushing, free))
     assert low / high == pytest.approx((0.45 - 0.045) / 0.45), "90 kN compress 45 mm of 2 m at 1 MPa"
@@ -82,9 +71,13 @@ def test_arching_between_side_walls_by_moments_of_half_a_strip() -> None:
 def test_a_flanked_strip_arches_until_it_crushes() -> None:
     """Side walls that do not move: of all compressed depths a the moment f h a (t - a) is greatest at t/2, by a search here."""
     table = {
-        "kind": "local-mechanism", "mechanism": "horizontal-bending", "height": 2.0, "thickness": 0.45, "width": 6.0,
+        "kind": "local-mechanism",
+        "mechanism": "horizontal-bending",
+        "height": 2.0,
+        "thickness": 0.45,
+        "width": 6.0,
         "peak_acceleration": "0.2 g",
-    }  # fmt: skip
+    }
     material = {"density": 1800.0, "compressive_strength": 0.2e6}
     r = extrados.run({"material": material, "analysis": table})["local-mechanism"]
     weight = 1800.0 * GRAVITY * 0.45 * 2.0 * 6.0
@@ -101,18 +94,8 @@ def test_a_flanked_strip_arches_until_it_crushes() -> None:
 
 
 def test_wings_of_a_facade_are_weights_about_its_hinge() -> None:
-    wings = [
-        {"height": 4.0, "thickness": 0.5, "width": 2.0},
-        {"foot": 6.0, "height": 8.0, "thickness": 0.3, "width": 3.0, "setback": 0.1},
-    ]
-    table = {
-        "kind": "local-mechanism",
-        "mechanism": "facade",
-        "height": 6.0,
-        "thickness": 0.6,
-        "width": 3.0,
-        "wings": wings,
-    }
+    wings = [{"height": 4.0, "thickness": 0.5, "width": 2.0}, {"foot": 6.0, "height": 8.0, "thickness": 0.3, "width": 3.0, "setback": 0.1}]
+    table = {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.6, "width": 3.0, "wings": wings}
     r = extrados.run({"material": {"density": 1800.0}, "analysis": table})["local-mechanism"]
     parts = [(0.6 * 3 * 6, 0.3, 3.0), (0.5 * 2 * 4, 0.25, 2.0), (0.3 * 3 * 2, 0.25, 7.0)]
     held, drive = (sum(v * p[k] for v, *p in parts) for k in (0, 1))
@@ -134,9 +117,12 @@ def test_the_floor_spectrum_of_several_modes_is_the_root_of_the_sum_of_squares()
         a_2 = 0.3 * ground(0.12, 0.04) * math.sqrt(1.0 + 4e-4 * 16.0)
         late = period / (1.1 * 0.12)
         by_hand = (
-            top * a_2 / (1.0 + (top - 1.0) * (1.0 - period / (0.8 * 0.12)) ** 1.6) if period < 0.096
-            else top * a_2 if period <= 1.1 * 0.12 else top * a_2 / (1.0 + (top - 1.0) * (late - 1.0) ** 1.2)
-        )  # fmt: skip
+            top * a_2 / (1.0 + (top - 1.0) * (1.0 - period / (0.8 * 0.12)) ** 1.6)
+            if period < 0.096
+            else top * a_2
+            if period <= 1.1 * 0.12
+            else top * a_2 / (1.0 + (top - 1.0) * (late - 1.0) ** 1.2)
+        )
         assert both(period, 0.08) == pytest.approx(math.hypot(single[0](period, 0.08), by_hand))
     modes = [{"period": 0.4, "participation": 1.1, "shape": 1.0}]
     base = {**WALL, "base_height": 6.0, "building_height": 9.0}
@@ -153,17 +139,13 @@ def test_a_free_part_answers_at_its_own_period() -> None:
     exact = 2.0 * math.pi / 1.87510407**2 * math.sqrt(rho * 12.0 * h**4 / (young * t**2))
     assert ntc.own_period(h, t, rho, young) == pytest.approx(exact, rel=2e-3)
     code = {
-        "jurisdiction": "NTC", "limit_states": ["SLD", "SLV"], "ground": "B", "accelerations": ["0.05 g", "0.15 g"],
+        "jurisdiction": "NTC",
+        "limit_states": ["SLD", "SLV"],
+        "ground": "B",
+        "accelerations": ["0.05 g", "0.15 g"],
         "corner_periods": [0.3, 0.33],
-    }  # fmt: skip
-    table = {
-        "kind": "local-mechanism",
-        "mechanism": "chimney",
-        "height": h,
-        "thickness": t,
-        "base_height": 8.0,
-        "building_height": 10.0,
     }
+    table = {"kind": "local-mechanism", "mechanism": "chimney", "height": h, "thickness": t, "base_height": 8.0, "building_height": 10.0}
     r = extrados.run({"material": {"density": rho, "young": young}, "code": code, "analysis": table})["local-mechanism"]
     low = r.checks["NTC activation at SLD (at height z)"]
     s_s = 1.2  # 1.40 - 0.40 F_0 a_g/g is above its bound of 1.2
@@ -175,14 +157,10 @@ def test_a_free_part_answers_at_its_own_period() -> None:
     asked = amplified * a_z / (1.0 + (amplified - 1.0) * (1.0 - period / (0.8 * first)) ** 1.6)
     assert low.demand == pytest.approx(asked) and low.limit_state == "SLD" and "T_0" in low.note
     high = r.checks["NTC activation (at height z)"]
-    assert high.demand == pytest.approx(3.0 * asked), (
-        "a_g of SLV is three times that of SLD, S and the plateau are alike"
-    )
+    assert high.demand == pytest.approx(3.0 * asked), "a_g of SLV is three times that of SLD, S and the plateau are alike"
     rows = [r.checks[n] for n in ("NTC nonlinear", "NTC activation (at height z)")]
     assert r.zeta_E == pytest.approx(max(c.capacity / c.demand for c in rows))
-    bare = extrados.run({"code": code, "analysis": table})["local-mechanism"].checks[
-        "NTC activation at SLD (at height z)"
-    ]
+    bare = extrados.run({"code": code, "analysis": table})["local-mechanism"].checks["NTC activation at SLD (at height z)"]
     assert bare.verdict == "not-applicable" and "Give [material] young" in bare.reason
 
 
@@ -233,10 +211,11 @@ def test_the_confidence_factor_of_ntc_lowers_every_strength_of_a_pier() -> None:
 
 def test_a_peak_acceleration_is_a_demand_on_a_pier() -> None:
     deck = {
-        "structure": {"kind": "panel", "width": 1.0, "height": 2.0, "thickness": 0.4}, "joints": {"cohesion": 0.13e6},
+        "structure": {"kind": "panel", "width": 1.0, "height": 2.0, "thickness": 0.4},
+        "joints": {"cohesion": 0.13e6},
         "material": {"density": 1800.0, "compressive_strength": 2.6e6},
         "analysis": {"kind": "code-checks", "axial_load": "80 kN", "diagonal_strength": 0.05e6, "peak_acceleration": "0.6 g"},
-    }  # fmt: skip
+    }
     load = 80e3 + 1800.0 * 0.8 * GRAVITY
     r = extrados.run({**deck, "code": {"jurisdiction": "NTC"}})["code-checks"]
     check = r.checks["NTC diagonal cracking"]
@@ -252,9 +231,7 @@ def test_a_peak_acceleration_is_a_demand_on_a_pier() -> None:
 def test_residual_sliding_is_no_least_strength() -> None:
     """Wall 1 of the printed example: 5726, 8493, 5442, 4960, 7941 kg; V_bjs2 is what is left beyond IO."""
     stress = GRAVITY / 1e-4
-    pier = Pier(
-        0.93, 1.8, 0.35, 8000.0 * GRAVITY, 2864.0 * GRAVITY, True, 60.0 * stress, 2.5 * stress, 0.4, 2.0 / 1.5 * stress
-    )
+    pier = Pier(0.93, 1.8, 0.35, 8000.0 * GRAVITY, 2864.0 * GRAVITY, True, 60.0 * stress, 2.5 * stress, 0.4, 2.0 / 1.5 * stress)
     rows = asce41_piers(pier, 1.0, None, 1.0, "LS")
     residual = next(x for x in rows if "residual" in x.rule)
     least = weakest(rows)
@@ -278,9 +255,11 @@ def test_a_one_way_wall_by_nzsee() -> None:
 def test_the_spectrum_of_nzs_1170_5() -> None:
     """Values of its Table 3.1 as a public implementation prints them, classes A, C, D, E."""
     values = {
-        "A": {0.0: 1.0, 0.1: 2.35, 0.5: 1.6, 1.5: 0.70, 3.0: 0.35, 4.0: 0.197}, "C": {0.0: 1.33, 0.2: 2.93, 1.0: 1.19, 2.0: 0.66},
-        "D": {0.0: 1.12, 0.4: 3.0, 1.0: 1.93, 3.0: 0.713}, "E": {0.0: 1.12, 0.9: 3.0, 1.5: 2.21, 2.5: 1.33},
-    }  # fmt: skip
+        "A": {0.0: 1.0, 0.1: 2.35, 0.5: 1.6, 1.5: 0.70, 3.0: 0.35, 4.0: 0.197},
+        "C": {0.0: 1.33, 0.2: 2.93, 1.0: 1.19, 2.0: 0.66},
+        "D": {0.0: 1.12, 0.4: 3.0, 1.0: 1.93, 3.0: 0.713},
+        "E": {0.0: 1.12, 0.9: 3.0, 1.5: 2.21, 2.5: 1.33},
+    }
     for ground, rows in values.items():
         spectrum = nzs1170(ground, 0.4, 1.3)
         for period, shape in rows.items():
@@ -311,7 +290,7 @@ def test_return_periods_of_ntc() -> None:
         ({"jurisdiction": "ASCE41", "short_accelerations": ["0.5 g"]}, "go together"),
         ({"jurisdiction": "Italy"}, "input should be"),
     ],
-)  # fmt: skip
+)
 def test_a_key_that_the_code_does_not_use_is_refused(code: dict, told: str) -> None:
     with pytest.raises(DeckError, match=told):
         make_deck({"code": code, "analysis": WALL})
@@ -325,7 +304,9 @@ def test_a_report_has_the_spectrum_of_its_own_code() -> None:
     assert row["status"] == "refused" and "is of ASCE 41" in row["reason"]
     run = extrados.run({"analysis": {**WALL, "spectrum": site}})
     assert run["local-mechanism"].by_default and "The deck names no code" in run.analyses[0]["verdict"]["statement"]
-    (row,) = extrados.run({"structure": {"kind": "block", "width": 1.0, "height": 3.0}, "code": {"jurisdiction": "NTC"}, "analysis": {"kind": "tilt"}}).analyses  # fmt: skip
+    (row,) = extrados.run(
+        {"structure": {"kind": "block", "width": 1.0, "height": 3.0}, "code": {"jurisdiction": "NTC"}, "analysis": {"kind": "tilt"}}
+    ).analyses
     assert any("code: no analysis of this deck uses it" in w for w in row["warnings"])
 
 

@@ -43,9 +43,7 @@ def test_rotation_is_exact() -> None:
         for whole in (-360.0, 0.0, 720.0):
             assert np.array_equal(directions.rotated(FIRST, SECOND, 90.0 * turns + whole), wanted)
     assert directions.rotated(FIRST, SECOND, 45.0) == pytest.approx((FIRST + SECOND) / np.sqrt(2.0), rel=1e-14)
-    assert directions.rotated(FIRST, SECOND, -45.0) == pytest.approx(
-        (FIRST - SECOND) / np.sqrt(2.0), rel=1e-13, abs=1e-16
-    )
+    assert directions.rotated(FIRST, SECOND, -45.0) == pytest.approx((FIRST - SECOND) / np.sqrt(2.0), rel=1e-13, abs=1e-16)
     assert directions.rotated(np.ones(1), np.zeros(1), 120.0) == pytest.approx(-0.5, rel=1e-14)
 
 

@@ -28,24 +28,28 @@ GENERATED = {"kind": "generated", "mmi": 8, "duration": 8.0}
 SINE = {"kind": "sine-pulse", "amplitude": "0.7 g", "period": 0.6}
 #: All kinds that rock a building by one mechanism, with a motion where they need one
 KINDS = {
-    "rocking": SINE, "fragility": GENERATED, "failure-domain": None, "failure-curves": None, "rocking-spectrum": SINE,
-    "harmonic-map": None, "resonance": None, "assessment": SINE,
-}  # fmt: skip
+    "rocking": SINE,
+    "fragility": GENERATED,
+    "failure-domain": None,
+    "failure-curves": None,
+    "rocking-spectrum": SINE,
+    "harmonic-map": None,
+    "resonance": None,
+    "assessment": SINE,
+}
 #: Small, and without rigid contacts, which would decide where a condition fails (test_hand_over.py)
 SMALL = {
-    "rocking": {"hand_over": False}, "fragility": {"count": 40, "seed": 1},
+    "rocking": {"hand_over": False},
+    "fragility": {"count": 40, "seed": 1},
     "failure-domain": {"durations": [0.2, 0.6], "amplitudes": 8, "hand_over_cells": 0},
-    "failure-curves": {"durations": [0.3, 0.6], "amplitudes": 8}, "harmonic-map": {"frequencies": [1.0, 2.0], "amplitudes": 6},
+    "failure-curves": {"durations": [0.3, 0.6], "amplitudes": 8},
+    "harmonic-map": {"frequencies": [1.0, 2.0], "amplitudes": 6},
     "rocking-spectrum": {"periods": [2.0, 4.0]},
-}  # fmt: skip
+}
 
 
 def result_of(kind: str, structure: dict, friction: float | str, motion: dict | None = None, **keys):
-    deck = {
-        "structure": structure,
-        "joints": {"friction": friction},
-        "analysis": {"kind": kind, **SMALL.get(kind, {}), **keys},
-    }
+    deck = {"structure": structure, "joints": {"friction": friction}, "analysis": {"kind": kind, **SMALL.get(kind, {}), **keys}}
     made = motion or KINDS[kind]
     return extrados.run(deck | ({"motion": made} if made else {})).results[0]
 
@@ -68,13 +72,9 @@ def test_forces_across_joints_are_those_of_the_dynamic_thrust_line() -> None:
         assert sorted(forces.joints.tolist()) == list(range(21))
         found = np.einsum("i,njik->njk", [1.0 + up / GRAVITY, side * across, rate**2], forces.table(q))
         c = whole.coefficients(side, q)
-        acceleration = (
-            -(c.half_mass_slope * rate**2 + c.gravity_moment * (1.0 + up / GRAVITY) + side * across * c.drive) / c.mass
-        )
+        acceleration = -(c.half_mass_slope * rate**2 + c.gravity_moment * (1.0 + up / GRAVITY) + side * across * c.drive) / c.mass
         every = np.ones_like(q)
-        line = core_arch.thrust_line(
-            model.four_hinge, arch, q, rate * every, acceleration, side * across * every, up * every
-        )
+        line = core_arch.thrust_line(model.four_hinge, arch, q, rate * every, acceleration, side * across * every, up * every)
         order = forces.joints if side > 0 else 20 - forces.joints
         weight = arch.mass.sum() * GRAVITY
         assert found[..., 0] == pytest.approx(line.normal[:, order], abs=1e-9 * weight)
@@ -84,10 +84,7 @@ def test_forces_across_joints_are_those_of_the_dynamic_thrust_line() -> None:
 
 def test_the_core_sees_what_the_history_shows() -> None:
     """Friction needed and excursion of the thrust line, by the tables of the core and from the history, on a block and an arch."""
-    for structure, motion in (
-        (BLOCK, pulses.sine_pulse(0.9 * GRAVITY, 0.5)),
-        (OPPENHEIM, pulses.step_pulse(-GRAVITY, 0.2)),
-    ):
+    for structure, motion in ((BLOCK, pulses.sine_pulse(0.9 * GRAVITY, 0.5)), (OPPENHEIM, pulses.step_pulse(-GRAVITY, 0.2))):
         rocker = make_deck({"structure": structure, "analysis": {"kind": "failure-domain"}}).buildings[0].rocker()
         r = history(rocker.body, motion.ground, motion.end + 4.0, 0.0005)
         if isinstance(rocker.model, BlockModel):
@@ -98,11 +95,7 @@ def test_the_core_sees_what_the_history_shows() -> None:
             side, left = side[side != 0.0], side[side != 0.0] < 0.0
             states = [x[r.rotation != 0.0] for x in (r.rotation, r.rate, r.acceleration, r.ground, r.vertical)]
             line = core_arch.thrust_line(
-                rocker.model.four_hinge,
-                rocker.model.arch,
-                np.abs(states[0]),
-                *(side * x for x in states[1:4]),
-                states[4],
+                rocker.model.four_hinge, rocker.model.arch, np.abs(states[0]), *(side * x for x in states[1:4]), states[4]
             )
             seen = line.friction.max()
             out = np.maximum(-line.position, line.position - 1.0)
@@ -136,12 +129,7 @@ def test_the_share_of_motions_that_slide_is_that_of_their_histories() -> None:
     """Friction .22, above the .2 of uplift: a motion counts where a toe of its own history needs more."""
     slender = {"kind": "block", "width": 1.0, "height": 5.0}
     deck = make_deck(
-        {
-            "structure": slender,
-            "joints": {"friction": 0.22},
-            "motion": GENERATED,
-            "analysis": {"kind": "fragility", "count": 40, "seed": 1},
-        }
+        {"structure": slender, "joints": {"friction": 0.22}, "motion": GENERATED, "analysis": {"kind": "fragility", "count": 40, "seed": 1}}
     )
     found = result_of("fragility", slender, 0.22).results
     source, _ = source_of(Context(deck), 1)
@@ -166,18 +154,11 @@ def test_what_friction_does_not_carry_cannot_stand(kind: str) -> None:
 
 def test_an_arch_slides_where_limit_analysis_with_friction_says_so() -> None:
     """Friction .3: capacity of `tilt` without and with sliding against the watch of the rocker."""
-    deck = {
-        "structure": OPPENHEIM,
-        "joints": {"friction": 0.3},
-        "analysis": [{"kind": "tilt", "friction_rule": "associated"}],
-    }
+    deck = {"structure": OPPENHEIM, "joints": {"friction": 0.3}, "analysis": [{"kind": "tilt", "friction_rule": "associated"}]}
     tilt = extrados.run(deck)["tilt"]
     rocker = make_deck(deck).buildings[0].rocker()
     assert rocker.uplift == pytest.approx(0.37, abs=0.001)
-    assert (
-        rocker.watch.capacity[0] == pytest.approx(tilt.collapse_acceleration_g, rel=1e-6)
-        and rocker.watch.capacity[0] < 0.2
-    )
+    assert rocker.watch.capacity[0] == pytest.approx(tilt.collapse_acceleration_g, rel=1e-6) and rocker.watch.capacity[0] < 0.2
 
 
 #: Single sines on preset dejong-a: period [s] and amplitude over .134 g by which discrete elements (`dem`, nonsmooth) end otherwise
@@ -193,10 +174,7 @@ def test_a_vault_on_buttresses_says_that_hinges_form_elsewhere() -> None:
         assert run.verdict.outcome == "open" and any("thrust line leaves" in text for text in run.verdict.violated)
         assert run.results.conditions.energy_astray == pytest.approx(0.975, abs=0.002)
     calm = {"kind": "sine-pulse", "amplitude": "0.13 g", "period": 1.0}
-    assert (
-        extrados.run({"structure": VAULT, "motion": calm, "analysis": {"kind": "rocking"}}).results[0].verdict.outcome
-        == "stands"
-    )
+    assert extrados.run({"structure": VAULT, "motion": calm, "analysis": {"kind": "rocking"}}).results[0].verdict.outcome == "stands"
 
 
 def test_a_wrong_outcome_of_the_vault_is_that_of_elements() -> None:
@@ -225,10 +203,7 @@ def test_every_mechanism_of_the_vault_is_watched_at_all_joints() -> None:
         share = pushed[:, 2] / pushed[:, 0]
         assert share.min() > -1e-6 and share.max() < 1.0 + 1e-6 and (at_rest[:, 0] > 0.0).any()
         ground = [k for k, j in enumerate(forces.joints) if -1 in (vault.a[j], vault.b[j])]
-        base = sum(
-            pushed[k, 0] * vault.normal[forces.joints[k]] + pushed[k, 1] * vault.tangent[forces.joints[k]]
-            for k in ground
-        )
+        base = sum(pushed[k, 0] * vault.normal[forces.joints[k]] + pushed[k, 1] * vault.tangent[forces.joints[k]] for k in ground)
         weight = vault.mass.sum() * GRAVITY
         assert base == pytest.approx([-one.side * gamma * weight, weight], rel=1e-6)
 
@@ -251,17 +226,9 @@ def test_chaos_is_told_by_growth() -> None:
     assert all(value > CHAOTIC or turns > 0.0 for value, turns in found)
     shake = {"kind": "harmonic", "amplitude": "1.00003 g", "frequency": 2.0, "duration": 20.0}
     run = extrados.run(
-        {
-            "structure": {"kind": "block", "width": 1.0, "height": 5.0},
-            "motion": shake,
-            "analysis": {"kind": "rocking", "output_step": 0.02},
-        }
+        {"structure": {"kind": "block", "width": 1.0, "height": 5.0}, "motion": shake, "analysis": {"kind": "rocking", "output_step": 0.02}}
     ).results[0]
-    assert (
-        run.results.decided_by_last_digits
-        and run.verdict.outcome == "open"
-        and run.results.perturbation_growth > CHAOTIC
-    )
+    assert run.results.decided_by_last_digits and run.verdict.outcome == "open" and run.results.perturbation_growth > CHAOTIC
 
 
 def test_ordinary_runs_are_not_chaotic() -> None:
@@ -297,10 +264,7 @@ def test_a_window_of_collapse_among_recoveries_is_told() -> None:
 
 def test_the_least_perturbation_that_turns_an_outcome() -> None:
     others = ["recovery", "no-hinging", "recovery", "collapse"] + 6 * ["recovery"]
-    assert (
-        turning("recovery", others) == turning("no-hinging", others) == NUDGES[1]
-        and turning("collapse", others) == NUDGES[0]
-    )
+    assert turning("recovery", others) == turning("no-hinging", others) == NUDGES[1] and turning("collapse", others) == NUDGES[0]
     assert turning("collapse", 10 * ["collapse"]) == turning("recovery", 10 * ["no-hinging"]) == 0.0
 
 
@@ -315,9 +279,7 @@ def test_growth_counts_until_the_balance() -> None:
 
 
 @pytest.mark.parametrize(("thickness", "embrace", "least"), [(1.2, 180.0, 1.5), (1.1, 175.0, 1.5)])
-def test_curves_of_thin_arches_state_the_band_of_the_impact_rules(
-    thickness: float, embrace: float, least: float
-) -> None:
+def test_curves_of_thin_arches_state_the_band_of_the_impact_rules(thickness: float, embrace: float, least: float) -> None:
     """t/R .11 and .12: amplitudes differ between rules; each is that of the rule alone."""
     structure = {"kind": "arch", "radius": 10.0, "thickness": thickness, "embrace": embrace, "voussoirs": 36}
     keys = {"durations": [1.2, 1.6, 2.0], "pulse": "sine", "max_amplitude": "1.0 g", "amplitudes": 40}
@@ -326,11 +288,7 @@ def test_curves_of_thin_arches_state_the_band_of_the_impact_rules(
     assert r.rule_ratio > least and any("impact rules differ" in text for text in found.warnings)
     curves = {one.rule: one.amplitudes_g for one in r.amplitudes_by_rule}
     assert curves["inelastic"] == pytest.approx(r.mode_I.amplitudes_g, abs=1e-4)
-    deck = {
-        "structure": structure,
-        "joints": {"restitution": "energy-safe"},
-        "analysis": {"kind": "failure-domain", **keys},
-    }
+    deck = {"structure": structure, "joints": {"restitution": "energy-safe"}, "analysis": {"kind": "failure-domain", **keys}}
     assert extrados.run(deck)["failure-domain"].mode_I.amplitudes_g == pytest.approx(curves["energy-safe"], abs=1e-4)
     (curve,) = result_of("failure-curves", structure, "no-sliding", **keys).results.curves
     assert curve.rule_ratio == pytest.approx(r.rule_ratio, rel=0.01)
@@ -365,15 +323,11 @@ def test_sampled_arches_that_slide_at_rest_are_no_safe_ones() -> None:
 
 def test_where_joints_are_not_watched_the_answer_says_so() -> None:
     wall = {"supports": {"abutting_wall": "left"}}
-    run = extrados.run(
-        {"structure": BLOCK, **wall, "motion": GENERATED, "analysis": {"kind": "fragility", "count": 10, "seed": 1}}
-    )
+    run = extrados.run({"structure": BLOCK, **wall, "motion": GENERATED, "analysis": {"kind": "fragility", "count": 10, "seed": 1}})
     assert "not checked" in run["fragility"].conditions.not_checked
     assert any("not checked" in text for text in run.results[0].warnings)
     soft = {"supports": {"stiffness": 1e8}}
-    run = extrados.run(
-        {"structure": BLOCK, **soft, "motion": GENERATED, "analysis": {"kind": "fragility", "count": 10, "seed": 1}}
-    )
+    run = extrados.run({"structure": BLOCK, **soft, "motion": GENERATED, "analysis": {"kind": "fragility", "count": 10, "seed": 1}})
     assert "compliant" in run["fragility"].conditions.not_checked
 
 
@@ -390,10 +344,7 @@ def test_a_column_taken_as_one_body_says_where_its_drums_part() -> None:
     a = {name: result.arrays[name].data for name in ("time", "rotation", "rate", "acceleration", "ground")}
     above = stones.centroid[:, 1] > stones.middle[j, 1]
     side = np.where(a["rotation"] < 0.0, -1.0, 1.0)
-    toe = np.where(
-        side > 0.0,
-        *(np.max(stones.p[stones.a < 0, 0].tolist() + stones.q[stones.b < 0, 0].tolist()) * k for k in (1, -1)),
-    )
+    toe = np.where(side > 0.0, *(np.max(stones.p[stones.a < 0, 0].tolist() + stones.q[stones.b < 0, 0].tolist()) * k for k in (1, -1)))
     outside = np.full(len(side), -1.0)
     for i in np.flatnonzero(a["rotation"] != 0.0):
         turn, spin, change = -a["rotation"][i], -a["rate"][i], -a["acceleration"][i]
@@ -404,9 +355,7 @@ def test_a_column_taken_as_one_body_says_where_its_drums_part() -> None:
         ends = [(end - [toe[i], 0.0]) @ rotate.T for end in (stones.p[j], stones.q[j])]
         pull = stones.mass[above, None] * acceleration
         moments = [
-            ((arm - end)[:, 0] * pull[:, 1] - (arm - end)[:, 1] * pull[:, 0]).sum()
-            + stones.inertia[above].sum() * change
-            for end in ends
+            ((arm - end)[:, 0] * pull[:, 1] - (arm - end)[:, 1] * pull[:, 0]).sum() + stones.inertia[above].sum() * change for end in ends
         ]
         share = moments[0] / (moments[0] - moments[1])
         outside[i] = max(-share, share - 1.0) if force @ rotate @ [0.0, 1.0] > 0.0 else np.inf
@@ -442,19 +391,17 @@ def test_rules_of_one_body_are_open_where_its_drums_part() -> None:
 def test_a_margin_holds_as_far_as_friction_suffices() -> None:
     """Friction .32 suffices for the motion, not for 1.28 times it: rocking then needs .33, and the margin is a lower bound."""
     deck = {
-        "structure": {"kind": "block", "width": 0.6, "height": 2.0}, "joints": {"friction": 0.32},
+        "structure": {"kind": "block", "width": 0.6, "height": 2.0},
+        "joints": {"friction": 0.32},
         "motion": {"kind": "sine-pulse", "amplitude": "0.33 g", "period": 0.8},
-    }  # fmt: skip
+    }
     (alone,) = extrados.run(deck | {"analysis": [{"kind": "assessment"}]}).results
     r = alone.results
     assert r.margin == pytest.approx(1.28, abs=0.01) and not r.conditions.violated
     (told,) = r.margin_conditions
     assert "1.28 times the motion" in told and "needs up to 0.33" in told
     assert told in alone.verdict.statement and told in alone.warnings
-    scaled = deck | {
-        "motion": {**deck["motion"], "amplitude": f"{0.33 * r.margin} g"},
-        "analysis": [{"kind": "rocking"}],
-    }
+    scaled = deck | {"motion": {**deck["motion"], "amplitude": f"{0.33 * r.margin} g"}, "analysis": [{"kind": "rocking"}]}
     assert extrados.run(scaled)["rocking"].conditions.violated  # by the run itself
     whole = extrados.run(deck | {"analysis": [{"kind": "assess", "strategies": ["rocking", "assessment"]}]})["assess"]
     rocking = next(v for v in whole.verdicts if v.strategy == "rocking")

@@ -111,9 +111,7 @@ def test_a_reason_comes_back_with_its_key() -> None:
         ("missing", "its reader ended with code 1"),
     ],
 )
-def test_a_reader_that_goes_wrong_ends_within_its_limits(
-    reader: str, words: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_reader_that_goes_wrong_ends_within_its_limits(reader: str, words: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contained, "SECONDS", 1)
     monkeypatch.setattr(contained, "PATIENCE", 4 if reader == "sleep" else 60)
     with pytest.raises(Unreadable, match=words):
@@ -208,7 +206,9 @@ def _runs(number: int) -> bool:
         return False
 
 
-@pytest.mark.parametrize("data", [b"", b"\x05\0\0\0", encode([1])[:-1], encode(np.arange(3))[:-1], b"\x02\0\0\0{}x", b"\x10\0\0\0" + b'{"\\u0000array":7}'])  # fmt: skip
+@pytest.mark.parametrize(
+    "data", [b"", b"\x05\0\0\0", encode([1])[:-1], encode(np.arange(3))[:-1], b"\x02\0\0\0{}x", b"\x10\0\0\0" + b'{"\\u0000array":7}']
+)
 def test_damaged_answers_are_refused(data: bytes) -> None:
     with pytest.raises(Unreadable):
         decode(data)
@@ -232,10 +232,13 @@ def _vtu(path: Path, values: int) -> Path:
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">'
         '<UnstructuredGrid><Piece NumberOfPoints="3" NumberOfCells="1"><Points>'
         + array("Points", "0 0 0 1 0 0 0 1 0", "Float64", 3)
-        + "</Points><Cells>" + array("connectivity", "0 1 2", "Int64") + array("offsets", "3", "Int64") + array("types", "5", "Int64")
+        + "</Points><Cells>"
+        + array("connectivity", "0 1 2", "Int64")
+        + array("offsets", "3", "Int64")
+        + array("types", "5", "Int64")
         + f'</Cells><CellData><DataArray type="Float64" Name="bomb" format="binary">{packed}</DataArray></CellData></Piece>'
         "</UnstructuredGrid></VTKFile>"
-    )  # fmt: skip
+    )
     return path
 
 

@@ -66,7 +66,12 @@ def test_good_deck() -> None:
         ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'energy-safe' or 'inelastic', or", "number"]),
         ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
         ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound needs abutting_wall"]),
-        ("voussoirs = 7", "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]", 9, ["expected as many coordinates at all points of a tie"]),
+        (
+            "voussoirs = 7",
+            "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]",
+            9,
+            ["expected as many coordinates at all points of a tie"],
+        ),
         ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
         ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),
@@ -78,7 +83,7 @@ def test_good_deck() -> None:
         ("duration = 0.20", "duration = 0,20", 11, ["decimal sign is a point"]),
         ("duration = 0.20", "duration = 0.20\nduration = 0.3", 12, ["duration"]),
     ],
-)  # fmt: skip
+)
 def test_complaint(old: str, new: str, line: int, words: list[str]) -> None:
     found = complaints(GOOD.replace(old, new, 1))
     assert any(c.startswith(f"deck.toml:{line}:") and all(w in c for w in words) for c in found), found
@@ -98,9 +103,7 @@ def test_all_complaints_at_once() -> None:
 
 
 def test_missing_motion_and_structure() -> None:
-    assert any(
-        "needs a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"')
-    )
+    assert any("needs a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"'))
     assert any("needs a [structure]" in c for c in complaints('[analysis]\nkind = "tilt"'))
     assert any("no [analysis]" in c for c in complaints('title = "x"'))
 
@@ -135,10 +138,7 @@ def test_analysis_settings_are_checked() -> None:
     ):
         found = complaints(GOOD.replace('kind = "tilt"', bad))
         assert any(words in c for c in found), found
-    assert any(
-        "no [analysis]" in c
-        for c in complaints(GOOD[: GOOD.index("[[analysis]]")].replace("title", "analysis = []\ntitle", 1))
-    )
+    assert any("no [analysis]" in c for c in complaints(GOOD[: GOOD.index("[[analysis]]")].replace("title", "analysis = []\ntitle", 1)))
 
 
 def test_empty_deck() -> None:
@@ -171,11 +171,22 @@ def test_quantity_grammar(text: str) -> None:
 
 @pytest.mark.parametrize(
     ("text", "si", "value"),
-    [("20 cm", "m", 0.2), ("0.5 g", "m/s^2", 4.903325), ("55.6 kN", "N", 55600.0), ("3 N/mm^2", "Pa", 3e6),
-     ("2.7 rad", "deg", 154.69860468), ("1.92e-5 N/mm^3", "N/m^3", 19200.0), ("300 cm/s**2", "m/s^2", 3.0),
-     ("1800 kg/m3", "kg/m^3", 1800.0), ("1800 kg/m³", "kg/m^3", 1800.0), ("18 kN/m3", "kg/m^3", 18e3 / 9.80665),
-     ("18 kN/m³", "kg/m^3", 18e3 / 9.80665), ("40 cm²", "m^2", 4e-3), ("5 mm2", "m^2", 5e-6)],
-)  # fmt: skip
+    [
+        ("20 cm", "m", 0.2),
+        ("0.5 g", "m/s^2", 4.903325),
+        ("55.6 kN", "N", 55600.0),
+        ("3 N/mm^2", "Pa", 3e6),
+        ("2.7 rad", "deg", 154.69860468),
+        ("1.92e-5 N/mm^3", "N/m^3", 19200.0),
+        ("300 cm/s**2", "m/s^2", 3.0),
+        ("1800 kg/m3", "kg/m^3", 1800.0),
+        ("1800 kg/m³", "kg/m^3", 1800.0),
+        ("18 kN/m3", "kg/m^3", 18e3 / 9.80665),
+        ("18 kN/m³", "kg/m^3", 18e3 / 9.80665),
+        ("40 cm²", "m^2", 4e-3),
+        ("5 mm2", "m^2", 5e-6),
+    ],
+)
 def test_quantities(text: str, si: str, value: float) -> None:
     assert parse(text, si) == pytest.approx(value, rel=1e-10)
 
@@ -211,20 +222,22 @@ def test_explain_schema_and_starters() -> None:
 
 
 def test_decks_from_python() -> None:
-    deck = make_deck({"structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9},
-                      "analysis": {"kind": "tilt"}})  # fmt: skip
+    deck = make_deck(
+        {"structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9}, "analysis": {"kind": "tilt"}}
+    )
     assert deck.analyses[0].kind == "tilt"
 
 
 @pytest.mark.parametrize(
     ("tables", "words"),
     [
-        ({"joints": {"friction_rule": "non-associated"}, "analysis": {"kind": "tilt"}},
-         "joints.friction_rule: unknown key; it belongs in the [[analysis]] table"),
-        ({"analysis": {"kind": "moving-load", "dynamic": 1.4}},
-         "analysis.dynamic: unknown key; it belongs in analysis.factors"),
+        (
+            {"joints": {"friction_rule": "non-associated"}, "analysis": {"kind": "tilt"}},
+            "joints.friction_rule: unknown key; it belongs in the [[analysis]] table",
+        ),
+        ({"analysis": {"kind": "moving-load", "dynamic": 1.4}}, "analysis.dynamic: unknown key; it belongs in analysis.factors"),
     ],
-)  # fmt: skip
+)
 def test_a_key_at_the_wrong_place_is_told_its_own(tables: dict, words: str) -> None:
     arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
     with pytest.raises(DeckError, match=re.escape(words)):

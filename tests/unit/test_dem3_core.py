@@ -29,9 +29,14 @@ def solids(parts: list[Polyhedron], law: Law, *, floor: bool = True) -> Solids:
         parts = [*parts, FLOOR]
         mass, centre, inertia = [*mass, 0.0], [*centre, np.array([0, 0, -0.5])], [*inertia, np.eye(3)]
     return Solids(
-        np.array(centre), np.array(mass), np.array(inertia), [p.vertices for p in parts], [p.faces for p in parts],
-        list(range(len(parts))), [law],
-    )  # fmt: skip
+        np.array(centre),
+        np.array(mass),
+        np.array(inertia),
+        [p.vertices for p in parts],
+        [p.faces for p in parts],
+        list(range(len(parts))),
+        [law],
+    )
 
 
 def test_a_free_body_turns_as_euler_says() -> None:
@@ -66,10 +71,7 @@ def test_round_drums_bear_on_all_of_their_faces(sides: int) -> None:
     """Two drums settle level, by what the whole polygons give."""
     angle = 2.0 * np.pi * np.arange(sides) / sides
     ring = 0.5 * np.column_stack([np.cos(angle), np.sin(angle)])
-    run = dem3.run(
-        solids([prism(ring, k * 1.0, k + 1.0) for k in range(2)], Law(1e9, 1e9, 0.6, damping=1e-4)),
-        Options(end_time=0.05),
-    )
+    run = dem3.run(solids([prism(ring, k * 1.0, k + 1.0) for k in range(2)], Law(1e9, 1e9, 0.6, damping=1e-4)), Options(end_time=0.05))
     assert [0.5 - run.place[-1, 0, 2], 1.5 - run.place[-1, 1, 2]] == pytest.approx(
         [DENSITY * GRAVITY * 2.0 / 1e9, DENSITY * GRAVITY * 3.0 / 1e9], rel=1e-3
     )
@@ -100,9 +102,7 @@ def test_sliding_down_a_slope_in_any_direction(direction: float) -> None:
     exact = 0.5 * GRAVITY * (np.sin(slope) - mu * np.cos(slope)) * run.time[-1] ** 2
     assert gone == pytest.approx(exact * np.array([np.cos(turn), np.sin(turn)]), abs=1e-5 * exact)
     assert run.turn[-1, 0] == pytest.approx(np.eye(3), abs=1e-6) and run.residual < 1e-9
-    held = dem3.run(
-        replace(model, laws=[Law(1e9, 1e9, 0.5, damping=1e-4)]), Options(end_time=0.5, gravity=tuple(gravity))
-    )
+    held = dem3.run(replace(model, laws=[Law(1e9, 1e9, 0.5, damping=1e-4)]), Options(end_time=0.5, gravity=tuple(gravity)))
     assert np.abs(held.place[-1, 0] - held.place[0, 0]).max() < 1e-7  # tan 25 = .466 < .5
 
 
@@ -115,15 +115,11 @@ def shaken(seconds: float) -> Ground:
     return Ground(samples=(0.5 * GRAVITY * np.cos(10.88 * t))[None], step=1e-3)
 
 
-def rocking(
-    seconds: float, way: tuple[float, float, float] = (1.0, 0.0, 0.0), **options: Any
-) -> tuple[np.ndarray, dem3.Run]:
+def rocking(seconds: float, way: tuple[float, float, float] = (1.0, 0.0, 0.0), **options: Any) -> tuple[np.ndarray, dem3.Run]:
     """Rotation towards the way of the ground over time, and the run."""
     half = np.array([0.5 * WIDE, 0.5, 0.0]) if way[0] else np.array([0.5, 0.5 * WIDE, 0.0])
     given = Options(**{"end_time": seconds, "step": 5e-5, "way": way, **options})
-    run = dem3.run(
-        solids([box(-half, half + np.array([0, 0, HIGH]))], Law(K, K, MU, damping=BETA)), given, shaken(seconds)
-    )
+    run = dem3.run(solids([box(-half, half + np.array([0, 0, HIGH]))], Law(K, K, MU, damping=BETA)), given, shaken(seconds))
     up = run.turn[:, 0, :, 2]
     return np.arctan2(up @ np.array(way), up[:, 2]), run
 
@@ -134,10 +130,15 @@ def test_a_plane_problem_is_that_of_the_plane_solver() -> None:
     floor = np.array([[-20, -1], [20, -1], [20, 0], [-20, 0.0]])
     mass = DENSITY * WIDE * HIGH
     bodies = dem.Bodies(
-        np.array([[0, 0.5 * HIGH], [0, -0.5]]), np.array([mass, 0.0]),
-        np.array([mass * (WIDE**2 + HIGH**2) / 12.0, 0.0]), [outline, floor], [0, 1], [np.ones(4, dtype=bool)] * 2, 1.0,
+        np.array([[0, 0.5 * HIGH], [0, -0.5]]),
+        np.array([mass, 0.0]),
+        np.array([mass * (WIDE**2 + HIGH**2) / 12.0, 0.0]),
+        [outline, floor],
+        [0, 1],
+        [np.ones(4, dtype=bool)] * 2,
+        1.0,
         [dem.Law(K, K, MU, damping=BETA)],
-    )  # fmt: skip
+    )
     for step in (2e-4, 5e-5):
         plane = -dem.run(bodies, dem.Options(end_time=1.5, step=step), shaken(1.5)).place[:, 0, 2]
         space, run = rocking(1.5, step=step)
@@ -153,17 +154,21 @@ def test_a_block_that_slides_off_an_edge_falls_as_in_the_plane() -> None:
     floor = np.array([[-20, -1], [20, -1], [20, 0], [-20, 0.0]])
     mass = DENSITY * size**2
     bodies = dem.Bodies(
-        np.array([[at, 0.5 * size], [0, -0.5]]), np.array([mass, 0.0]), np.array([mass * size**2 / 6.0, 0.0]),
-        [outline, floor], [0, 1], [np.ones(4, dtype=bool)] * 2, 1.0, [dem.Law(1e9, 1e9, 0.0, damping=1e-5)],
-    )  # fmt: skip
+        np.array([[at, 0.5 * size], [0, -0.5]]),
+        np.array([mass, 0.0]),
+        np.array([mass * size**2 / 6.0, 0.0]),
+        [outline, floor],
+        [0, 1],
+        [np.ones(4, dtype=bool)] * 2,
+        1.0,
+        [dem.Law(1e9, 1e9, 0.0, damping=1e-5)],
+    )
     block = box((at - 0.5 * size, -0.5, 0), (at + 0.5 * size, 0.5, size))
     for speed in (1.0, 3.0):
         given = {"end_time": 0.4 / speed + 0.2, "step": 5e-6, "residual_limit": 1.0}
         plane = dem.run(bodies, dem.Options(**given), rate=np.array([[speed, 0, 0], np.zeros(3)]))
         space = dem3.run(
-            solids([block], Law(1e9, 1e9, 0.0, damping=1e-5)),
-            Options(**given),
-            rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)]),
+            solids([block], Law(1e9, 1e9, 0.0, damping=1e-5)), Options(**given), rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)])
         )
         fallen = plane.place[0, 0, 1] - plane.place[-1, 0, 1]
         assert fallen > 0.1
@@ -213,11 +218,7 @@ def test_sliding_on_ground_that_moves_in_a_circle() -> None:
     """Against the equation of a point with Coulomb friction, u'' = -a(t) - mu g u'/|u'|, by another integrator."""
     mu, strength, pace = 0.3, 0.5 * GRAVITY, 4.0 * np.pi
     grounds = [
-        Ground(
-            breaks=np.array([0.0, 1.0]),
-            linear=np.zeros((1, 1, 2)),
-            harmonic=np.array([[[[strength, 0.0, pace, phase]]]]),
-        )
+        Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[strength, 0.0, pace, phase]]]]))
         for phase in (0.5 * np.pi, 0.0)
     ]
     slab = solids([box((-1, -1, 0), (1, 1, 0.2))], Law(1e10, 1e10, mu, damping=1e-5))
@@ -229,9 +230,7 @@ def test_sliding_on_ground_that_moves_in_a_circle() -> None:
         return np.concatenate([state[2:], pull - mu * GRAVITY * state[2:] / speed])
 
     start = 1e-6  # it slides from the first
-    exact = solve_ivp(
-        point, (0.0, 1.0), [0.0, 0.0, -start * (strength - mu * GRAVITY), 0.0], rtol=1e-9, atol=1e-12, t_eval=run.time
-    )
+    exact = solve_ivp(point, (0.0, 1.0), [0.0, 0.0, -start * (strength - mu * GRAVITY), 0.0], rtol=1e-9, atol=1e-12, t_eval=run.time)
     gone = run.place[:, 0, :2] - run.settled[0, :2]
     assert np.linalg.norm(gone, axis=1).max() > 0.02
     assert gone == pytest.approx(exact.y[:2].T, abs=2e-3 * np.abs(gone).max())
@@ -240,10 +239,7 @@ def test_sliding_on_ground_that_moves_in_a_circle() -> None:
 def test_no_bit_depends_on_threads_pauses_or_a_state_taken_back(monkeypatch) -> None:
     """A wall of six stones in two courses that rocks and slides; a state of another run is refused."""
     parts = [box((x, 0, z), (x + 0.5, 0.3, z + 0.25)) for z in (0.0, 0.25) for x in (0.0, 0.5, 1.0)]
-    model, options = (
-        solids(parts, Law(1e9, 1e9, 0.5, damping=1e-4)),
-        Options(end_time=0.02, output_step=0.005, way=(0.6, 0.8, 0.0)),
-    )
+    model, options = (solids(parts, Law(1e9, 1e9, 0.5, damping=1e-4)), Options(end_time=0.02, output_step=0.005, way=(0.6, 0.8, 0.0)))
     once = dem3.run(model, options, shaken(1.0), scale=3.0)
     assert once.reason == "end" and np.abs(once.place[-1] - once.place[0]).max() > 1e-5
     monkeypatch.setattr(dem_run, "FIRST_PAUSE", 5)
@@ -269,18 +265,12 @@ def test_one_contact_keeps_exact_energy() -> None:
     comes back to where it fell from. A dashpot takes away what the ledger says."""
     block = box((0, 0, 0), (1, 1, 1)).moved(np.eye(3), np.array([0.0, 0.0, 0.01]))
     for step, off in ((4e-4, 1e-2), (1e-4, 1e-3)):
-        run = dem3.run(
-            solids([block], Law(1e7, 1e7, 0.0)),
-            Options(end_time=0.3, step=step, output_step=step),
-            rate=np.zeros((2, 6)),
-        )
+        run = dem3.run(solids([block], Law(1e7, 1e7, 0.0)), Options(end_time=0.3, step=step, output_step=step), rate=np.zeros((2, 6)))
         fall = np.ptp(run.place[:, 0, 2])
         assert fall == pytest.approx(0.01 + (r := 2000 * GRAVITY / 1e7) + np.sqrt(r**2 + 0.02 * r), rel=1e-3)
         assert run.residual < off
         assert run.energy["elastic"].max() == pytest.approx(2000.0 * GRAVITY * fall, rel=1e-3)
-    damped = dem3.run(
-        solids([block], Law(1e7, 1e7, 0.0, damping=2e-3)), Options(end_time=0.5, step=1e-4), rate=np.zeros((2, 6))
-    )
+    damped = dem3.run(solids([block], Law(1e7, 1e7, 0.0, damping=2e-3)), Options(end_time=0.5, step=1e-4), rate=np.zeros((2, 6)))
     lost = damped.energy["damping"][-1]
     assert lost > 0.3 * 2000.0 * GRAVITY * 0.01 and damped.residual < 1e-3
 
@@ -301,8 +291,9 @@ def test_a_column_falls_where_limit_analysis_says(direction: float) -> None:
         gravity = (push * np.cos(turn), push * np.sin(turn), -GRAVITY)
         run = dem3.run(
             solids(parts, Law(1e11, 1e11, 0.7, damping=1e-5)),
-            Options(end_time=2.0, gravity=gravity, settle_steps=0, collapse=0.05, output_step=0.1), rate=np.zeros((4, 6)),
-        )  # fmt: skip
+            Options(end_time=2.0, gravity=gravity, settle_steps=0, collapse=0.05, output_step=0.1),
+            rate=np.zeros((4, 6)),
+        )
         found.append((run.reason, float(np.linalg.norm(run.place[-1, 2] - run.place[0, 2]))))
     assert run.residual < 1e-3  # of the fall; where it stands next to no energy goes round
     assert found[0][0] == "end" and found[0][1] < 5e-3
@@ -319,13 +310,12 @@ def test_a_wobbling_cylinder_keeps_its_energy_and_its_swing_about_the_vertical()
     inertia = mass_properties([tilted], DENSITY)[2]
     spin = np.array([0.0, 0.0, 0.8])
     run = dem3.run(
-        solids([tilted], Law(1e9, 1e9, 0.0)), Options(end_time=1.5, output_step=0.05, fraction=0.1),
+        solids([tilted], Law(1e9, 1e9, 0.0)),
+        Options(end_time=1.5, output_step=0.05, fraction=0.1),
         rate=np.array([[0, 0, 0, *spin], [0.0] * 6]),
-    )  # fmt: skip
+    )
     assert run.reason == "end" and run.residual < 2e-3
-    swing = [
-        ((turn @ inertia @ turn.T) @ rate[3:])[2] for turn, rate in zip(run.turn[:, 0], run.rate[:, 0], strict=True)
-    ]
+    swing = [((turn @ inertia @ turn.T) @ rate[3:])[2] for turn, rate in zip(run.turn[:, 0], run.rate[:, 0], strict=True)]
     assert swing == pytest.approx([(inertia @ spin)[2]] * len(swing), rel=1e-6)
     # it turned about the vertical by much, and did not fall
     low = np.arctan2(run.turn[:, 0, 1, 2], run.turn[:, 0, 0, 2])
@@ -346,9 +336,7 @@ def test_bars_that_cross_rest_on_each_other_by_their_edges(angle: float) -> None
     assert abs(run.place[-1, 0, 2] - 0.2) < 1e-3  # in free fall it would be 12 mm lower
     assert run.turn[-1, 0] == pytest.approx(run.turn[0, 0], abs=1e-6)  # they touch under its centroid
     apart = replace(
-        model,
-        centroid=model.centroid + np.array([[0, 0, 0.05], [0, 0, 0]]),
-        vertices=[model.vertices[0] + [0, 0, 0.05], model.vertices[1]],
+        model, centroid=model.centroid + np.array([[0, 0, 0.05], [0, 0, 0]]), vertices=[model.vertices[0] + [0, 0, 0.05], model.vertices[1]]
     )
     free = dem3.run(apart, Options(end_time=0.05, output_step=0.01), rate=np.zeros((2, 6)))
     assert free.place[-1, 0, 2] - free.place[0, 0, 2] == pytest.approx(-0.5 * GRAVITY * free.time[-1] ** 2, rel=1e-3)
@@ -373,17 +361,12 @@ def test_dashpots_between_blocks_that_both_move() -> None:
     given = Options(end_time=0.02, output_step=0.001, step=step, gravity=(0, 0, 0), residual_limit=1e9)
     cubes = [box((0, 0, 0), (1, 1, 1)), box((0, 0, 1 + apart), (1, 1, 2 + apart))]
     both = dem3.run(
-        solids(cubes, Law(stiffness, stiffness, 0.0, damping=beta), floor=False), given,
+        solids(cubes, Law(stiffness, stiffness, 0.0, damping=beta), floor=False),
+        given,
         rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, -speed, 0, 0, 0]]),
-    )  # fmt: skip
-    wall = solids(
-        [cubes[0], box((0, 0, 1 + 0.5 * apart), (1, 1, 2))],
-        Law(2 * stiffness, 2 * stiffness, 0.0, damping=beta),
-        floor=False,
     )
-    one = dem3.run(
-        replace(wall, mass=np.array([mass, 0.0])), given, rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
-    )
+    wall = solids([cubes[0], box((0, 0, 1 + 0.5 * apart), (1, 1, 2))], Law(2 * stiffness, 2 * stiffness, 0.0, damping=beta), floor=False)
+    one = dem3.run(replace(wall, mass=np.array([mass, 0.0])), given, rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, 0, 0, 0, 0]]))
     assert both.rate[-1, 0, 2] == pytest.approx(-both.rate[-1, 1, 2], rel=1e-9)
     assert -speed < one.rate[-1, 0, 2] < -0.05 * speed
     assert both.rate[-1, 0, 2] == pytest.approx(one.rate[-1, 0, 2], rel=1e-6)
@@ -394,9 +377,7 @@ def test_wrong_models_are_refused() -> None:
     options = Options(end_time=0.1)
     with pytest.raises(ValueError, match="a face has 97 corners, expected at most 96"):
         angle = 2.0 * np.pi * np.arange(97) / 97
-        dem3.run(
-            solids([prism(np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 1.0)], Law(1e9, 1e9, 0.6)), options
-        )
+        dem3.run(solids([prism(np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 1.0)], Law(1e9, 1e9, 0.6)), options)
     with pytest.raises(ValueError, match="stiffnesses"):
         Law(0.0, 1e9, 0.6)
     with pytest.raises(ValueError, match="law that is not there"):
@@ -439,10 +420,7 @@ def test_settling_asks_of_mortar_the_weight_at_rest(share: float) -> None:
     law = Law(stiffness, stiffness, 0.5, damping=0.0, cohesion=weight, tension=share * weight)
     run = dem3.run(hanging(law), Options(end_time=0.1, output_step=0.01, settlement=1e-3))
     if share > 1.0:
-        assert (
-            run.reason == "end"
-            and abs(run.place[:, 0, 2] + 0.5 - 1.0 + weight / stiffness).max() < 1e-3 * weight / stiffness
-        )
+        assert run.reason == "end" and abs(run.place[:, 0, 2] + 0.5 - 1.0 + weight / stiffness).max() < 1e-3 * weight / stiffness
     else:
         assert run.reason == "unsettled" and run.blamed == [0]
 
@@ -455,9 +433,7 @@ def test_mortar_bears_shear_by_cohesion(share: float, gap: float) -> None:
     pull = GRAVITY * np.array([np.sin(slope), 0.0, -np.cos(slope)])
     needed = weight * (np.sin(slope) - mu * np.cos(slope))
     law = Law(1e9, 1e9, mu, damping=2e-3, cohesion=share * needed, tension=weight)
-    cubes = solids(
-        [box((-0.5, -0.5, gap), (0.5, 0.5, 1 + gap))], law
-    )  # of a drawing that is not exact: mortar fills it
+    cubes = solids([box((-0.5, -0.5, gap), (0.5, 0.5, 1 + gap))], law)  # of a drawing that is not exact: mortar fills it
     model = replace(cubes, laws=[replace(law, cohesion=0.0, tension=0.0), law], joints={(0, 1): 1})
     run = dem3.run(model, Options(end_time=0.5, output_step=0.01, gravity=tuple(pull)), rate=np.zeros((2, 6)))
     way = run.place[-1, 0, 0] - run.place[0, 0, 0]
@@ -487,9 +463,14 @@ def doweled_cube(strength: float, reach: float = np.inf, stiffness: float = 1e9)
     """A cube on a floor, with a dowel in the middle of its base."""
     model = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], Law(1e9, 1e9, 0.2, damping=1e-4))
     one = dem3.Dowels(
-        np.array([[1, 0]]), np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), np.array([stiffness]), np.array([strength]),
-        np.array([reach]), 1e-4,
-    )  # fmt: skip
+        np.array([[1, 0]]),
+        np.zeros((1, 3)),
+        np.array([[0.0, 0.0, 1.0]]),
+        np.array([stiffness]),
+        np.array([strength]),
+        np.array([reach]),
+        1e-4,
+    )
     return replace(model, dowels=one)
 
 
@@ -519,9 +500,7 @@ def test_a_cube_swings_on_its_dowel() -> None:
     speed, stiffness, beta, mass = 0.01, 1e6, 1e-2, DENSITY
     model = doweled_cube(np.inf, stiffness=stiffness)
     model = replace(model, laws=[Law(1e9, 1e9, 0.0, damping=1e-3)], dowels=replace(model.dowels, damping=beta))
-    run = dem3.run(
-        model, Options(end_time=0.6, output_step=0.002), rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)])
-    )
+    run = dem3.run(model, Options(end_time=0.6, output_step=0.002), rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)]))
     omega = np.sqrt(stiffness / mass)
     ratio = 0.5 * beta * omega
     damped = omega * np.sqrt(1.0 - ratio**2)
@@ -533,12 +512,7 @@ def test_the_critical_step_knows_dowels() -> None:
     """Two floating cubes, half a metre of arm each: omega^2 = 2 k (1 / m + r^2 / J), each as if the other gave way as much."""
     stiffness = 1e12
     apart = solids([box((-0.5, -0.5, k), (0.5, 0.5, k + 1)) for k in (0.0, 1.1)], Law(1e9, 1e9, 0.5), floor=False)
-    one = replace(
-        doweled_cube(np.inf).dowels,
-        body=np.array([[0, 1]]),
-        place=np.array([[0.0, 0.0, 1.05]]),
-        stiffness=np.array([stiffness]),
-    )
+    one = replace(doweled_cube(np.inf).dowels, body=np.array([[0, 1]]), place=np.array([[0.0, 0.0, 1.05]]), stiffness=np.array([stiffness]))
     options = Options(end_time=1e-7, fraction=0.1, gravity=(0, 0, 0))
     step = dem3.run(replace(apart, dowels=one), options, rate=np.zeros((2, 6))).step
     omega2 = 2.0 * stiffness / DENSITY * (1.0 + 6.0 * 0.55**2)
@@ -550,9 +524,13 @@ def test_a_dowel_keeps_momentum_and_energy() -> None:
     cubes = [box((-0.5, -0.5, k), (0.5, 0.5, k + 0.99)) for k in range(2)]
     model = solids(cubes, Law(1e9, 1e9, 0.0), floor=False)
     one = dem3.Dowels(
-        np.array([[0, 1]]), np.array([[0.2, 0.1, 0.995]]), np.array([[0.0, 0.0, 1.0]]), np.array([1e6]), np.array([np.inf]),
+        np.array([[0, 1]]),
+        np.array([[0.2, 0.1, 0.995]]),
+        np.array([[0.0, 0.0, 1.0]]),
+        np.array([1e6]),
         np.array([np.inf]),
-    )  # fmt: skip
+        np.array([np.inf]),
+    )
     rate = np.array([[0.05, 0.02, -0.2, 0.1, 0.0, 0.3], [-0.05, 0.0, 0.2, 0.0, -0.1, -0.2]])
     options = Options(end_time=0.5, output_step=0.05, gravity=(0, 0, 0), step=1e-5)
     run = dem3.run(replace(model, dowels=one), options, rate=rate)
@@ -575,9 +553,10 @@ def test_a_dowel_comes_out_where_stones_part_farther_than_it_reaches() -> None:
         height = 0.5 * speed**2 / (GRAVITY * np.cos(slope))
         assert (height > 0.1) == out
         run = dem3.run(
-            doweled_cube(np.inf, 0.1), Options(end_time=0.8, output_step=0.01, gravity=pull, residual_limit=1.0),
+            doweled_cube(np.inf, 0.1),
+            Options(end_time=0.8, output_step=0.01, gravity=pull, residual_limit=1.0),
             rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, 0, 0, 0, 0]]),
-        )  # fmt: skip
+        )
         assert bool(run.dowel_out[0]) == out
         assert (run.place[-1, 0, 0] > 0.2) == out
 
@@ -609,10 +588,13 @@ def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) ->
         for name in ("place", "dowel_slip", "dowel_out"):
             assert (getattr(run, name) == getattr(runs[0], name)).all()
     for wrong, error in (
-        (replace(whole.dowels, body=pairs + 9), IndexError), (replace(whole.dowels, body=pairs * 0), CoreError),
-        (replace(whole.dowels, stiffness=-n), CoreError), (replace(whole.dowels, axis=2 * axes), CoreError),
-        (replace(whole.dowels, place=places * np.nan), ValueError), (replace(whole.dowels, reach=n[:2]), ValueError),
-    ):  # fmt: skip
+        (replace(whole.dowels, body=pairs + 9), IndexError),
+        (replace(whole.dowels, body=pairs * 0), CoreError),
+        (replace(whole.dowels, stiffness=-n), CoreError),
+        (replace(whole.dowels, axis=2 * axes), CoreError),
+        (replace(whole.dowels, place=places * np.nan), ValueError),
+        (replace(whole.dowels, reach=n[:2]), ValueError),
+    ):
         with pytest.raises(error):
             dem3.Model(replace(model, dowels=wrong), options)
     with pytest.raises(ValueError, match="rigid contacts have no dowels"):

@@ -47,9 +47,7 @@ STILL = np.zeros((2, 6))
 def test_sliding_down_a_slope_in_any_direction(direction: float) -> None:
     """Coulomb's cone to rounding: straight down the slope, at g (sin - mu cos), whichever way the block lies."""
     mu, gravity, turn = 0.3, slope(np.tan(np.radians(25.0)), direction), np.radians(direction)
-    run = dem3.run(
-        solids([box((-1, -1, 0), (1, 1, 0.2))], law(mu)), options(1.0, 0.5, gravity=gravity, step=1e-3), rate=STILL
-    )
+    run = dem3.run(solids([box((-1, -1, 0), (1, 1, 0.2))], law(mu)), options(1.0, 0.5, gravity=gravity, step=1e-3), rate=STILL)
     gone = run.place[-1, 0] - run.place[0, 0]
     exact = 0.5 * (np.hypot(*gravity[:2]) + mu * gravity[2]) * run.time[-1] ** 2
     assert gone == pytest.approx(exact * np.array([np.cos(turn), np.sin(turn), 0.0]), abs=1e-10 * exact)
@@ -61,13 +59,9 @@ def test_a_block_in_the_air_falls_freely() -> None:
     """Searches on its way find nothing that touches: a problem without a single point."""
     up = np.zeros((2, 6))
     up[0, :3] = 0.5, 0.0, 3.0
-    run = dem3.run(
-        solids([box((-1, -1, 0), (1, 1, 0.2))], law(0.3)), options(0.6, 0.1, gravity=(0.0, 0.0, -G), step=1e-3), rate=up
-    )
+    run = dem3.run(solids([box((-1, -1, 0), (1, 1, 0.2))], law(0.3)), options(0.6, 0.1, gravity=(0.0, 0.0, -G), step=1e-3), rate=up)
     t = run.time
-    assert run.place[:, 0] - run.place[0, 0] == pytest.approx(
-        np.column_stack([0.5 * t, 0.0 * t, 3.0 * t - 0.5 * G * t**2]), abs=2e-3
-    )
+    assert run.place[:, 0] - run.place[0, 0] == pytest.approx(np.column_stack([0.5 * t, 0.0 * t, 3.0 * t - 0.5 * G * t**2]), abs=2e-3)
     assert run.searches > 2 and run.effort.factors < 0.1 * run.effort.steps
 
 
@@ -132,11 +126,7 @@ def test_a_rocking_block_follows_housner_and_the_plane_solver(
     turn, run = rocked(step, way)
     exact = housner(1.0, 4.0, 0.5 * G, 10.88, run.time)
     assert np.sqrt(np.mean((turn - exact) ** 2)) / np.arctan(0.25) < most
-    plane = dem.run(
-        block_on_floor(1.0, 4.0, dem.Law(ANY, ANY, 2.0)),
-        dem.Options(5.0, rigid=True, step=step),
-        cosine(0.5 * G, 10.88),
-    )
+    plane = dem.run(block_on_floor(1.0, 4.0, dem.Law(ANY, ANY, 2.0)), dem.Options(5.0, rigid=True, step=step), cosine(0.5 * G, 10.88))
     assert np.abs(turn + plane.place[:, 0, 2]).max() < apart * np.abs(turn).max()
     across = [k for k in range(2) if not way[k]]
     assert np.abs(run.place[:, 0, across]).max() < 1e-9
@@ -159,9 +149,7 @@ def test_a_block_topples_at_its_slenderness_across_an_edge(ratio: float, topples
 def test_without_inertia_it_falls_where_statics_say(direction: float) -> None:
     """A push that grows slowly: a column of three drums of 12 sides falls at the reach of the polygon over half its height."""
     turn = np.radians(direction)
-    given = options(
-        10.0, 0.05, collapse=0.1, quasi_static=True, way=(np.cos(turn), np.sin(turn), 0.0), stop_at_rest=False
-    )
+    given = options(10.0, 0.05, collapse=0.1, quasi_static=True, way=(np.cos(turn), np.sin(turn), 0.0), stop_at_rest=False)
     ramp = replace(pieces([0.0, 20.0], [0.0]), linear=np.array([[[0.0, 0.05 * G]]]))
     run = dem3.run(solids(drums(3), law(2.0)), given, ramp)
     reach = 0.5 * np.cos(np.radians(15.0)) / np.cos(np.radians(direction % 30.0 - 15.0))
@@ -189,9 +177,7 @@ def test_energy_is_never_gained() -> None:
     most = np.ptp(run.energy["potential"]) + run.energy["kinetic"].max()
     assert run.reason == "end" and run.residual < 0.01
     assert np.diff(whole).max() < 1e-3 * most
-    assert whole[0] - whole[-1] == pytest.approx(
-        run.energy["friction"][-1] + run.energy["damping"][-1], abs=0.01 * most
-    )
+    assert whole[0] - whole[-1] == pytest.approx(run.energy["friction"][-1] + run.energy["damping"][-1], abs=0.01 * most)
     assert run.energy["damping"][-1] > 0.1 * most
 
 
@@ -231,9 +217,7 @@ def test_threads_and_pauses_change_no_bit(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_cancel_answers_with_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        dem_run, "long_call", interrupted(dem_run.long_call, 0.5, lambda: _core.api_support.set_cancel(1))
-    )
+    monkeypatch.setattr(dem_run, "long_call", interrupted(dem_run.long_call, 0.5, lambda: _core.api_support.set_cancel(1)))
     block = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 4))], law(2.0))
     run = dem3.run(block, options(36000.0, 0.5), cosine(0.5 * G, 10.88, 36000.0))
     _core.api_support.set_cancel(0)

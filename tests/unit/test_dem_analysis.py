@@ -25,18 +25,9 @@ def answers(deck: dict, folder: Path | None = None, **context) -> list:
 
 def test_three_bars_follow_the_four_hinge_model() -> None:
     """Before the impact at 0.861 s the bars are the same mechanism: within 1 %."""
-    dem = {
-        "kind": "dem",
-        "merge": "three-bars",
-        "end_time": 0.84,
-        "joints": {"friction": 2.0, "normal_stiffness": 1e12},
-    }
+    dem = {"kind": "dem", "merge": "three-bars", "end_time": 0.84, "joints": {"friction": 2.0, "normal_stiffness": 1e12}}
     rocking, found = answers(
-        {
-            "structure": ARCH,
-            "motion": PULSE,
-            "analysis": [{"kind": "rocking", "end_time": 2.0, "hand_over": False}, dem],
-        }
+        {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, "hand_over": False}, dem]}
     )
     assert rocking["impact_times_s"][0] == pytest.approx(0.861, abs=0.002)
     exact = np.interp(found["time"], rocking["time"], rocking["rotation"].ravel())
@@ -49,9 +40,12 @@ def test_worn_corners_weaken() -> None:
     capacity = []
     for worn in (0.0, 0.05):
         dem = {
-            "kind": "dem", "test": "tilt",
-            "joints": {"friction": 2.0, "normal_stiffness": 1e11, "worn_corners": worn}, "tilt_limit": "0.5 g", "tilt_accuracy": 0.002,
-        }  # fmt: skip
+            "kind": "dem",
+            "test": "tilt",
+            "joints": {"friction": 2.0, "normal_stiffness": 1e11, "worn_corners": worn},
+            "tilt_limit": "0.5 g",
+            "tilt_accuracy": 0.002,
+        }
         (found,) = answers({"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "analysis": [dem]})
         capacity.append(found["collapse_acceleration_g"])
     assert capacity[0] == pytest.approx(0.25, rel=0.01)
@@ -90,10 +84,14 @@ def test_refusals_name_what_is_wrong() -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        {"joints": {"friction": -0.1}}, {"joints": {"normal_stiffness": -1.0}}, {"fraction": 1.5}, {"joints": {"beta": -1e-3}}, {"tilt_accuracy": 1e-20},
+        {"joints": {"friction": -0.1}},
+        {"joints": {"normal_stiffness": -1.0}},
+        {"fraction": 1.5},
+        {"joints": {"beta": -1e-3}},
+        {"tilt_accuracy": 1e-20},
         {"output_step": 1e-12},
     ],
-)  # fmt: skip
+)
 def test_deck_complains(wrong: dict) -> None:
     with pytest.raises(DeckError) as error:
         make_deck({"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "dem"} | wrong]})
@@ -117,10 +115,7 @@ def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch)
     column.outlines[1][:2, 1] -= 0.2  # the upper drum reaches into the lower one
     context = Context(
         make_deck(
-            {
-                "structure": {"kind": "column", "width": 1.0, "height": 2.0, "drums": 2},
-                "analysis": [{"kind": "dem", "end_time": 1.0}],
-            }
+            {"structure": {"kind": "column", "width": 1.0, "height": 2.0, "drums": 2}, "analysis": [{"kind": "dem", "end_time": 1.0}]}
         )
     )
     monkeypatch.setattr(Column, "assembly", lambda *_: column)
@@ -139,12 +134,15 @@ def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
             "structure": {"kind": "block", "width": 1.0, "height": 4.0},
             "analysis": [
                 {
-                    "kind": "dem-domain", "amplitudes": ["0.6 g"], "durations": [0.2, 0.4, 0.8], "accuracy": 0.1,
+                    "kind": "dem-domain",
+                    "amplitudes": ["0.6 g"],
+                    "durations": [0.2, 0.4, 0.8],
+                    "accuracy": 0.1,
                     "joints": {"friction": 2.0, "normal_stiffness": 1e9},
                 }
             ],
         }
-    )  # fmt: skip
+    )
     options = deck.analyses[0]
     first = Context(deck, out=tmp_path / "run")
     model = make_model(first, options)
@@ -208,12 +206,7 @@ def test_friction_search_does_not_survive_ctrl_c(monkeypatch: pytest.MonkeyPatch
 def test_restitution_is_that_of_free_rocking() -> None:
     """Housner's 1 - 1.5 sin^2 alpha = 0.9118 where a block rocks freely; nothing where it does not rock."""
     block = {"kind": "block", "width": 1.0, "height": 4.0}
-    dem = {
-        "kind": "dem",
-        "end_time": 4.0,
-        "joints": {"friction": 2.0, "normal_stiffness": 1e12},
-        "initial": {"rotation_ratio": 0.4},
-    }
+    dem = {"kind": "dem", "end_time": 4.0, "joints": {"friction": 2.0, "normal_stiffness": 1e12}, "initial": {"rotation_ratio": 0.4}}
     (free,) = answers({"structure": block, "analysis": [dem]})
     assert free["restitution_measured"] == pytest.approx(0.9118, abs=0.012)
     # The rotation is that of the block, not the one since it was let go.
@@ -224,21 +217,16 @@ def test_restitution_is_that_of_free_rocking() -> None:
 
 
 @pytest.mark.parametrize(
-    ("height", "wanted", "kept"),
-    [(1.6, "", 0.5787), (3.0, "", 0.85), (1.0, "", 0.25), (1.6, "restitution = 0.65", 0.65)],
+    ("height", "wanted", "kept"), [(1.6, "", 0.5787), (3.0, "", 0.85), (1.0, "", 0.25), (1.6, "restitution = 0.65", 0.65)]
 )
 def test_damping_that_gives_the_wanted_restitution(height: float, wanted: str, kept: float) -> None:
     """Of stocky blocks too, where critical damping at edge impact keeps 3 % too much of the rate (1 x 1.6 m)."""
-    found = extrados.run(tomllib.loads(STOCKY.format(height=height, rule='damping = "restitution"', wanted=wanted)))[
-        "dem"
-    ]
+    found = extrados.run(tomllib.loads(STOCKY.format(height=height, rule='damping = "restitution"', wanted=wanted)))["dem"]
     assert found["restitution_measured"] == pytest.approx(kept, abs=0.006)
 
 
 def test_no_damping_takes_more_than_housner() -> None:
-    found = extrados.run(
-        tomllib.loads(STOCKY.format(height=1.6, rule='damping = "restitution"', wanted="restitution = 0.4"))
-    ).results[0]
+    found = extrados.run(tomllib.loads(STOCKY.format(height=1.6, rule='damping = "restitution"', wanted="restitution = 0.4"))).results[0]
     assert found.status == "refused"
     assert "no damping of this block gives 0.4; it can be 0.579 to 0.7" in found.reason
 
@@ -258,9 +246,7 @@ def test_answers_of_sliding_and_of_standing() -> None:
     fast, mu_g, a = 0.3 * 9.80665 * 0.2, 0.2 * 9.80665, 0.5 * 9.80665
     exact = 0.5 * fast * 0.2 + 0.5 * fast**2 / (mu_g + 0.5 * a)
     assert slid["peak_slip_m"] == pytest.approx(exact, rel=0.01)
-    assert slid["outcome"] == "slid" and slid.answer.startswith(
-        "Blocks slide by up to 98.1 mm (9.81 % of the joint base)"
-    )
+    assert slid["outcome"] == "slid" and slid.answer.startswith("Blocks slide by up to 98.1 mm (9.81 % of the joint base)")
     assert slid["slip_ratio"] == pytest.approx(exact, rel=0.01) and slid["slipped_joint"] == "base"
     assert slid["governing_block"] == "block" and slid["collapse_criterion"] is None
     (still,) = answers({"structure": block, "analysis": [dem]})
@@ -278,13 +264,7 @@ def test_settling_is_not_the_run(keys: dict) -> None:
     assert found.status == "ok", found.reason
 
 
-TILT = {
-    "kind": "dem",
-    "test": "tilt",
-    "joints": {"friction": 2.0, "normal_stiffness": 1e10},
-    "tilt_limit": "1 g",
-    "tilt_accuracy": 4e-3,
-}
+TILT = {"kind": "dem", "test": "tilt", "joints": {"friction": 2.0, "normal_stiffness": 1e10}, "tilt_limit": "1 g", "tilt_accuracy": 4e-3}
 
 
 def test_tilt_in_both_senses() -> None:
@@ -317,9 +297,7 @@ def test_vtk_collection(tmp_path: Path) -> None:
     deck = {
         "structure": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 2},
         "motion": {"kind": "sine-pulse", "amplitude": "0.8 g", "period": 0.5},
-        "analysis": [
-            {"kind": "dem", "end_time": 0.3, "output_step": 0.1, "vtk": True, "joints": {"normal_stiffness": 1e9}}
-        ],
+        "analysis": [{"kind": "dem", "end_time": 0.3, "output_step": 0.1, "vtk": True, "joints": {"normal_stiffness": 1e9}}],
     }
     (found,) = answers(deck)
     assert found.files["dem.pvd"].count(b"<DataSet") == len(found["time"]) == 4
@@ -328,9 +306,7 @@ def test_vtk_collection(tmp_path: Path) -> None:
 
 
 def test_limit_analysis_takes_columns_and_walls() -> None:
-    (found,) = answers(
-        {"structure": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 8}, "analysis": [{"kind": "tilt"}]}
-    )
+    (found,) = answers({"structure": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 8}, "analysis": [{"kind": "tilt"}]})
     assert found["collapse_acceleration_g"] == pytest.approx(0.25, rel=1e-6)
 
 
@@ -340,13 +316,28 @@ STRUCTURES = {
     "pointed-arch": {"kind": "pointed-arch", "span": 6.0, "radius": 6.0, "thickness": 0.8, "voussoirs": 8},
     "elliptical-arch": {"kind": "elliptical-arch", "span": 8.0, "rise": 3.0, "thickness": 1.0, "voussoirs": 9},
     "vault": {
-        "kind": "vault", "radius": 5.0, "thickness": 0.6, "embrace": 120.0, "voussoirs": 8, "face": 4.2,
-        "buttress_width": 2.0, "height": 9.0,
+        "kind": "vault",
+        "radius": 5.0,
+        "thickness": 0.6,
+        "embrace": 120.0,
+        "voussoirs": 8,
+        "face": 4.2,
+        "buttress_width": 2.0,
+        "height": 9.0,
     },
     "aisled-vault": {
-        "kind": "aisled-vault", "radius": 4.8, "thickness": 0.6, "voussoirs": 8, "springing": 12.5, "pier_width": 1.9,
-        "aisle_thickness": 0.45, "aisle_voussoirs": 6, "aisle_springing": 6.0, "half_width": 12.5,
-        "buttress_width": 1.8, "buttress_top": 8.5,
+        "kind": "aisled-vault",
+        "radius": 4.8,
+        "thickness": 0.6,
+        "voussoirs": 8,
+        "springing": 12.5,
+        "pier_width": 1.9,
+        "aisle_thickness": 0.45,
+        "aisle_voussoirs": 6,
+        "aisle_springing": 6.0,
+        "half_width": 12.5,
+        "buttress_width": 1.8,
+        "buttress_top": 8.5,
     },
     "blocks": {"kind": "blocks", "block": [{"name": "pier", "points": PIER}]},
     "JSON": {"kind": "blocks", "file": "pier.json"},
@@ -354,7 +345,7 @@ STRUCTURES = {
     "block": {"kind": "block", "width": 1.0, "height": 4.0},
     "column": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 3},
     "brickwork": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 3},
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", STRUCTURES)
@@ -405,10 +396,11 @@ def test_an_arch_starts_in_the_pose_of_its_mechanism(ratio: float) -> None:
     """And what it swings back with is the potential of the mechanism at that rotation."""
     run = extrados.run(
         {
-            "structure": ARCH, "initial": {"rotation_ratio": ratio},
+            "structure": ARCH,
+            "initial": {"rotation_ratio": ratio},
             "analysis": [{"kind": "dem", "end_time": 2.0, "output_step": 0.002, "joints": {"normal_stiffness": 1e12}}],
         }
-    )  # fmt: skip
+    )
     model = MechanismModel(make_arch(**{k: v for k, v in ARCH.items() if k != "kind"}))
     q = ratio * model.critical[0]
     place = np.array(run.array("dem", "place"))

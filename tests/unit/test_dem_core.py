@@ -129,9 +129,10 @@ def test_dashpots_damp_as_asked(ratio: float) -> None:
 def test_momentum_is_conserved() -> None:
     """Two blocks collide in free space: linear and angular momentum stay to rounding."""
     bodies = model(
-        [rectangle(0.0, 1.0, 0.0, 1.0), rectangle(1.2, 2.2, 0.4, 1.4)], [rectangle(50.0, 51.0, 0.0, 1.0)],
+        [rectangle(0.0, 1.0, 0.0, 1.0), rectangle(1.2, 2.2, 0.4, 1.4)],
+        [rectangle(50.0, 51.0, 0.0, 1.0)],
         dem.Law(1e8, 1e8, 0.4, damping=1e-4),
-    )  # fmt: skip
+    )
     rate = np.array([[1.0, 0.2, 0.5], [-0.5, 0.0, -1.0], [0.0, 0.0, 0.0]])
     run = dem.run(bodies, dem.Options(1.0, 0.01, gravity=(0.0, 0.0)), shift=np.zeros((3, 3)), rate=rate)
     m, inertia = bodies.mass[:2], bodies.inertia[:2]
@@ -168,11 +169,7 @@ def test_moving_base_equals_body_force() -> None:
 
 def test_threads_give_the_same_bits() -> None:
     """A wall that falls apart, on one and on two threads."""
-    bricks = [
-        rectangle(x + 0.5 * (row % 2), x + 1.0 + 0.5 * (row % 2), 0.4 * row, 0.4 * row + 0.4)
-        for row in range(6)
-        for x in range(4)
-    ]
+    bricks = [rectangle(x + 0.5 * (row % 2), x + 1.0 + 0.5 * (row % 2), 0.4 * row, 0.4 * row + 0.4) for row in range(6) for x in range(4)]
     bodies = model(bricks, [rectangle(-20.0, 20.0, -1.0, 0.0)], dem.Law(1e9, 1e9, 0.6, damping=2e-3))
     runs = [dem.run(bodies, dem.Options(0.8, 0.1, threads=k), cosine(1.2 * G, 8.0)) for k in (1, 2)]
     assert np.array_equal(runs[0].place, runs[1].place)
@@ -182,9 +179,7 @@ def test_threads_give_the_same_bits() -> None:
 
 
 def test_a_block_falls_on_another_and_rests() -> None:
-    bodies = model(
-        [rectangle(-0.5, 0.5, 0.0, 1.0), rectangle(0.2, 1.2, 1.5, 2.0)], [rectangle(-20.0, 20.0, -1.0, 0.0)], STIFF
-    )
+    bodies = model([rectangle(-0.5, 0.5, 0.0, 1.0), rectangle(0.2, 1.2, 1.5, 2.0)], [rectangle(-20.0, 20.0, -1.0, 0.0)], STIFF)
     run = dem.run(bodies, dem.Options(4.0, 0.1, stop_at_rest=True), shift=np.zeros((3, 3)))
     assert run.reason == "rest"
     assert run.residual < 0.02
@@ -202,10 +197,7 @@ def test_mortar_holds_until_its_strength() -> None:
         # Gravity is brought in slowly through the ground, which accelerates downward at first.
         slow = dem.Options(1.0, 0.05, settle_steps=0, gravity=(0.0, -G), mass_damping=0.0)
         lift = pieces([0.0, 100.0], [0.0])
-        lift = type(lift)(
-            breaks=np.array([0.0, 0.5]), linear=np.array([[[0.0, 0.0], [-G, 2.0 * G]]]),
-            harmonic=np.zeros((1, 2, 0, 4)),
-        )  # fmt: skip
+        lift = type(lift)(breaks=np.array([0.0, 0.5]), linear=np.array([[[0.0, 0.0], [-G, 2.0 * G]]]), harmonic=np.zeros((1, 2, 0, 4)))
         run = dem.run(bodies, slow, lift)
         assert (run.place[-1, 0, 1] < -0.6) == falls
 
@@ -241,17 +233,13 @@ def test_step_above_the_critical_one_is_told() -> None:
 
 
 def test_overlapping_blocks_are_named() -> None:
-    bodies = model(
-        [rectangle(0.0, 1.0, 0.0, 1.0), rectangle(0.9, 1.9, 0.0, 1.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF
-    )
+    bodies = model([rectangle(0.0, 1.0, 0.0, 1.0), rectangle(0.9, 1.9, 0.0, 1.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF)
     run = dem.run(bodies, dem.Options(1.0, 0.1))
     assert run.reason == "overlap" and sorted(run.blamed) == [0, 1]
 
 
 def test_a_block_that_leaves_the_domain_is_named() -> None:
-    bodies = model(
-        [rectangle(0.0, 1.0, 0.0, 1.0), rectangle(30.0, 31.0, 5.0, 6.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF
-    )
+    bodies = model([rectangle(0.0, 1.0, 0.0, 1.0), rectangle(30.0, 31.0, 5.0, 6.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF)
     options = dem.Options(3.0, 0.1, domain=(-40.0, 40.0, -2.0, 40.0))
     run = dem.run(bodies, options, shift=np.zeros((3, 3)))
     assert run.reason == "left" and run.blamed == [1]
@@ -266,9 +254,7 @@ def test_an_open_ledger_stops_the_run() -> None:
 
 def test_cancel_answers_with_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
     bodies = block_on_floor(1.0, 4.0, dem.Law(1e12, 1e12, 2.0, damping=1e-4))
-    monkeypatch.setattr(
-        dem_run, "long_call", interrupted(dem_run.long_call, 1.0, lambda: _core.api_support.set_cancel(1))
-    )
+    monkeypatch.setattr(dem_run, "long_call", interrupted(dem_run.long_call, 1.0, lambda: _core.api_support.set_cancel(1)))
     run = dem.run(bodies, dem.Options(3600.0, 0.05), cosine(0.5 * G, 10.88, 3600.0))
     _core.api_support.set_cancel(0)
     assert run.interrupted and len(run.time) > 1

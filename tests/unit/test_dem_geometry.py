@@ -41,9 +41,7 @@ def test_no_bevel_is_straightened(bevel: float) -> None:
 
 def test_courses_thinner_than_a_share_of_their_joint() -> None:
     """20 courses 1 m wide and 45 mm high vanished between their joints."""
-    stones = {
-        f"course {k}": [[0, 0.045 * k], [1, 0.045 * k], [1, 0.045 * (k + 1)], [0, 0.045 * (k + 1)]] for k in range(20)
-    }
+    stones = {f"course {k}": [[0, 0.045 * k], [1, 0.045 * k], [1, 0.045 * (k + 1)], [0, 0.045 * (k + 1)]] for k in range(20)}
     rigid = make_deck({"structure": free(stones), "analysis": {"kind": "dem"}}).building.rigid()
     for part, points in zip(rigid.parts, stones.values(), strict=False):
         assert part == pytest.approx(np.array(points), abs=1e-12)
@@ -91,9 +89,7 @@ def test_noise_within_the_tolerance_changes_no_part_by_more(seed: int) -> None:
     """Against the same wall without noise; the warnings give the greatest change."""
     noise, tolerance = 1e-3, 3e-3
     exact = make_deck({"structure": free(courses(seed, 0.0)), "analysis": {"kind": "dem"}}).building.rigid()
-    noisy = make_deck(
-        {"structure": free(courses(seed, noise), tolerance), "analysis": {"kind": "dem"}}
-    ).building.rigid()
+    noisy = make_deck({"structure": free(courses(seed, noise), tolerance), "analysis": {"kind": "dem"}}).building.rigid()
     assert 0.0 < noisy.moved < tolerance and noisy.cut < tolerance
     for one, other in zip(exact.parts[: exact.count], noisy.parts, strict=False):
         assert max(distance(one, other).max(), distance(other, one).max()) < 3.0 * noise
@@ -122,10 +118,7 @@ def test_a_noisy_wall_tilts_as_limit_analysis_finds() -> None:
 
 def test_an_overlap_is_cut_where_it_is() -> None:
     """A corner in a face loses itself; the face keeps its place."""
-    parts = [
-        np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
-        np.array([[0.5, 0.999], [1.5, 1.5], [0.5, 2.0]]),
-    ]
+    parts = [np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.array([[0.5, 0.999], [1.5, 1.5], [0.5, 2.0]])]
     outer = [np.ones(4, dtype=bool), np.ones(3, dtype=bool)]
     assert len(crossings(*parts, 1e-9)) == 2
     depth = _cut_overlaps(parts, outer, [0, 1], 2e-3)

@@ -53,9 +53,7 @@ def test_newmark_sliding_block() -> None:
 
 @pytest.mark.parametrize(("ratio", "topples"), [(0.999, False), (1.001, True)])
 def test_block_topples_at_its_slenderness(ratio: float, topples: bool) -> None:
-    run = dem.run(
-        block_on_floor(1.0, 4.0, law(2.0)), options(8.0, 0.1, collapse=0.5, step=2e-3), constant(ratio * 0.25 * G)
-    )
+    run = dem.run(block_on_floor(1.0, 4.0, law(2.0)), options(8.0, 0.1, collapse=0.5, step=2e-3), constant(ratio * 0.25 * G))
     assert (run.reason == "collapse") == topples
     if not topples:
         assert np.abs(run.place[:, 0, 2]).max() < 1e-9  # no spring gives
@@ -87,19 +85,9 @@ def test_the_blow_is_that_of_the_rocking_arch(embrace: float, voussoirs: int) ->
     rigid = rigid_bodies(arch)
     before = np.zeros((len(rigid.mass), 3))
     before[:voussoirs] = -MechanismModel(arch).fields[0]
-    bodies = dem.Bodies(
-        rigid.centroid, rigid.mass, rigid.inertia, rigid.parts, rigid.owner, rigid.outer, rigid.depth, [law(10.0)]
-    )
+    bodies = dem.Bodies(rigid.centroid, rigid.mass, rigid.inertia, rigid.parts, rigid.owner, rigid.outer, rigid.depth, [law(10.0)])
     step = 1e-5
-    one = dem.Options(
-        3 * step,
-        step,
-        step=step,
-        rigid=True,
-        gravity=(0.0, -1e-9),
-        residual_limit=1e9,
-        domain=(-99.0, 99.0, -99.0, 99.0),
-    )
+    one = dem.Options(3 * step, step, step=step, rigid=True, gravity=(0.0, -1e-9), residual_limit=1e9, domain=(-99.0, 99.0, -99.0, 99.0))
     run = dem.run(bodies, one, rate=before)
     found = (run.place[-1, :voussoirs] - run.place[-2, :voussoirs]) / step
     after = inelastic_impact(arch, before[:voussoirs])
@@ -141,9 +129,7 @@ def test_threads_and_pauses_change_no_bit() -> None:
 
 
 def test_cancel_answers_with_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        dem_run, "long_call", interrupted(dem_run.long_call, 1.0, lambda: _core.api_support.set_cancel(1))
-    )
+    monkeypatch.setattr(dem_run, "long_call", interrupted(dem_run.long_call, 1.0, lambda: _core.api_support.set_cancel(1)))
     run = dem.run(block_on_floor(1.0, 4.0, law(2.0)), options(36000.0, 0.5), cosine(0.5 * G, 10.88, 36000.0))
     _core.api_support.set_cancel(0)
     assert run.interrupted and len(run.time) > 1 and np.isfinite(run.place).all()
@@ -255,14 +241,6 @@ def test_a_stocky_block_loses_as_housner_says(step: float, most: float) -> None:
 def test_contacts_that_friction_wedges_end_with_the_reason() -> None:
     """2 x 3 blocks in bond without sliding: no step finds impulses. It took minutes, without an answer."""
     wall = {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 3}
-    deck = {
-        "structure": wall,
-        "joints": {"friction": "no-sliding"},
-        "analysis": [{"kind": "dem", "solver": "nonsmooth", "test": "tilt"}],
-    }
+    deck = {"structure": wall, "joints": {"friction": "no-sliding"}, "analysis": [{"kind": "dem", "solver": "nonsmooth", "test": "tilt"}]}
     (found,) = extrados.run(deck).results
-    assert (
-        found.status == "refused"
-        and "not found in 100 of these steps" in found.reason
-        and "friction of up to 1" in found.reason
-    )
+    assert found.status == "refused" and "not found in 100 of these steps" in found.reason and "friction of up to 1" in found.reason

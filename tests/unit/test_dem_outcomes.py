@@ -85,10 +85,8 @@ def test_little_sliding_stands_and_the_verdict_says_how_much(solver: dict) -> No
         ({"kind": "block", "width": 0.5, "height": 2.0}, SINE, 0.7, "collapse", "rotation"),
     ],
     ids=["still", "weak", "rocks", "overturns"],
-)  # fmt: skip
-def test_outcomes(
-    structure: dict, motion: dict | None, friction: float, outcome: str, criterion: str | None, solver: dict
-) -> None:
+)
+def test_outcomes(structure: dict, motion: dict | None, friction: float, outcome: str, criterion: str | None, solver: dict) -> None:
     found = run(structure, motion, friction, end_time=2.0, **solver)
     assert (found["outcome"], found["collapse_criterion"]) == (outcome, criterion), found.answer
     assert found["governing_block"] == "block"
@@ -115,10 +113,13 @@ def test_a_block_that_slides_on_a_named_floor_has_slid(solver: dict) -> None:
 
 def test_the_upper_block_of_a_stack_governs() -> None:
     """The upper block overturns; the lower one does not turn, and is not the block that is named."""
-    stack = {"kind": "blocks", "block": [
-        {"name": "lower", "points": [[0, 0], [1.5, 0], [1.5, 1], [0, 1]]},
-        {"name": "upper", "points": [[0.6, 1], [0.9, 1], [0.9, 2.5], [0.6, 2.5]]},
-    ]}  # fmt: skip
+    stack = {
+        "kind": "blocks",
+        "block": [
+            {"name": "lower", "points": [[0, 0], [1.5, 0], [1.5, 1], [0, 1]]},
+            {"name": "upper", "points": [[0.6, 1], [0.9, 1], [0.9, 2.5], [0.6, 2.5]]},
+        ],
+    }
     found = run(stack, SINE, 0.7)
     assert found["outcome"] == "collapse" and found["governing_block"] == "upper" and found["stopped_by"] == ["upper"]
     assert abs(found["peak_rotation_rad"]["upper"]) > 0.1 > 1e3 * abs(found["peak_rotation_rad"]["lower"])
@@ -157,9 +158,7 @@ def test_the_criterion_does_not_hang_on_where_the_run_ends(stop: bool) -> None:
         ({"kind": "block", "width": 1.0, "height": 1.0}, 0.4, False),
     ],
 )
-def test_a_tilt_test_that_slides_says_that_it_is_one_state_of_an_interval(
-    structure: dict, friction: float, interval: bool
-) -> None:
+def test_a_tilt_test_that_slides_says_that_it_is_one_state_of_an_interval(structure: dict, friction: float, interval: bool) -> None:
     """Of joints whose forces statics does not fix: a stack that slides, or an arch that only hinges, has one capacity."""
     asked = {"kind": "dem", "test": "tilt", "solver": "nonsmooth", "tilt_accuracy": 0.02}
     found = extrados.run({"structure": structure, "joints": {"friction": friction}, "analysis": asked}).results[0]
@@ -185,7 +184,7 @@ def test_a_chaotic_run_is_open_and_says_so() -> None:
     runs = [
         run(tall, {"kind": "harmonic", "amplitude": f"{1.0 + k * 1e-5!r} g", "frequency": 2.0, "duration": 10.0}, 0.9, solver="nonsmooth")
         for k in range(5)
-    ]  # fmt: skip
+    ]
     assert len({found["outcome"] for found in runs}) > 1
     for found in runs:
         assert found["decided_by_last_digits"] and found["perturbation_growth"] > 1e4
@@ -199,9 +198,7 @@ def test_a_smooth_run_is_not_chaotic_and_one_that_is_not_checked_says_so(solver:
     found = run(SQUAT, motion, friction=0.3, **solver)
     exact = [np.abs(newmark(scale * GRAVITY, 0.5, 0.3)).max() for scale in (0.5, 0.505)]
     growth = (exact[1] - exact[0]) / 0.01 / found["collapse_displacement_m"]
-    assert (
-        found["perturbation_growth"] < 10.0 * growth and not found["violated"] and not found["decided_by_last_digits"]
-    )
+    assert found["perturbation_growth"] < 10.0 * growth and not found["violated"] and not found["decided_by_last_digits"]
     assert found["perturbed_outcome"] == found["outcome"] == "slid" and "not checked" not in found.verdict.statement
     unchecked = run(SQUAT, motion, friction=0.3, perturbed=False, **solver)
     assert unchecked["perturbation_growth"] is None and "was not checked" in unchecked.verdict.statement

@@ -26,13 +26,7 @@ def test_table_7_3() -> None:
     # recomputed to four digits; the table prints 1.3e-3, 5.7e-4, 4.0e-4
     for name, beta in (("rotation", 1.347e-3), ("corner", 5.66e-4), ("edge", 4.00e-4)):
         assert rules.damping_constant(float(impact.of(name)[0])) == pytest.approx(beta, rel=1e-3)
-    printed = {
-        1.3e-3: (100, 240, 340),
-        5.7e-4: (42, 100, 141),
-        4.0e-4: (30, 71, 100),
-        2.0e-4: (15, 36, 50),
-        1.0e-4: (7.6, 18, 25),
-    }
+    printed = {1.3e-3: (100, 240, 340), 5.7e-4: (42, 100, 141), 4.0e-4: (30, 71, 100), 2.0e-4: (15, 36, 50), 1.0e-4: (7.6, 18, 25)}
     exact = {1.3e-3: 1.347e-3, 5.7e-4: 5.657e-4}
     for beta, row in printed.items():
         for name, percent in zip(("rotation", "corner", "edge"), row, strict=True):
@@ -43,10 +37,14 @@ def test_table_7_3() -> None:
 @pytest.mark.parametrize(
     ("beta", "stiffness", "rotation", "edge"),
     [
-        (1.59e-4, 1e12, 26.5, 89), (3.98e-5, 1e12, 6.6, 22), (6.37e-6, 1e12, 1.1, 3.6),  # Table 7.4
-        (1.59e-4, 1e13, 84, 280), (1.59e-4, 1e11, 8.4, 28), (1.59e-4, 5e10, 5.9, 20),  # Table 7.5
+        (1.59e-4, 1e12, 26.5, 89),
+        (3.98e-5, 1e12, 6.6, 22),
+        (6.37e-6, 1e12, 1.1, 3.6),  # Table 7.4
+        (1.59e-4, 1e13, 84, 280),
+        (1.59e-4, 1e11, 8.4, 28),
+        (1.59e-4, 5e10, 5.9, 20),  # Table 7.5
     ],
-)  # fmt: skip
+)
 def test_tables_7_4_and_7_5(beta: float, stiffness: float, rotation: float, edge: float) -> None:
     impact = block(1.0, 4.0, 2000.0, stiffness)
     assert 100 * rules.damping_ratio(beta, impact.rotation)[0] == pytest.approx(rotation, rel=0.04)
@@ -56,16 +54,19 @@ def test_tables_7_4_and_7_5(beta: float, stiffness: float, rotation: float, edge
 @pytest.mark.parametrize(
     ("alpha", "beta", "least", "at", "critical", "printed"),
     [
-        (6.28e-5, 1.59e-4, 0.01, 0.1, 2000, 2000), (6.28e-3, 1.59e-4, 0.1, 1, 2000, 2000),  # Table 7.1, I and II
-        (0.628, 1.59e-4, 1, 10, 2000, 2000), (15.7, 1.59e-4, 5, 50, 2000, 2000),  # III and IV
-        (6.28e-5, 3.98e-5, 0.005, 0.2, 8000, 8000), (6.28e-5, 6.37e-6, 0.002, 0.5, 50000, 10000),  # 2 and 3
-        (3.14e-6, 3.18e-5, 0.001, 0.05, 10000, 10000), (6.28e-5, 1.59e-4, 0.01, 0.1, 2000, 2000),  # Table 7.2, A and B
-        (6.28e-4, 1.59e-3, 0.1, 0.1, 200, 200), (6.28e-2, 1.59e-3, 1.0, 1.0, 200, 50),  # C and D
+        (6.28e-5, 1.59e-4, 0.01, 0.1, 2000, 2000),
+        (6.28e-3, 1.59e-4, 0.1, 1, 2000, 2000),  # Table 7.1, I and II
+        (0.628, 1.59e-4, 1, 10, 2000, 2000),
+        (15.7, 1.59e-4, 5, 50, 2000, 2000),  # III and IV
+        (6.28e-5, 3.98e-5, 0.005, 0.2, 8000, 8000),
+        (6.28e-5, 6.37e-6, 0.002, 0.5, 50000, 10000),  # 2 and 3
+        (3.14e-6, 3.18e-5, 0.001, 0.05, 10000, 10000),
+        (6.28e-5, 1.59e-4, 0.01, 0.1, 2000, 2000),  # Table 7.2, A and B
+        (6.28e-4, 1.59e-3, 0.1, 0.1, 200, 200),
+        (6.28e-2, 1.59e-3, 1.0, 1.0, 200, 50),  # C and D
     ],
-)  # fmt: skip
-def test_tables_7_1_and_7_2(
-    alpha: float, beta: float, least: float, at: float, critical: float, printed: float
-) -> None:
+)
+def test_tables_7_1_and_7_2(alpha: float, beta: float, least: float, at: float, critical: float, printed: float) -> None:
     """Least damping [%] and its frequency [Hz] by Eq. 7.2, frequency of critical damping [Hz] by Eq. 7.17. Two of the printed
     critical frequencies are slips: 10 kHz for 50 kHz (UDEC 3), 50 Hz for 200 Hz (UDEC D)."""
     frequency = np.geomspace(1e-3, 1e6, 400_001)
@@ -79,10 +80,14 @@ def test_tables_7_1_and_7_2(
 @pytest.mark.parametrize(
     ("beta", "stiffness", "rotation", "edge"),
     [
-        (3.18e-5, 1e12, 11, 18), (1.59e-4, 1e12, 56, 91), (1.59e-3, 1e12, 560, 900),  # Table 7.6: A, B, C and D
-        (1.59e-4, 3e10, 10, 16), (1.59e-4, 1e11, 18, 29), (1.59e-4, 1e13, 180, 286),  # Table 7.7
+        (3.18e-5, 1e12, 11, 18),
+        (1.59e-4, 1e12, 56, 91),
+        (1.59e-3, 1e12, 560, 900),  # Table 7.6: A, B, C and D
+        (1.59e-4, 3e10, 10, 16),
+        (1.59e-4, 1e11, 18, 29),
+        (1.59e-4, 1e13, 180, 286),  # Table 7.7
     ],
-)  # fmt: skip
+)
 def test_tables_7_6_and_7_7(beta: float, stiffness: float, rotation: float, edge: float) -> None:
     """Oppenheim's arch. The printed rotational ratios hold between two voussoirs (Eq. 7.19). At a springing only one moves,
     and the ratio is 1 / sqrt(2) of that: the least over all joints, which answers tell, is 70 to 74 % of the printed ones. The

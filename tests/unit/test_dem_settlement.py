@@ -18,10 +18,7 @@ from extrados.model.geometry.convex import overlap_depth
 
 #: name -> outlines of stones [m]
 SLAB = {"slab": [[0, 0], [0.5, 0], [1.04, 1], [0.54, 1]]}  # centroid 2 cm outside the base
-OVERHANG = {
-    "base": [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]],
-    "slab": [[0.02, 0.5], [1.02, 0.5], [1.02, 0.7], [0.02, 0.7]],
-}
+OVERHANG = {"base": [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]], "slab": [[0.02, 0.5], [1.02, 0.5], [1.02, 0.7], [0.02, 0.7]]}
 
 
 def keystone(spread):
@@ -38,9 +35,7 @@ def answered(tmp_path, stones, joints="friction = 0.7", analysis="", kind="dem")
     blocks = [{"name": name, "points": points} for name, points in stones.items()]
     (tmp_path / "stones.json").write_text(json.dumps({"unit": "m", "blocks": blocks}))
     deck = tmp_path / "deck.toml"
-    deck.write_text(
-        f'[structure]\nkind = "blocks"\nfile = "stones.json"\n[joints]\n{joints}\n[[analysis]]\nkind = "{kind}"\n{analysis}'
-    )
+    deck.write_text(f'[structure]\nkind = "blocks"\nfile = "stones.json"\n[joints]\n{joints}\n[[analysis]]\nkind = "{kind}"\n{analysis}')
     return extrados.run(deck).results[0]
 
 
@@ -102,9 +97,7 @@ def test_elements_held_by_mortar_say_that_limit_analysis_disagrees(tmp_path) -> 
 
 
 @pytest.mark.parametrize(
-    ("space", "spread"),
-    [("", 0.15), ("direction = 0.0\n", 0.05), ("direction = 0.0\n", 0.01)],
-    ids=["plane", "space", "slight"],
+    ("space", "spread"), [("", 0.15), ("direction = 0.0\n", 0.05), ("direction = 0.0\n", 0.01)], ids=["plane", "space", "slight"]
 )
 def test_what_rigid_contacts_hold_by_jamming_is_doubted(tmp_path, space, spread) -> None:
     found = answered(tmp_path, keystone(spread), analysis=f'solver = "nonsmooth"\n{space}')
@@ -133,9 +126,7 @@ def test_a_keystone_that_sits_is_not_doubted(tmp_path, space, spread) -> None:
 @pytest.mark.parametrize("name", ["column", "arch", "leaning"])
 def test_what_stands_by_its_weight_is_not_doubted(tmp_path, name, space) -> None:
     deck = tmp_path / "deck.toml"
-    deck.write_text(
-        f'[structure]\n{STANDING[name]}\n[[analysis]]\nkind = "dem"\nsolver = "nonsmooth"\nend_time = 0.05\n{space}'
-    )
+    deck.write_text(f'[structure]\n{STANDING[name]}\n[[analysis]]\nkind = "dem"\nsolver = "nonsmooth"\nend_time = 0.05\n{space}')
     found = extrados.run(deck).results[0]
     assert found.status == "ok" and "jamming" not in found.answer
     assert not any("wedged" in text or "no other method" in text for text in found.warnings)
@@ -151,10 +142,7 @@ def test_springs_that_come_to_no_end_accuse_nothing(tmp_path, monkeypatch, space
 
 @pytest.mark.parametrize(
     ("space", "told"),
-    [
-        ("", "it has 9 joints, and the check covers up to 8"),
-        ("direction = 0.0\n", "it has 8 solids, and the check covers up to 7"),
-    ],
+    [("", "it has 9 joints, and the check covers up to 8"), ("direction = 0.0\n", "it has 8 solids, and the check covers up to 7")],
     ids=["plane", "space"],
 )
 def test_what_is_too_large_for_other_methods_says_so(tmp_path, monkeypatch, space, told) -> None:
@@ -203,11 +191,7 @@ def test_gaps_of_a_survey_may_close(tmp_path) -> None:
     deck = "friction = 0.7"
     refused = answered(tmp_path, stones, deck)
     assert refused.status == "refused"  # nothing bears the lintel
-    text = (
-        (tmp_path / "deck.toml")
-        .read_text()
-        .replace('file = "stones.json"', 'file = "stones.json"\ncontact_tolerance = "3 mm"')
-    )
+    text = (tmp_path / "deck.toml").read_text().replace('file = "stones.json"', 'file = "stones.json"\ncontact_tolerance = "3 mm"')
     (tmp_path / "deck.toml").write_text(text)
     assert extrados.run(tmp_path / "deck.toml").results[0].status == "ok"
 
@@ -275,9 +259,7 @@ def test_no_floor_that_the_deck_does_not_name(tmp_path) -> None:
 def test_two_piers_on_one_level_have_footings_of_their_own(tmp_path) -> None:
     blocks = [{"name": name, "points": points} for name, points in FRAME.items()]
     (tmp_path / "stones.json").write_text(json.dumps({"unit": "m", "blocks": blocks}))
-    deck = read_text(
-        b'[structure]\nkind = "blocks"\nfile = "stones.json"\n[[analysis]]\nkind = "dem"\n', folder=tmp_path
-    )
+    deck = read_text(b'[structure]\nkind = "blocks"\nfile = "stones.json"\n[[analysis]]\nkind = "dem"\n', folder=tmp_path)
     bare, floored = deck.building.rigid(), deck.building.rigid(floor=0.0)
     left, right = bare.parts[-2:]
     assert [left[:, 0].min(), left[:, 0].max()] == pytest.approx([-0.125, 0.625])

@@ -46,8 +46,7 @@ def answered(tmp_path, text: str, **options: Any) -> Any:
 def test_a_column_rocks_in_the_direction_of_the_motion(tmp_path) -> None:
     """Along and against: mirrored; and the wholes of it are told and stored."""
     there, back = (
-        answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n')
-        for d in (90.0, -90.0)
+        answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n') for d in (90.0, -90.0)
     )
     assert there.status == "ok" and there.results.outcome == "rocked" and there.results.energy_residual_ratio < 1e-2
     shift, other = (r.arrays["shift"].data for r in (there, back))
@@ -67,9 +66,7 @@ def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
     found = []
     for turn in (0.0, 90.0):
         motion = f'[motion]\nkind = "record"\nfile = "one.csv"\nsecond = "other.csv"\nangle = {turn}\nunit = "g"\n'
-        found.append(
-            answered(tmp_path, f'{COLUMN}{motion}[[analysis]]\nkind = "dem"\nend_time = 0.5\ndirection = {turn}\n')
-        )
+        found.append(answered(tmp_path, f'{COLUMN}{motion}[[analysis]]\nkind = "dem"\nend_time = 0.5\ndirection = {turn}\n'))
     there, turned = found
     assert there.results.horizontal_components == turned.results.horizontal_components == 2
     shift, other = (r.arrays["shift"].data for r in (there, turned))
@@ -88,7 +85,7 @@ def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
         ('kind = "wall"\nunit_length = 1.0\nunit_height = 0.5\nthickness = 0.3\nheight = 1.0\nlegs = [{ length = 2.0 }]', 90.0),
         ('kind = "arch"\nradius = 5.0\nthickness = 1.0\nembrace = 150.0\nvoussoirs = 7', 0.0),
     ],
-)  # fmt: skip
+)
 def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: float, solver: str) -> None:
     """Within 1 % on stiff joints and on rigid contacts: a column, a wall out of its plane, an arch with depth."""
     assert tilted_as_limit_analysis(tmp_path, structure, direction, solver, 0.7).opening_contacts
@@ -174,9 +171,7 @@ def test_dowels_of_a_deck(tmp_path) -> None:
     free, held = (answered(tmp_path, text).results for text in (slippery, doweled))
     assert (free.dowels, held.dowels, held.dowels_out, held.dowel_slip_m) == (0, 1, 0, 0.0)
     assert free.peak_slip_m > 20.0 * held.peak_slip_m
-    rocks = answered(
-        tmp_path, doweled.replace("height = 2.0", "height = 5.0").replace("5 cm", "1 mm").replace("friction = 0.1", "")
-    )
+    rocks = answered(tmp_path, doweled.replace("height = 2.0", "height = 5.0").replace("5 cm", "1 mm").replace("friction = 0.1", ""))
     assert rocks.results.dowels_out == 1 and ", 1 of 1 came out" in rocks.answer
     weak = answered(tmp_path, doweled.replace("unbroken", "1 kN"))
     assert weak.results.dowel_slip_m > 1e-3
@@ -191,8 +186,7 @@ RIGID = 'solver = "nonsmooth"\n'
 def test_a_column_rocks_on_rigid_contacts(tmp_path) -> None:
     """Along and against: mirrored; the answer says how far the contacts converged and has no stiffness."""
     there, back = (
-        answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n{RIGID}')
-        for d in (90.0, -90.0)
+        answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n{RIGID}') for d in (90.0, -90.0)
     )
     r = there.results
     assert there.status == "ok" and r.outcome == "rocked" and r.energy_residual_ratio < 1e-2
@@ -251,10 +245,7 @@ def test_rigid_contacts_find_what_falls(tmp_path) -> None:
 
 @pytest.mark.parametrize(
     ("of_dem", "told"),
-    [
-        ("fraction = 0.1", "rigid contacts have no stiffness"),
-        ("vary_stiffness = [2.0]", "rigid contacts have no stiffness"),
-    ],
+    [("fraction = 0.1", "rigid contacts have no stiffness"), ("vary_stiffness = [2.0]", "rigid contacts have no stiffness")],
 )
 def test_what_only_springs_know_is_refused_of_rigid_contacts(tmp_path, of_dem: str, told: str) -> None:
     with pytest.raises(DeckError, match=told):
@@ -267,9 +258,7 @@ def test_footings_are_no_floor() -> None:
     assembly = assemble(stones)
     found = supports_of(assembly)
     assert found.of_joint.tolist() == [0, 1]
-    assert found.bodies[0].low == pytest.approx([-0.25, -0.25, -1.0]) and found.bodies[0].high[:2] == pytest.approx(
-        [1.25, 1.25]
-    )
+    assert found.bodies[0].low == pytest.approx([-0.25, -0.25, -1.0]) and found.bodies[0].high[:2] == pytest.approx([1.25, 1.25])
     named = supports_of(assembly, floor=0.0)
     assert named.of_joint.tolist() == [0, 0] and len(named.bodies) == 1
 
@@ -278,16 +267,13 @@ def test_a_section_drawn_out_stands_on_its_springings(tmp_path) -> None:
     """An arch asked for with a direction: its contacts with the ground may have the ground on either side."""
     arch = 'kind = "arch"\nradius = 5.0\nthickness = 1.0\nembrace = 150.0\nvoussoirs = 5'
     found = answered(
-        tmp_path,
-        f'[structure]\n{arch}\n[joints]\nnormal_stiffness = 1e9\n[[analysis]]\nkind = "dem"\ndirection = 0.0\nend_time = 0.05\n',
+        tmp_path, f'[structure]\n{arch}\n[joints]\nnormal_stiffness = 1e9\n[[analysis]]\nkind = "dem"\ndirection = 0.0\nend_time = 0.05\n'
     )
     assert found.status == "ok" and found.results.outcome == "at-rest" and found.results.contacts == 6
 
 
 def test_stored_results_are_typed(tmp_path) -> None:
-    found = answered(
-        tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.1\nvtk = true\n', out=tmp_path / "out"
-    )
+    found = answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.1\nvtk = true\n', out=tmp_path / "out")
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["analyses"][0]["results"]["contacts"] == found.results.contacts == 2
     assert (tmp_path / "out" / "dem.pvd").exists() and (tmp_path / "out" / "dem.glb").exists()
@@ -302,7 +288,7 @@ def test_stored_results_are_typed(tmp_path) -> None:
         'kind = "dome"\nradius = 3.0\nthickness = 0.5\nembrace = 120.0\nrings = 4\nlunes = 6\n',
     ],
     ids=["a corner and an opening", "a cross-vault", "a dome"],
-)  # fmt: skip
+)
 def test_what_is_more_than_a_column_is_followed(tmp_path, structure: str) -> None:
     """It settles and is shaken, and the ledger closes."""
     text = (

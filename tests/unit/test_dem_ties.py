@@ -20,16 +20,24 @@ LAW = dem.Law(1e9, 1e9, 0.6, damping=1e-4)
 MASS = 2000.0
 
 
-def ties(*lines: list[tuple[int, list[float]]], stiffness: float = 8e5, prestress: float = 0.0, least: float = 0.0,
-         most: float = np.inf, closed: bool = False) -> Ties:  # fmt: skip
+def ties(
+    *lines: list[tuple[int, list[float]]],
+    stiffness: float = 8e5,
+    prestress: float = 0.0,
+    least: float = 0.0,
+    most: float = np.inf,
+    closed: bool = False,
+) -> Ties:
     """Lines of points, each a body (-1 the ground) and a place [m]."""
     count = len(lines)
     return Ties(
         *(np.full(count, value) for value in (stiffness, prestress, least, most)),
-        np.cumsum([0, *map(len, lines)])[:-1], np.full(count, closed),
-        np.array([body for line in lines for body, _ in line]), np.arange(sum(map(len, lines))),
+        np.cumsum([0, *map(len, lines)])[:-1],
+        np.full(count, closed),
+        np.array([body for line in lines for body, _ in line]),
+        np.arange(sum(map(len, lines))),
         np.array([place for line in lines for _, place in line]),
-    )  # fmt: skip
+    )
 
 
 def free_block(tie: Ties) -> dem.Bodies:
@@ -92,9 +100,7 @@ def test_a_slack_tie_carries_nothing() -> None:
     start = np.array([[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
     slack = dem.run(free_block(ties(TO_THE_SIDE)), FLOATING, shift=np.zeros((2, 3)), rate=start)
     assert slack.place[:, 0, 0] == pytest.approx(-0.5 * slack.time, abs=1e-12) and not slack.tension.any()
-    strut = dem.run(
-        free_block(ties(TO_THE_SIDE, least=-np.inf, most=0.0)), FLOATING, shift=np.zeros((2, 3)), rate=start
-    )
+    strut = dem.run(free_block(ties(TO_THE_SIDE, least=-np.inf, most=0.0)), FLOATING, shift=np.zeros((2, 3)), rate=start)
     assert strut.place[:, 0, 0].min() == pytest.approx(-0.025, rel=1e-3)
     assert strut.tension.min() == pytest.approx(-2e4, rel=1e-3)
 
@@ -151,9 +157,7 @@ def test_the_critical_step_is_that_of_the_tie(share: float, stable: bool) -> Non
 
 def test_a_moving_base_and_its_body_force_agree() -> None:
     """The ground end moves with the base: the same response, the ledger closed in both frames."""
-    shaken = replace(
-        block_on_floor(1.0, 3.0, LAW), ties=ties([(0, [0.5, 2.9]), (-1, [-5.0, 2.9])], most=2e4, stiffness=3e6)
-    )
+    shaken = replace(block_on_floor(1.0, 3.0, LAW), ties=ties([(0, [0.5, 2.9]), (-1, [-5.0, 2.9])], most=2e4, stiffness=3e6))
     options = dem.Options(1.5, 0.02, collapse=2.0)
     runs = [dem.run(shaken, replace(options, moving_base=moving), cosine(0.45 * G, 5.0)) for moving in (False, True)]
     assert runs[0].tension.max() == 2e4  # it has yielded
@@ -172,19 +176,20 @@ def test_a_state_with_ties_goes_on_with_the_same_bits(rigid: bool) -> None:
         again = other.run(motions, state=states[len(states) // 2])
     assert np.array_equal(again.tension, whole.tension) and np.array_equal(again.place, whole.place)
     bare = replace(shaken, ties=None)
-    with (
-        dem.Model(bare, options) as third,
-        as_motion_set([STILL]) as motions,
-        pytest.raises(ValueError, match="of a run of another model"),
-    ):
+    with dem.Model(bare, options) as third, as_motion_set([STILL]) as motions, pytest.raises(ValueError, match="of a run of another model"):
         third.run(motions, state=states[0])
 
 
 @pytest.mark.parametrize(
     ("change", "error"),
-    [({"stiffness": np.array([0.0])}, CoreError), ({"prestress": np.array([-1.0])}, CoreError), ({"body": np.array([0, 7])}, IndexError),
-     ({"place": np.full((2, 2), np.nan)}, ValueError), ({"point": np.array([0, 2])}, ValueError)],
-)  # fmt: skip
+    [
+        ({"stiffness": np.array([0.0])}, CoreError),
+        ({"prestress": np.array([-1.0])}, CoreError),
+        ({"body": np.array([0, 7])}, IndexError),
+        ({"place": np.full((2, 2), np.nan)}, ValueError),
+        ({"point": np.array([0, 2])}, ValueError),
+    ],
+)
 def test_wrong_ties_are_refused(change: dict, error: type[Exception]) -> None:
     with pytest.raises(error):
         dem.run(free_block(replace(ties(TO_THE_SIDE), **change)), FLOATING)
@@ -193,18 +198,19 @@ def test_wrong_ties_are_refused(change: dict, error: type[Exception]) -> None:
 def deck(kind: dict, **tie: Any) -> dict:
     table = {"start": [0.5, 2.9], "ground": [-6.0, 2.9], "start_stone": "block", **tie}
     return {
-        "structure": {"kind": "block", "width": 1.0, "height": 3.0}, "material": {"density": 2000.0, "young": 5e9},
-        "joints": {"friction": 0.9}, "ties": [table], "analysis": [kind],
-    }  # fmt: skip
+        "structure": {"kind": "block", "width": 1.0, "height": 3.0},
+        "material": {"density": 2000.0, "young": 5e9},
+        "joints": {"friction": 0.9},
+        "ties": [table],
+        "analysis": [kind],
+    }
 
 
 @pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
 def test_a_tied_block_collapses_where_limit_analysis_says(solver: str) -> None:
     """(W b / 2 + F h_t) / (W h / 2), less what the tie lengthens until it yields, at most 1 % with EA/L of 2 MN/m."""
     weight = 6000.0 * G
-    found = extrados.run(
-        deck({"kind": "dem", "test": "tilt", "solver": solver}, stiffness=2e6, yield_force=1e4)
-    ).results[0]
+    found = extrados.run(deck({"kind": "dem", "test": "tilt", "solver": solver}, stiffness=2e6, yield_force=1e4)).results[0]
     exact = (0.5 * weight + 1e4 * 2.9) / (1.5 * weight)
     assert exact > found["collapse_acceleration_g"] > 0.99 * exact
     assert found["collapse_acceleration_opposite_g"] == pytest.approx(1.0 / 3.0, rel=2e-3)
@@ -228,7 +234,5 @@ def test_a_tied_block_in_space(solver: str) -> None:
     found, exact = extrados.run(tied).results
     weight = 2000.0 * 2.4 * G
     assert exact["collapse_acceleration_g"] == pytest.approx((0.4 * weight + 1e4 * 2.9) / (1.5 * weight), rel=1e-6)
-    assert (
-        exact["collapse_acceleration_g"] > found["collapse_acceleration_g"] > 0.985 * exact["collapse_acceleration_g"]
-    )
+    assert exact["collapse_acceleration_g"] > found["collapse_acceleration_g"] > 0.985 * exact["collapse_acceleration_g"]
     assert found["ties"][0]["state"] == "yielded"

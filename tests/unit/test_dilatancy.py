@@ -61,26 +61,16 @@ def test_a_sliding_wall_has_an_interval() -> None:
         assert least is not None and 0.3 < least < most < 0.65
     assert r.non_dilatant.certified and r.non_dilatant.zero_gap_g < 1e-12
     assert r.non_dilatant.associated_g == pytest.approx(r.collapse_acceleration_g, abs=1e-9)
-    assert r.admissible_interval_g == pytest.approx(
-        [-r.collapse_acceleration_opposite_g, r.collapse_acceleration_g], abs=1e-9
-    )
+    assert r.admissible_interval_g == pytest.approx([-r.collapse_acceleration_opposite_g, r.collapse_acceleration_g], abs=1e-9)
     least, most = (min(r.interval(o)[k] for o in (False, True)) for k in (0, 1))
     design = min(r.capacity(o) for o in (False, True))
     assert least - 1e-6 <= design < most
     spread = max(r.non_dilatant.spread_g, r.non_dilatant_opposite.spread_g)
-    for peak, outcome in (
-        (0.99 * (least - spread), "stands"),
-        (0.5 * (least + most), "open"),
-        (1.01 * most, "collapses"),
-    ):
+    for peak, outcome in ((0.99 * (least - spread), "stands"), (0.5 * (least + most), "open"), (1.01 * most, "collapses")):
         verdict = r.judged(asked(peak))
         assert (verdict.outcome, verdict.capacity) == (outcome, design) and DILATANT in verdict.statement
         assert verdict.ratio == pytest.approx(design / peak)
-        place = {
-            "stands": "below the design value",
-            "open": "between design value and upper bound",
-            "collapses": "above the upper bound",
-        }
+        place = {"stands": "below the design value", "open": "between design value and upper bound", "collapses": "above the upper bound"}
         assert place[outcome] in verdict.statement
 
 
@@ -152,9 +142,7 @@ def test_solids_are_labelled() -> None:
     """In space a wall that slides has an upper bound, a design value by load paths and a least state (test_load_path)."""
     sliding, turning = (run(s, f, kind="tilt", direction=0.0, rose=4) for s, f in ((WALL, 0.65), (ARCH, 0.7)))
     assert sliding.results.dilating_contacts and DILATANT in sliding.answer
-    assert sliding.results.non_dilatant is None and "on request" in sliding.results.non_associated_reason, (
-        "contacts are many"
-    )
+    assert sliding.results.non_dilatant is None and "on request" in sliding.results.non_associated_reason, "contacts are many"
     assert sliding.results.judged(asked(0.1)).outcome == "open", "an upper bound alone"
     sliding = run(WALL, 0.65, kind="tilt", direction=0.0, rose=4, friction_rule="non-associated")
     design = min(row.load_path_g for row in sliding.results.non_dilatant)
@@ -179,10 +167,14 @@ def test_sweeps_trains_and_lines_are_labelled() -> None:
 
 #: The questions of limit analysis about one section
 KINDS: list[dict[str, Any]] = [
-    {"kind": "tilt"}, {"kind": "thrust"}, {"kind": "moving-load"}, {"kind": "supports"},
-    {"kind": "imperfections", "deviation": "5 mm", "count": 10}, {"kind": "tilt", "friction_rule": "non-associated"},
+    {"kind": "tilt"},
+    {"kind": "thrust"},
+    {"kind": "moving-load"},
+    {"kind": "supports"},
+    {"kind": "imperfections", "deviation": "5 mm", "count": 10},
+    {"kind": "tilt", "friction_rule": "non-associated"},
     {"kind": "tilt", "direction": 0.0},
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("keys", KINDS, ids=lambda k: "-".join(map(str, k.values())))
@@ -243,9 +235,7 @@ def test_a_survey_with_an_open_joint_says_what_closing_it_gives() -> None:
         edge = np.radians(np.linspace(168.75, 11.25, 9))
         ends = np.stack([np.stack([r * np.cos(edge), r * np.sin(edge)], axis=1) for r in (5.0, 6.0)])
         shift = np.array([[gap, 0.0]])
-        stones = [
-            np.stack([ends[0, k + 1], ends[1, k + 1], ends[1, k], ends[0, k]]) + shift * (k > 3) for k in range(8)
-        ]
+        stones = [np.stack([ends[0, k + 1], ends[1, k + 1], ends[1, k], ends[0, k]]) + shift * (k > 3) for k in range(8)]
         pier = np.array([ends[0, 0], ends[1, 0], [-9.0, 1.2], [-9.0, -4.0], [ends[0, 0, 0], -4.0]])
         stones += [pier, (pier * (-1.0, 1.0))[::-1] + shift]
         return {"kind": "blocks", "block": [{"points": np.round(stone, 9).tolist()} for stone in stones]}
@@ -258,9 +248,7 @@ def test_a_survey_with_an_open_joint_says_what_closing_it_gives() -> None:
 
 
 def by_codes(peak_g: float, structure: dict[str, Any]) -> Result:
-    return run(
-        structure, kind="local-mechanism", mechanism="building", base_height=0.0, peak_acceleration=f"{peak_g} g"
-    )
+    return run(structure, kind="local-mechanism", mechanism="building", base_height=0.0, peak_acceleration=f"{peak_g} g")
 
 
 def test_codes_use_the_lower_end() -> None:
@@ -294,11 +282,14 @@ def test_a_block_that_slides_on_one_joint_has_no_interval() -> None:
 
 def test_an_assessment_uses_the_lower_end() -> None:
     """The row of limit analysis has the least state for its capacity, and is open between it and the upper bound."""
-    deck = make_deck({
-        "structure": coursed(2), "joints": {"friction": 0.65},
-        "motion": {"kind": "sine-pulse", "amplitude": "0.45 g", "period": 0.5},
-        "analysis": {"kind": "assess", "strategies": ["tilt"]},
-    })  # fmt: skip
+    deck = make_deck(
+        {
+            "structure": coursed(2),
+            "joints": {"friction": 0.65},
+            "motion": {"kind": "sine-pulse", "amplitude": "0.45 g", "period": 0.5},
+            "analysis": {"kind": "assess", "strategies": ["tilt"]},
+        }
+    )
     (result,) = run_analyses(Context(deck, threads=1))
     (row,) = result.results.verdicts
     tilt = run(coursed(2), kind="tilt").results

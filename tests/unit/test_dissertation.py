@@ -79,6 +79,4 @@ def test_optimal_motion_and_single_impulses() -> None:
     assert spacing == sorted(spacing)
     assert [spacing[0], spacing[-1]] == pytest.approx([0.1604, 0.3317], abs=0.0005)
     share = found.share_of_starts_that_add
-    assert [share[key] for key in ("0.125", "0.25", "0.5", "1", "2")] == pytest.approx(
-        [0.49, 0.65, 1.00, 0.96, 1.00], abs=0.01
-    )
+    assert [share[key] for key in ("0.125", "0.25", "0.5", "1", "2")] == pytest.approx([0.49, 0.65, 1.00, 0.96, 1.00], abs=0.01)

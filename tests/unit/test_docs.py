@@ -58,9 +58,10 @@ def test_what_the_docs_name_exists(page: Path) -> None:
 def test_the_readme_quotes_the_verification_book() -> None:
     """The deviations of README, Reliability, are cells of the book's table of quantities."""
     book = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
-    rows = {re.sub(r"\[(.*?)\]\(.*?\)", r"\1", row[0]): row for row in (
-        [cell.strip() for cell in line.strip("|").split("|")] for line in book.splitlines() if line.startswith("| [")
-    )}  # fmt: skip
+    rows = {
+        re.sub(r"\[(.*?)\]\(.*?\)", r"\1", row[0]): row
+        for row in ([cell.strip() for cell in line.strip("|").split("|")] for line in book.splitlines() if line.startswith("| ["))
+    }
     text = (ROOT / "README.md").read_text(encoding="utf-8").partition("## Reliability")[2].partition("\n## ")[0]
     quoted = re.findall(r"^\| (.*?) \| (\d+: .*?) \|$", text, re.M)
     assert len(quoted) == 3
@@ -76,16 +77,9 @@ def test_the_tree_of_contributing_has_every_package() -> None:
     named = set(re.findall(r"([\w-]+)/", tree))
     package = ROOT / "python" / "extrados"
     there = {path.parent.name for path in package.rglob("*.py")}
-    there |= {
-        path.parent.name
-        for top in ("fortran", "c")
-        for end in ("f90", "c", "h")
-        for path in (ROOT / top).rglob(f"*.{end}")
-    }
+    there |= {path.parent.name for top in ("fortran", "c") for end in ("f90", "c", "h") for path in (ROOT / top).rglob(f"*.{end}")}
     assert there - named - {"extrados"} == set()
-    folders = {
-        path.name for top in ("fortran", "c", "python", "tests") for path in (ROOT / top).rglob("*") if path.is_dir()
-    }
+    folders = {path.name for top in ("fortran", "c", "python", "tests") for path in (ROOT / top).rglob("*") if path.is_dir()}
     assert named - folders - {"fortran", "c", "python", "tests", "cases", "tools", "build"} == set()
     files = re.findall(r"[\w/]+\.py\b", way)
     assert len(files) > 9 and [file for file in files if not list(package.rglob(file))] == []
@@ -142,9 +136,7 @@ def test_pictures_are_drawn_by_decks_at_build_time() -> None:
         assert re.sub(r"-\d+$", "", analysis) in names or analysis in names, (page, case, analysis)
         assert caption.endswith("."), (page, caption)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert {path.name for path in (ROOT / "docs" / "pictures").iterdir()} == set(
-        re.findall(r"pictures/(\S+?\.png)", readme)
-    )
+    assert {path.name for path in (ROOT / "docs" / "pictures").iterdir()} == set(re.findall(r"pictures/(\S+?\.png)", readme))
 
 
 def test_the_gallery_shows_sixty_cases(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -76,7 +76,11 @@ def test_calls_of_the_core_tell_shapes(file: Path) -> None:
             if not isinstance(one, ast.FunctionDef) or (one.name.startswith("_") and one.name != "__init__"):
                 continue
             told = (ast.get_docstring(one) or "") + " " + beside
-            arrays = {a.arg for a in [*one.args.args, *one.args.kwonlyargs] if re.search("ndarray|ArrayLike", ast.unparse(a.annotation or ast.Constant(None)))}  # fmt: skip
+            arrays = {
+                a.arg
+                for a in [*one.args.args, *one.args.kwonlyargs]
+                if re.search("ndarray|ArrayLike", ast.unparse(a.annotation or ast.Constant(None)))
+            }
             given = "ndarray" in ast.unparse(one.returns or ast.Constant(None))
             if arrays - set(re.findall(r"\w+", told)) or ((arrays or given) and not SHAPE.search(told)):
                 yield one.name

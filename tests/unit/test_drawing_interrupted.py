@@ -71,9 +71,13 @@ def drawing(
 ) -> tuple[subprocess.Popen, list[int]]:
     """The command in a group of its own, once `written` is there and it draws, and the processes that draw."""
     process = subprocess.Popen(
-        [sys.executable, *command, *arguments, "--quiet"], cwd=folder, start_new_session=True,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-    )  # fmt: skip
+        [sys.executable, *command, *arguments, "--quiet"],
+        cwd=folder,
+        start_new_session=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
     end = time.monotonic() + 120.0
     while not ((folder / written).exists() and (found := drawers(process.pid))):
         assert process.poll() is None and time.monotonic() < end, process.communicate()[0]

@@ -15,22 +15,26 @@ ACTION = {"jurisdiction": "NTC", "accelerations": ["0.3 g"]}
 @pytest.mark.parametrize(
     ("value", "unit", "told"),
     [
-        (3e6, "Pa", "3.00 MPa"), (2.0e5, "Pa", "0.200 MPa"), (6.9e9, "Pa", "6.90 GPa"), (1234.0, "Pa", "1.23 kPa"),
-        (0.0, "Pa", "0 Pa"), (-41234.0, "N", "-41.2 kN"), (1.2345e6, "N", "1230 kN"), (55.61, "N", "55.6 N"),
-        (4.2e10, "Pa/m", "42.0 GPa/m"), (60.0, "N/m", "60.0 N/m"), (0.9996, "m", "1.00 m"), (2000.0, "kg/m^3", "2000 kg/m^3"),
+        (3e6, "Pa", "3.00 MPa"),
+        (2.0e5, "Pa", "0.200 MPa"),
+        (6.9e9, "Pa", "6.90 GPa"),
+        (1234.0, "Pa", "1.23 kPa"),
+        (0.0, "Pa", "0 Pa"),
+        (-41234.0, "N", "-41.2 kN"),
+        (1.2345e6, "N", "1230 kN"),
+        (55.61, "N", "55.6 N"),
+        (4.2e10, "Pa/m", "42.0 GPa/m"),
+        (60.0, "N/m", "60.0 N/m"),
+        (0.9996, "m", "1.00 m"),
+        (2000.0, "kg/m^3", "2000 kg/m^3"),
     ],
-)  # fmt: skip
+)
 def test_three_figures_in_units_of_engineers(value: float, unit: str, told: str) -> None:
     assert engineering(value, unit) == told
 
 
 def test_answers_have_no_powers_of_pascals() -> None:
-    deck = {
-        "structure": WALL,
-        "material": {"compressive_strength": "3 MPa"},
-        "motion": PULSE,
-        "analysis": [{"kind": "tilt"}],
-    }
+    deck = {"structure": WALL, "material": {"compressive_strength": "3 MPa"}, "motion": PULSE, "analysis": [{"kind": "tilt"}]}
     answer = extrados.run(deck).summary["analyses"][0]["answer"]
     assert "compressive strength 3.00 MPa (deck)" in answer and "e+0" not in answer
 
@@ -39,7 +43,9 @@ def test_a_check_is_not_satisfied_and_a_building_collapses() -> None:
     asked = {"kind": "assess", "budget": 5, "strategies": ["tilt", "code-checks"], "advise": False}
     run = extrados.run({"structure": WALL, "code": ACTION, "motion": PULSE, "analysis": [asked]})
     statement = run["assess"].statement
-    assert statement.startswith("The block collapses under the one strategy that has a verdict, limit analysis and the check by codes is not satisfied.")  # fmt: skip
+    assert statement.startswith(
+        "The block collapses under the one strategy that has a verdict, limit analysis and the check by codes is not satisfied."
+    )
     assert "collapses by codes" not in statement
     rows = {v.strategy: v.verdict_words for v in run["assess"].verdicts}
     assert rows == {"tilt": "collapses", "code-checks": "not satisfied"}

@@ -64,21 +64,11 @@ def test_every_handle_leads_where_it_stands(session: Session, preset: str, count
 
 @pytest.mark.parametrize(
     "preset",
-    [
-        "limit/arch-120",
-        "vault/dejong-a",
-        "vault/vezelay-like",
-        "bridge/road",
-        pytest.param("limit/church", marks=pytest.mark.verify),
-    ],
+    ["limit/arch-120", "vault/dejong-a", "vault/vezelay-like", "bridge/road", pytest.param("limit/church", marks=pytest.mark.verify)],
 )
 def test_the_numbers_of_the_page_are_those_of_a_run(session: Session, preset: str) -> None:
     (reply,) = do(session, do="open", preset=preset)
-    run = (
-        extrados.run(session.live.deck.data | {"analysis": [{"kind": "tilt", **_loads(session)}]})
-        if preset != "limit/church"
-        else None
-    )
+    run = extrados.run(session.live.deck.data | {"analysis": [{"kind": "tilt", **_loads(session)}]}) if preset != "limit/church" else None
     scene = reply.words["scene"]
     if run is None:
         run = extrados.run(Path(session.place) / session.name)
@@ -183,11 +173,7 @@ def test_the_page_has_no_answer_where_a_run_refuses_one(session: Session, more: 
     do(session, do="rest")
 
 
-PRESETS = sorted(
-    p.relative_to(CASES).with_suffix("").as_posix()
-    for p in CASES.rglob("*.toml")
-    if not p.name.endswith(".expect.toml")
-)
+PRESETS = sorted(p.relative_to(CASES).with_suffix("").as_posix() for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml"))
 
 
 @pytest.mark.parametrize("room", sorted({name.partition("/")[0] for name in PRESETS}))
@@ -289,10 +275,13 @@ def test_a_fault_of_the_program_is_told_and_changes_nothing(session: Session, mo
 def test_what_is_wrong_changes_nothing(session: Session) -> None:
     before = session.document.text
     for message in (
-        {"do": "drag", "handle": "thickness", "text": "9 m"}, {"do": "set", "changes": {"structure.radius": "-3 m"}},
-        {"do": "set", "changes": {"structure.nonsense": 3}}, {"do": "open", "text": "structure = ", "here": "same"},
-        {"do": "open", "preset": "nothing/there"}, {"do": "drag", "handle": "thickness", "text": "1 kg"},
-    ):  # fmt: skip
+        {"do": "drag", "handle": "thickness", "text": "9 m"},
+        {"do": "set", "changes": {"structure.radius": "-3 m"}},
+        {"do": "set", "changes": {"structure.nonsense": 3}},
+        {"do": "open", "text": "structure = ", "here": "same"},
+        {"do": "open", "preset": "nothing/there"},
+        {"do": "drag", "handle": "thickness", "text": "1 kg"},
+    ):
         (reply,) = do(session, **message)
         assert reply.words.get("complaints"), message
         assert session.document.text == before
@@ -305,9 +294,7 @@ def test_a_dropped_drawing_shows_what_it_shows_and_says_what_it_hides(session: S
     document = ezdxf.new("R2010", units=6)
     document.layers.add("OLD").freeze()
     for y, layer in ((0, "0"), (1, "0"), (2, "OLD")):
-        document.modelspace().add_lwpolyline(
-            [(0, y), (1, y), (1, y + 1), (0, y + 1)], close=True, dxfattribs={"layer": layer}
-        )
+        document.modelspace().add_lwpolyline([(0, y), (1, y), (1, y + 1), (0, y + 1)], close=True, dxfattribs={"layer": layer})
     document.saveas(tmp_path / "pier.dxf")
     data = base64.b64encode((tmp_path / "pier.dxf").read_bytes()).decode()
     (reply,) = do(session, do="drop", name="pier.dxf", data=data)
@@ -354,9 +341,7 @@ def test_the_map_gets_finer_and_is_kept(session: Session, monkeypatch: pytest.Mo
     assert len(do(session, do="domain")) == 1, "the same building: nothing to compute"
 
 
-def test_the_map_of_a_base_that_gives_way_begins_with_few_cells(
-    session: Session, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_map_of_a_base_that_gives_way_begins_with_few_cells(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each of them takes long: the first reply is not to wait for a hundred."""
     monkeypatch.setattr("extrados.explore.rocking.PATIENCE", 0.0)
     do(session, do="open", preset="rocking/soft-base")
@@ -381,13 +366,7 @@ def test_films_are_films_or_refused() -> None:
     with Image.open(io.BytesIO(made.content)) as image:
         assert image.n_frames == 5
         assert image.size == (64, 48)
-    for bad in (
-        b"",
-        b"gif\x0a",
-        b"gif\x00" + body,
-        b"gif\x0a" + body[:-3],
-        b"gif\x0a" + struct.pack(">I", 4) + b"text",
-    ):
+    for bad in (b"", b"gif\x0a", b"gif\x00" + body, b"gif\x0a" + body[:-3], b"gif\x0a" + struct.pack(">I", 4) + b"text"):
         with pytest.raises(BadFilm):
             film(bad)
 
@@ -445,9 +424,7 @@ def test_what_is_needed_carries_the_acceleration_once_it_is_put_in(session: Sess
     told = reply.words["needed"]
     assert not told["met"] and told["capacity_g"] == pytest.approx(min(first["plus_g"], first["minus_g"]), rel=1e-6)
     met = [one for one in told["interventions"] if one["met"]]
-    assert met and any("ties" in one["changes"] for one in met) == (preset != "limit/arch-120"), (
-        "a flat arch needs thickness"
-    )
+    assert met and any("ties" in one["changes"] for one in met) == (preset != "limit/arch-120"), "a flat arch needs thickness"
     for one in met:
         text = session.document.text
         after = do(session, do="set", changes=one["changes"])[-1].words["scene"]["capacity"]
@@ -471,9 +448,7 @@ def test_drawn_blocks_are_a_deck_that_keeps_the_rest_of_it(session: Session) -> 
     square = {"name": "pier", "points": [[0, 0], [1, 0], [1, 2], [0, 2]]}
     (first,) = do(session, do="draw", blocks=[square], ground=[], fresh=True)
     assert first.words["scene"]["capacity"]["plus_g"] == pytest.approx(0.5)
-    text = session.document.text.replace('name = "pier"', 'name = "pier"  \ndensity = "1.8 t/m^3"  # weighed').replace(
-        "2.0", '"200 cm"'
-    )
+    text = session.document.text.replace('name = "pier"', 'name = "pier"  \ndensity = "1.8 t/m^3"  # weighed').replace("2.0", '"200 cm"')
     do(session, do="open", text=f"# mine\n{text}", here="same")
     (told,) = do(session, do="sheet")
     assert told.words["sheet"] == {"blocks": [square], "ground": []}

@@ -38,9 +38,7 @@ class ClassPage(single.Page):
         self.address, self.port = address, self.socket.getsockname()[1]
         pupils = server.Class(self.socket, PUPIL, most)
         self.server = uvicorn.Server(server.configured(self.teacher, TOKEN, folder, None, pupils))
-        self.thread = threading.Thread(
-            target=self.server.run, kwargs={"sockets": [self.teacher, self.socket]}, daemon=True
-        )
+        self.thread = threading.Thread(target=self.server.run, kwargs={"sockets": [self.teacher, self.socket]}, daemon=True)
         self.thread.start()
         while not self.server.started:
             assert self.thread.is_alive(), "the server did not start"
@@ -62,9 +60,7 @@ class ClassPage(single.Page):
                         break
             return found
 
-    def asked(
-        self, heads: dict[str, str | None], path: str = f"/{PUPIL}/live", method: str = "GET", body: bytes = b""
-    ) -> bytes:
+    def asked(self, heads: dict[str, str | None], path: str = f"/{PUPIL}/live", method: str = "GET", body: bytes = b"") -> bytes:
         return super().asked({"Host": f"{self.address}:{self.port}", **heads}, path, method, body)
 
     def request(self, path: str = f"/{PUPIL}/", method: str = "GET", body: bytes = b"", **heads: str | None) -> bytes:
@@ -157,7 +153,14 @@ BEYOND_A_CLASS = [
     ("a stored run", {"do": "run", "path": "results/x"}),
     ("a dropped file", {"do": "drop", "name": "x.csv", "data": "AAAA"}),
     ("dropped files of a page that comes back", {"do": "open", "here": "dropped", "text": NEW_DECK}),
-    ("a record in the folder", {"do": "open", "text": NEW_DECK + '[motion]\nkind = "record"\nfile = "record.csv"\ntime_step = 0.01\nunit = "g"\n', "then": "rocking"}),
+    (
+        "a record in the folder",
+        {
+            "do": "open",
+            "text": NEW_DECK + '[motion]\nkind = "record"\nfile = "record.csv"\ntime_step = 0.01\nunit = "g"\n',
+            "then": "rocking",
+        },
+    ),
     ("a drawing", {"do": "open", "text": '[structure]\nkind = "blocks"\nfile = "x.dxf"\n[[analysis]]\nkind = "tilt"\n'}),
     ("too many blocks", {"do": "set", "changes": {"structure.voussoirs": 301}}),
     ("a long deck", {"do": "open", "text": NEW_DECK + "#" * 70_000}),
@@ -167,14 +170,12 @@ BEYOND_A_CLASS = [
     ("pausing all", {"do": "pause", "frozen": True}),
     ("looking at another", {"do": "peek", "number": 1}),
     ("the teacher's word", {"do": "pause", "frozen": True, "teacher": True}),
-]  # fmt: skip
+]
 MESSAGES = [*((name, json.loads(text)) for name, text in HOSTILE_MESSAGES if text.startswith("{")), *BEYOND_A_CLASS]
 
 
 @pytest.mark.parametrize(("name", "message"), MESSAGES, ids=[name for name, _ in MESSAGES])
-def test_hostile_messages_of_pupils_are_refused(
-    room: ClassPage, folder: Path, name: str, message: dict[str, Any]
-) -> None:
+def test_hostile_messages_of_pupils_are_refused(room: ClassPage, folder: Path, name: str, message: dict[str, Any]) -> None:
     before = sorted(p.name for p in [*folder.iterdir(), *folder.parent.iterdir()])
     with room.join() as link:
         greet(link)
@@ -207,13 +208,7 @@ def test_from_another_address_the_teachers_door_is_shut() -> None:
     guard = Guard(None, [Door("t", ["127.0.0.1:1"]), Door("p", ["192.168.1.5:2"], "pupil", near=False)])
 
     def objection(token: str, host: bytes, client: str) -> int:
-        scope = {
-            "type": "http",
-            "method": "GET",
-            "path": f"/{token}/",
-            "headers": [(b"host", host)],
-            "client": (client, 1),
-        }
+        scope = {"type": "http", "method": "GET", "path": f"/{token}/", "headers": [(b"host", host)], "client": (client, 1)}
         found = guard.objection(scope)
         return 200 if found is None else found[0]
 
@@ -239,10 +234,7 @@ def test_on_an_address_of_the_network_pupils_come_in_and_the_teachers_token_does
             assert greet(link)["pupil"] == 1
         port = room.teacher.getsockname()[1]
         assert status(room.request(f"/{TOKEN}/", Host=f"127.0.0.1:{port}")) == 403
-        assert (
-            b"101"
-            not in room.upgrade(f"/{TOKEN}/live", Host=f"127.0.0.1:{port}", Origin=f"http://127.0.0.1:{port}")[:20]
-        )
+        assert b"101" not in room.upgrade(f"/{TOKEN}/live", Host=f"127.0.0.1:{port}", Origin=f"http://127.0.0.1:{port}")[:20]
         with pytest.raises(OSError):
             socket.create_connection((address, port), timeout=2)
     finally:
@@ -361,8 +353,6 @@ if __name__ == "__main__":  # latencies of thirty pupils
         first = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         took = drag_as_a_class(classroom, 30, float(sys.argv[1]) if len(sys.argv) > 1 else 10.0)
         last = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        print(
-            f"{len(took)} drags, median {1e3 * statistics.median(took):.1f} ms, 95 % {1e3 * statistics.quantiles(took, n=20)[-1]:.1f} ms"
-        )
+        print(f"{len(took)} drags, median {1e3 * statistics.median(took):.1f} ms, 95 % {1e3 * statistics.quantiles(took, n=20)[-1]:.1f} ms")
         print(f"memory {first / 1e3:.0f} MB before, {last / 1e3:.0f} MB at most; load {os.getloadavg()[0]:.1f}")
         classroom.close()

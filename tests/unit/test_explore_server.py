@@ -68,9 +68,7 @@ class Page:
         """What comes back for a request with the heads of an honest page, but for those given; None leaves one out."""
         return self.raw(self.asked(heads, path, method, body))
 
-    def asked(
-        self, heads: dict[str, str | None], path: str = f"/{TOKEN}/live", method: str = "GET", body: bytes = b""
-    ) -> bytes:
+    def asked(self, heads: dict[str, str | None], path: str = f"/{TOKEN}/live", method: str = "GET", body: bytes = b"") -> bytes:
         given = {"Host": f"127.0.0.1:{self.port}", "Connection": "close"}
         given |= {k.replace("_", "-"): v for k, v in heads.items()}
         if body or method == "POST":
@@ -85,17 +83,15 @@ class Page:
     def upgrading(self) -> dict[str, str | None]:
         """Heads that ask for a socket."""
         return {
-            "Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13",
-            "Sec-WebSocket-Key": base64.b64encode(os.urandom(16)).decode(), "Origin": f"http://127.0.0.1:{self.port}",
-        }  # fmt: skip
+            "Connection": "Upgrade",
+            "Upgrade": "websocket",
+            "Sec-WebSocket-Version": "13",
+            "Sec-WebSocket-Key": base64.b64encode(os.urandom(16)).decode(),
+            "Origin": f"http://127.0.0.1:{self.port}",
+        }
 
     def open(self) -> Any:
-        return connect(
-            f"ws://127.0.0.1:{self.port}/{TOKEN}/live",
-            origin=f"http://127.0.0.1:{self.port}",
-            max_size=None,
-            close_timeout=2,
-        )
+        return connect(f"ws://127.0.0.1:{self.port}/{TOKEN}/live", origin=f"http://127.0.0.1:{self.port}", max_size=None, close_timeout=2)
 
 
 @pytest.fixture(scope="module")
@@ -195,12 +191,26 @@ HOSTILE_REQUESTS: list[tuple[str, dict[str, Any]]] = [
     ("TRACE", {"method": "TRACE"}),
     ("a form that does not say its origin", {"method": "POST", "path": f"/{TOKEN}/film", "body": b"gif\x0f"}),
     ("a form of another site", {"method": "POST", "path": f"/{TOKEN}/film", "body": b"gif\x0f", "Origin": "https://evil.example"}),
-    ("more than is taken", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "Content_Length": "99999999999"}),
+    (
+        "more than is taken",
+        {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "Content_Length": "99999999999"},
+    ),
     ("less than nothing", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "Content_Length": "-5"}),
-    ("a film that is none", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "body": b"exe\x0f" + b"x" * 50}),
-    ("a film of one broken picture", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "body": b"gif\x0f\x00\x00\x00\x08\xff\xd8\xffabcde"}),
+    (
+        "a film that is none",
+        {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "body": b"exe\x0f" + b"x" * 50},
+    ),
+    (
+        "a film of one broken picture",
+        {
+            "method": "POST",
+            "path": f"/{TOKEN}/film",
+            "Origin": "http://127.0.0.1:{port}",
+            "body": b"gif\x0f\x00\x00\x00\x08\xff\xd8\xffabcde",
+        },
+    ),
     ("a POST to a page", {"method": "POST", "Origin": "http://127.0.0.1:{port}", "body": b"x"}),
-]  # fmt: skip
+]
 HOSTILE_SOCKETS: list[tuple[str, dict[str, Any]]] = [
     ("a socket of another site", {"Origin": "https://evil.example"}),
     ("a socket without an origin", {"Origin": None}),
@@ -223,7 +233,10 @@ HOSTILE_MESSAGES: list[tuple[str, str]] = [
     ("a deck by a link that leads out", '{"do": "open", "path": "out.toml"}'),
     ("a deck in a folder that leads out", '{"do": "open", "path": "way-out/secret.toml"}'),
     ("a case that leads out", '{"do": "open", "preset": "../../../etc/passwd"}'),
-    ("a record by an absolute path", json.dumps({"do": "open", "text": NEW_DECK + '[motion]\nkind = "record"\nfile = "/etc/passwd"\ntime_step = 0.01\nunit = "g"\n'})),
+    (
+        "a record by an absolute path",
+        json.dumps({"do": "open", "text": NEW_DECK + '[motion]\nkind = "record"\nfile = "/etc/passwd"\ntime_step = 0.01\nunit = "g"\n'}),
+    ),
     ("a run outside", '{"do": "run", "path": "../../etc"}'),
     ("saving outside", '{"do": "save", "path": "../stolen.toml", "replace": true}'),
     ("saving by a link", '{"do": "save", "path": "way-out/stolen.toml", "replace": true}'),
@@ -245,12 +258,18 @@ HOSTILE_MESSAGES: list[tuple[str, str]] = [
     ("too many changes", json.dumps({"do": "set", "changes": {f"structure.k{i}": 1 for i in range(1000)}})),
     ("stones without number", '{"do": "set", "changes": {"structure.voussoirs": 100000000}}'),
     ("a sheet of no blocks", '{"do": "draw", "blocks": {"a": 1}, "ground": []}'),
-    ("a sheet with a name in two lines", '{"do": "draw", "blocks": [{"name": "a\\n[motion]", "points": [[0, 0], [1, 0], [1, 1]]}], "ground": []}'),
-    ("a sheet with words for places", '{"do": "draw", "blocks": [{"name": "a", "points": [["open(/etc/passwd)", 0], [1, 0], [1, 1]]}], "ground": []}'),
+    (
+        "a sheet with a name in two lines",
+        '{"do": "draw", "blocks": [{"name": "a\\n[motion]", "points": [[0, 0], [1, 0], [1, 1]]}], "ground": []}',
+    ),
+    (
+        "a sheet with words for places",
+        '{"do": "draw", "blocks": [{"name": "a", "points": [["open(/etc/passwd)", 0], [1, 0], [1, 1]]}], "ground": []}',
+    ),
     ("a sheet of too many blocks", json.dumps({"do": "draw", "blocks": [{"name": "a", "points": []}] * 1001, "ground": []})),
     ("a sheet of too many vertices", json.dumps({"do": "draw", "blocks": [{"name": "a", "points": [[0, 0]] * 8001}], "ground": []})),
     ("a number of a thousand digits", '{"do": "set", "changes": {"structure.radius": 1' + "0" * 1000 + "}}"),
-]  # fmt: skip
+]
 
 
 def _filled(page: Page, given: dict[str, Any]) -> dict[str, Any]:
@@ -303,14 +322,15 @@ def test_hostile_messages_are_refused(page: Page, folder: Path, name: str, messa
 @pytest.mark.parametrize(
     "message",
     [
-        {"do": "\ud800"}, {"do": "open", "starter": "\ud800"}, {"do": "hello", "kept": {"text": "", "drops": 1}},
-        {"do": "hello", "kept": {"text": "", "drops": "arch"}}, {"do": "hello", "kept": {"text": "", "drops": [None]}},
+        {"do": "\ud800"},
+        {"do": "open", "starter": "\ud800"},
+        {"do": "hello", "kept": {"text": "", "drops": 1}},
+        {"do": "hello", "kept": {"text": "", "drops": "arch"}},
+        {"do": "hello", "kept": {"text": "", "drops": [None]}},
         {"do": "save", "path": "taken.toml", "replace": True},
     ],
-)  # fmt: skip
-def test_what_a_page_never_sends_is_no_fault_of_the_program(
-    folder: Path, tmp_path: Path, message: dict[str, Any]
-) -> None:
+)
+def test_what_a_page_never_sends_is_no_fault_of_the_program(folder: Path, tmp_path: Path, message: dict[str, Any]) -> None:
     (tmp_path / "taken.toml").mkdir()
     session = Session(tmp_path)
     assert [reply for reply in session.answer({"do": "hello"}) if "scene" in reply.words]
@@ -348,9 +368,7 @@ def test_no_more_pages_than_are_allowed(page: Page) -> None:
             more.recv(10)
 
 
-def test_pages_that_read_nothing_hold_up_nobody_and_lose_their_places(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pages_that_read_nothing_hold_up_nobody_and_lose_their_places(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "UNREAD", 2.0)
     message = b'{"do": "hello"}'
     # masked with zeros, which leaves the bytes as they are; browsers mask at random
@@ -460,23 +478,13 @@ def test_a_bucket_lets_its_rate_pass() -> None:
 
 def test_newer_movements_replace_older_ones_that_wait() -> None:
     inbox = server.Inbox()
-    for message in (
-        {"do": "a", "lane": "x", "k": 1},
-        {"do": "a", "lane": "x", "k": 2},
-        {"do": "b"},
-        {"do": "a", "lane": "x", "k": 3},
-    ):
+    for message in ({"do": "a", "lane": "x", "k": 1}, {"do": "a", "lane": "x", "k": 2}, {"do": "b"}, {"do": "a", "lane": "x", "k": 3}):
         inbox.put(message)
     assert [m.get("k") for m in inbox.waiting] == [2, None, 3]
 
 
 def test_a_frame_is_read_as_it_was_sent() -> None:
-    arrays = {
-        "a": np.arange(5.0),
-        "b": np.array([[1, 2], [3, 4]]),
-        "c": np.array([1, 255], dtype=np.uint8),
-        "d": np.array([1e-20, np.nan]),
-    }
+    arrays = {"a": np.arange(5.0), "b": np.array([[1, 2], [3, 4]]), "c": np.array([1, 255], dtype=np.uint8), "d": np.array([1e-20, np.nan])}
     words, found = unpack(Reply({"x": np.float64(2.0), "y": np.inf}, arrays, frozenset("d")).pack())
     assert words["x"] == 2.0
     assert words["y"] is None

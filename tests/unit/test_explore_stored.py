@@ -22,41 +22,83 @@ BEAM = {"kind": "panel", "width": 0.5, "height": 0.1, "thickness": 0.05}
 BRITTLE = {"young": "32 GPa", "poisson": 0.2, "tensile_strength": "3 MPa", "fracture_energy": "60 N/m"}
 #: A deck of each sort of run, small: its tables, and how many charts each analysis has
 DECKS: dict[str, dict[str, Any]] = {
-    "statics": {"structure": ARCH, "analysis": [
-        {"kind": "tilt"}, {"kind": "thrust"}, {"kind": "moving-load", "count": 5}, {"kind": "supports", "movement": 0.01},
-        {"kind": "sweep", "vary": "thickness", "values": [1.4, 1.5, 1.6]},
-    ]},
-    "rocking": {"structure": ARCH, "motion": SINE, "analysis": [
-        {"kind": "rocking", "end_time": 2.0}, {"kind": "assessment"},
-        {"kind": "failure-domain", "durations": [0.2, 0.4, 0.8], "amplitudes": 6},
-        {"kind": "failure-curves", "durations": [0.2, 0.4, 0.8], "variants": [{"radius": 5.0, "thickness": 0.75}, {}]},
-    ]},
-    "statistics": {"structure": BLOCK, "motion": QUAKES, "analysis": [
-        {"kind": "fragility", "count": 12}, {"kind": "fragility", "count": 12, "levels": [0.3, 0.6, 1.2], "intensity": "pga"},
-        {"kind": "fragility", "count": 12, "durations": [3.0, 5.0]}, {"kind": "motion"},
-    ]},
+    "statics": {
+        "structure": ARCH,
+        "analysis": [
+            {"kind": "tilt"},
+            {"kind": "thrust"},
+            {"kind": "moving-load", "count": 5},
+            {"kind": "supports", "movement": 0.01},
+            {"kind": "sweep", "vary": "thickness", "values": [1.4, 1.5, 1.6]},
+        ],
+    },
+    "rocking": {
+        "structure": ARCH,
+        "motion": SINE,
+        "analysis": [
+            {"kind": "rocking", "end_time": 2.0},
+            {"kind": "assessment"},
+            {"kind": "failure-domain", "durations": [0.2, 0.4, 0.8], "amplitudes": 6},
+            {"kind": "failure-curves", "durations": [0.2, 0.4, 0.8], "variants": [{"radius": 5.0, "thickness": 0.75}, {}]},
+        ],
+    },
+    "statistics": {
+        "structure": BLOCK,
+        "motion": QUAKES,
+        "analysis": [
+            {"kind": "fragility", "count": 12},
+            {"kind": "fragility", "count": 12, "levels": [0.3, 0.6, 1.2], "intensity": "pga"},
+            {"kind": "fragility", "count": 12, "durations": [3.0, 5.0]},
+            {"kind": "motion"},
+        ],
+    },
     "elements": {"structure": BLOCK, "joints": {"normal_stiffness": 1e8}, "motion": SINE, "analysis": [{"kind": "dem", "end_time": 0.5}]},
     "mechanism": {"analysis": [{"kind": "local-mechanism", "mechanism": "wall", "height": 3.0, "thickness": 0.5}]},
     "walls": {
-        "structure": BEAM, "material": BRITTLE,
+        "structure": BEAM,
+        "material": BRITTLE,
         "supports": {"held": [{"x": 0.02, "y": 0, "fix": "xy"}, {"x": 0.48, "y": 0, "fix": "y"}]},
-        "analysis": [{
-            "kind": "sla", "events": 30, "mesh": {"size": 0.02}, "states": [10],
-            "reference": [{"kind": "point", "x": 0.25, "y": 0.1, "fy": "-500 N"}],
-            "control": [{"x": 0.25, "y": 0.0, "direction": "y", "weight": -1}],
-        }],
+        "analysis": [
+            {
+                "kind": "sla",
+                "events": 30,
+                "mesh": {"size": 0.02},
+                "states": [10],
+                "reference": [{"kind": "point", "x": 0.25, "y": 0.1, "fy": "-500 N"}],
+                "control": [{"x": 0.25, "y": 0.0, "direction": "y", "weight": -1}],
+            }
+        ],
     },
     "buildings": {
-        "structure": {"kind": "building", "storeys": [1.5], "walls": [{"name": "strip", "start": [0, 0], "end": [0.5, 0], "thickness": 0.2}]},
+        "structure": {
+            "kind": "building",
+            "storeys": [1.5],
+            "walls": [{"name": "strip", "start": [0, 0], "end": [0.5, 0], "thickness": 0.2}],
+        },
         "material": {"density": 1800, **BRITTLE},
         "analysis": [{"kind": "pushover", "direction": 0, "events": 30, "mesh": {"size": 0.25}}],
     },
-}  # fmt: skip
+}
 #: What is shown beside words and tables
 CHARTS = {
-    "tilt": 0, "thrust": 0, "moving-load": 1, "supports": 0, "sweep": 1, "rocking": 1, "assessment": 2, "failure-domain": 1, "failure-curves": 1,
-    "fragility": 1, "fragility-2": 1, "fragility-3": 1, "motion": 1, "dem": 1, "local-mechanism": 1, "sla": 1, "pushover": 1,
-}  # fmt: skip
+    "tilt": 0,
+    "thrust": 0,
+    "moving-load": 1,
+    "supports": 0,
+    "sweep": 1,
+    "rocking": 1,
+    "assessment": 2,
+    "failure-domain": 1,
+    "failure-curves": 1,
+    "fragility": 1,
+    "fragility-2": 1,
+    "fragility-3": 1,
+    "motion": 1,
+    "dem": 1,
+    "local-mechanism": 1,
+    "sla": 1,
+    "pushover": 1,
+}
 
 
 @functools.lru_cache(maxsize=len(DECKS))
@@ -122,9 +164,7 @@ def test_figures_of_a_stored_run_are_those_of_its_report(tmp_path: Path) -> None
     folder = Folder(tmp_path)
     names = {name: {stem for stem, _ in folder.figures("results", name)} for name in ("thrust", "thrust-2")}
     written = {path.stem for path in out.glob("figures/thrust-*.svg")}
-    assert {f"{name}-{stem}" for name, stems in names.items() for stem in stems} == written and names[
-        "thrust"
-    ] == names["thrust-2"]
+    assert {f"{name}-{stem}" for name, stems in names.items() for stem in stems} == written and names["thrust"] == names["thrust-2"]
     assert all("<svg" in svg for _, svg in folder.figures("results", "thrust"))
     with pytest.raises(NotThere):
         folder.figures("results", "../thrust")

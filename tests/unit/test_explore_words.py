@@ -48,11 +48,7 @@ def test_catalogues_are_whole(path: Path) -> None:
     words = json.loads(path.read_text("utf-8"))
     assert sorted(marked() - words.keys()) == [], "missing"
     assert sorted(words.keys() - marked()) == [], "not on the page"
-    wrong = [
-        text for text, said in words.items() if sorted(re.findall(r"{\d}", text)) != sorted(re.findall(r"{\d}", said))
-    ]
+    wrong = [text for text, said in words.items() if sorted(re.findall(r"{\d}", text)) != sorted(re.findall(r"{\d}", said))]
     assert wrong == [] and all(said.strip() for said in words.values())
-    ends = [
-        text for text, said in words.items() if (text[0] == " ", text[-1] == " ") != (said[0] == " ", said[-1] == " ")
-    ]
+    ends = [text for text, said in words.items() if (text[0] == " ", text[-1] == " ") != (said[0] == " ", said[-1] == " ")]
     assert ends == [], "spaces at the ends"

@@ -21,20 +21,13 @@ from extrados.model.geometry.solids.polyhedra import moments
 
 ARCH = extrados.Arch(radius=10.0, thickness=1.5, embrace=157.5, voussoirs=7)
 DECK = extrados.deck(ARCH, extrados.Tilt(), title='An "arch"')
-BLOCK = extrados.deck(
-    extrados.Block(width=1.0, height=4.0),
-    extrados.Rocking(),
-    motion=extrados.StepPulse(amplitude="0.5 g", duration=0.2),
-)
+BLOCK = extrados.deck(extrados.Block(width=1.0, height=4.0), extrados.Rocking(), motion=extrados.StepPulse(amplitude="0.5 g", duration=0.2))
 
 
 PLANE = {
     "arch": (ARCH, 2e-3),  # COMPAS has chords for arcs
     "column": (extrados.Column(width=1.0, height=3.0, drums=3), 1e-9),
-    "bond": (
-        {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 3, "courses": 4},
-        1e-7,
-    ),
+    "bond": ({"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 3, "courses": 4}, 1e-7),
 }
 SPACE: dict[str, dict[str, Any]] = {
     "cross-vault": {"kind": "cross-vault", "radius": 3.0, "thickness": 0.4, "embrace": 150.0, "voussoirs": 16, "stone_length": 0.9},
@@ -42,11 +35,15 @@ SPACE: dict[str, dict[str, Any]] = {
     "dome": {"kind": "dome", "radius": 5.0, "thickness": 0.6, "embrace": 170.0, "rings": 4, "lunes": 8, "oculus": 30.0},
     "dome in bond": {"kind": "dome", "radius": 5.0, "thickness": 0.6, "rings": 5, "lunes": 8, "bond": "running"},
     "corner": {
-        "kind": "wall", "unit_length": 0.5, "unit_height": 0.25, "thickness": 0.25, "height": 1.0,
+        "kind": "wall",
+        "unit_length": 0.5,
+        "unit_height": 0.25,
+        "thickness": 0.25,
+        "height": 1.0,
         "legs": [{"length": 1.75}, {"length": 1.75}],
     },
     "fluted drums": {"kind": "column", "section": "round", "width": 1.0, "height": 4.0, "drums": 4, "sides": 12, "flute_depth": 0.03},
-}  # fmt: skip
+}
 
 
 def space(name: str) -> Deck:
@@ -98,10 +95,7 @@ def test_concave_stones_of_a_section_are_read_back_in_space(tmp_path: Path) -> N
 def test_what_is_no_geometry_is_said_to_stay_behind(caplog: pytest.LogCaptureFixture) -> None:
     drums = {"kind": "column", "section": "round", "width": 1.0, "height": 3.0, "drums": 3, "dowels": 500.0}
     tied = extrados.deck(structure=ARCH, ties=[TIE], analysis=extrados.Tilt())
-    for deck, words in (
-        (extrados.deck(drums, extrados.Tilt()), "Not exported: dowels"),
-        (tied, "Not exported: [[ties]]"),
-    ):
+    for deck, words in ((extrados.deck(drums, extrados.Tilt()), "Not exported: dowels"), (tied, "Not exported: [[ties]]")):
         for form in ("compas", "udec" if deck is tied else "3dec"):
             caplog.clear()
             extrados.export(deck, form)
@@ -286,7 +280,7 @@ def test_a_script_of_opensees_holds_what_the_deck_holds() -> None:
         ({"structure": WALL, "supports": {"held": [{"edge": "left", "stiffness": 1e9}]}}, "held.*stiffness: .*rigid"),
         ({"structure": WALL | {"ties": [{"edge": "top", "direction": "y"}]}}, "structure.ties: .*no ties of a wall"),
     ],
-)  # fmt: skip
+)
 def test_opensees_leaves_nothing_out_in_silence(tables, words: str) -> None:
     with pytest.raises(extrados.DeckError, match=words):
         extrados.export(extrados.deck(analysis=extrados.Tilt(), **tables), "opensees")

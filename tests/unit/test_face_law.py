@@ -19,14 +19,11 @@ from extrados.model.geometry.solids.assembly import assemble
 def test_mean_distance_of_a_rectangle(b: float, h: float) -> None:
     """By midpoints of a fine grid; pure torsion under an even pressure yields at mu N times it."""
     x, y = ((np.arange(1000) + 0.5) / 1000 - 0.5 for _ in range(2))
-    assert mean_distance(np.array([b]), np.array([h]))[0] == pytest.approx(
-        np.hypot(b * x[:, None], h * y[None]).mean(), rel=1e-5
-    )
+    assert mean_distance(np.array([b]), np.array([h]))[0] == pytest.approx(np.hypot(b * x[:, None], h * y[None]).mean(), rel=1e-5)
 
 
 @pytest.mark.parametrize(
-    ("friction", "direction", "other"),
-    [(0.65, 90.0, 0.331), (0.65, 270.0, 0.311), (0.4, 90.0, 0.297), (0.4, 270.0, 0.281)],
+    ("friction", "direction", "other"), [(0.65, 90.0, 0.331), (0.65, 270.0, 0.311), (0.4, 90.0, 0.297), (0.4, 270.0, 0.281)]
 )
 def test_the_corner_of_the_reference(friction: float, direction: float, other: float) -> None:
     """Another program of the same law, whose last changes were up to .002."""
@@ -45,15 +42,14 @@ def test_a_block_without_torsion_keeps_its_capacity() -> None:
 def test_both_are_told_where_they_differ(tmp_path: Path) -> None:
     (tmp_path / "c.obj").write_text(obj(corner()))
     tables = {
-        "structure": {"kind": "blocks", "file": "c.obj"}, "joints": {"friction": 0.65},
+        "structure": {"kind": "blocks", "file": "c.obj"},
+        "joints": {"friction": 0.65},
         "analysis": {"kind": "tilt", "direction": 90.0, "rose": 4, "starts": 1},
-    }  # fmt: skip
+    }
     (result,) = run_analyses(Context(make_deck(tables, tmp_path), threads=1))
     r = result.results
     assert r.collapse_acceleration_face_law_g < 0.97 * r.collapse_acceleration_g
     assert any("face law" in w and "Faces twist along 90 degrees" in w for w in result.warnings)
-    without = run(
-        {"kind": "column", "width": 1.0, "height": 0.5, "drums": 1}, 0.4, direction=0.0, rose=4, face_law=True
-    )
+    without = run({"kind": "column", "width": 1.0, "height": 0.5, "drums": 1}, 0.4, direction=0.0, rose=4, face_law=True)
     assert without.results.collapse_acceleration_face_law_g == pytest.approx(0.4, abs=1e-4)
     assert not any("face law" in w for w in without.warnings)

@@ -27,9 +27,7 @@ def test_variants_are_the_structures_themselves(tmp_path: Path) -> None:
     """A curve of a variant is that of a deck with that structure."""
     both = run(tmp_path, "variants = [{ width = 0.5 }, { width = 0.7 }]")["failure-curves"].curves
     for curve, width in zip(both, ("0.5", "0.7"), strict=True):
-        alone = run(tmp_path, "", structure=BLOCK.replace("width = 0.5", f"width = {width}"))["failure-curves"].curves[
-            0
-        ]
+        alone = run(tmp_path, "", structure=BLOCK.replace("width = 0.5", f"width = {width}"))["failure-curves"].curves[0]
         assert curve.label == f"width {width} m"
         assert curve.amplitudes_g == alone.amplitudes_g
     assert both[0].amplitudes_g[1] < both[1].amplitudes_g[1]
@@ -82,10 +80,7 @@ def test_refusals(tmp_path: Path) -> None:
     for options, text in (
         ('pulse = "step"\ncycles = [2]', "comes once"),
         ("cycles = [2, 2]", "twice"),
-        (
-            "variants = [{ width = 0.4 }, { width = 0.5 }, { width = 0.6 }]\ncycles = [1, 2, 3, 4, 5, 6, 7, 8, 9]",
-            "24 curves",
-        ),
+        ("variants = [{ width = 0.4 }, { width = 0.5 }, { width = 0.6 }]\ncycles = [1, 2, 3, 4, 5, 6, 7, 8, 9]", "24 curves"),
     ):
         with pytest.raises(Exception, match=text):
             run(tmp_path, options)

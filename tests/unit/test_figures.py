@@ -14,14 +14,7 @@ from extrados.show.sla import near_the_peak
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 #: Quick decks whose figures are unlike each other
-SOME = (
-    "vault/vezelay-like",
-    "arch/readme",
-    "rocking/facade",
-    "dem/column",
-    "limit/tied-frame",
-    "codes/facade",
-)
+SOME = ("vault/vezelay-like", "arch/readme", "rocking/facade", "dem/column", "limit/tied-frame", "codes/facade")
 
 
 @pytest.mark.parametrize("case", SOME)

@@ -38,11 +38,7 @@ DOORS = {
     "survey": lambda name: {"structure": ARCH, "analysis": {"kind": "survey", "file": name}},
     "json": lambda name: {"structure": {"kind": "blocks", "file": name}, "analysis": {"kind": "tilt"}},
     "dxf": lambda name: {"structure": {"kind": "blocks", "file": name}, "analysis": {"kind": "tilt"}},
-    "mesh": lambda name: {
-        "structure": {"kind": "mesh", "file": name, "thickness": 0.1},
-        "material": WALL,
-        "analysis": {"kind": "sla"},
-    },
+    "mesh": lambda name: {"structure": {"kind": "mesh", "file": name, "thickness": 0.1}, "material": WALL, "analysis": {"kind": "sla"}},
     "outline": lambda name: {
         "structure": {"kind": "panel", "outline": name, "outline_unit": "m", "thickness": 0.1},
         "material": WALL,
@@ -54,11 +50,7 @@ DOORS = {
         "motion": {"kind": "suite", "files": ["extrados:el-centro-1940"]},
         "analysis": {"kind": "fragility", "levels": [0.1, 0.2], "hazard": {"file": name}},
     },
-    "resume_from": lambda name: {
-        "structure": PANEL,
-        "material": WALL,
-        "analysis": {"kind": "sla", "resume_from": name},
-    },
+    "resume_from": lambda name: {"structure": PANEL, "material": WALL, "analysis": {"kind": "sla", "resume_from": name}},
 }
 SUFFIX = {"json": ".json", "dxf": ".dxf", "outline": ".dxf", "mesh": ".inp", "resume_from": ""}
 
@@ -153,9 +145,7 @@ def test_a_link_that_is_put_there_while_we_look_is_not_followed(tmp_path) -> Non
     found = []
     try:
         tries = 0
-        while (
-            tries < 3000 or "within" not in found
-        ):  # on a busy machine the other thread may long have the better of it
+        while tries < 3000 or "within" not in found:  # on a busy machine the other thread may long have the better of it
             tries += 1
             try:
                 found.append(files.read("sub/a.txt", LARGEST, inside).text())

@@ -50,10 +50,7 @@ def test_a_stiff_building_moves_with_the_ground() -> None:
 
 def test_every_strategy_takes_the_motion_of_the_floor() -> None:
     asked = {"kind": "assess", "strategies": ["tilt", "rocking", "assessment", "code-checks"], "budget": 5.0}
-    low, high = (
-        extrados.run({"structure": BLOCK, "motion": {**RECORD, **more}, "analysis": asked})
-        for more in ({}, {"floor": BELOW})
-    )
+    low, high = (extrados.run({"structure": BLOCK, "motion": {**RECORD, **more}, "analysis": asked}) for more in ({}, {"floor": BELOW}))
     rows = [{v.strategy: v for v in r["assess"].verdicts} for r in (low, high)]
     peak = high["assess"].hazard.peak_ground_acceleration_g
     assert peak > 1.5 * low["assess"].hazard.peak_ground_acceleration_g
@@ -65,11 +62,7 @@ def test_every_strategy_takes_the_motion_of_the_floor() -> None:
     assert checks["NTC activation (on its floor)"].demand == pytest.approx(peak), "not amplified again"
     # with the spectrum of a code the floor spectrum is the demand, by the same building
     site = {"code": "EN1998-1", "ground": "B", "acceleration": "0.15 g"}
-    coded = {
-        "structure": BLOCK,
-        "motion": {**RECORD, "floor": BELOW},
-        "analysis": {"kind": "code-checks", "spectrum": site},
-    }
+    coded = {"structure": BLOCK, "motion": {**RECORD, "floor": BELOW}, "analysis": {"kind": "code-checks", "spectrum": site}}
     demand = extrados.run(coded)["code-checks"].checks["NTC activation (at height z)"].demand
     assert demand == pytest.approx(2.5 * 0.18 * 9.0 / 7.0 * 0.8 * np.sqrt(1.01))
     table = {"kind": "local-mechanism", "mechanism": "building", "spectrum": site}
@@ -81,26 +74,16 @@ def test_sets_of_motions_stand_on_the_floor_too() -> None:
     keys = {"kind": "generated", "mmi": 7.0, "duration": 6.0, "seed": 3}
     ask = {"kind": "fragility", "count": 6}
     low, high = (
-        extrados.run({"structure": BLOCK, "motion": {**keys, **more}, "analysis": ask})["fragility"]
-        for more in ({}, {"floor": BELOW})
+        extrados.run({"structure": BLOCK, "motion": {**keys, **more}, "analysis": ask})["fragility"] for more in ({}, {"floor": BELOW})
     )
     assert high.median_pga_g > 1.5 * low.median_pga_g
     made = generated(7.0, 6.0, seed=3).batch(0, 2)
     moved = sway_of(floor()).accelerations(made, 0.01)
     single = extrados.run({"motion": {**keys, "floor": BELOW, "member": 2}, "analysis": {"kind": "motion", "count": 2}})
     assert single is not None and np.abs(moved[1]).max() > np.abs(made[1]).max()
-    spectrum = {
-        "kind": "compatible",
-        "code": "EN1998-1",
-        "ground": "B",
-        "acceleration": "0.1 g",
-        "duration": 8.0,
-        "tolerance": 0.3,
-    }
+    spectrum = {"kind": "compatible", "code": "EN1998-1", "ground": "B", "acceleration": "0.1 g", "duration": 8.0, "tolerance": 0.3}
     low, high = (
-        Context(
-            make_deck({"structure": BLOCK, "motion": {**spectrum, **more}, "analysis": {"kind": "tilt"}})
-        ).motion.peak
+        Context(make_deck({"structure": BLOCK, "motion": {**spectrum, **more}, "analysis": {"kind": "tilt"}})).motion.peak
         for more in ({}, {"floor": BELOW})
     )
     assert high > 1.5 * low
@@ -108,13 +91,7 @@ def test_sets_of_motions_stand_on_the_floor_too() -> None:
 
 def test_a_floor_above_the_top_of_its_building_is_refused() -> None:
     with pytest.raises(DeckError, match="above the top of the building"):
-        make_deck(
-            {
-                "structure": BLOCK,
-                "motion": {**RECORD, "floor": {**BELOW, "height": 12.0}},
-                "analysis": {"kind": "rocking"},
-            }
-        )
+        make_deck({"structure": BLOCK, "motion": {**RECORD, "floor": {**BELOW, "height": 12.0}}, "analysis": {"kind": "rocking"}})
 
 
 def test_the_floor_spectrum_of_the_code_bounds_the_response_of_oscillators_on_the_floor() -> None:

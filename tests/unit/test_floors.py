@@ -40,25 +40,14 @@ def pull_of(mesh, moved, name):
 
 def facing(thickness=0.25, length=2.0, gap=4.0, height=3.0, **more):
     """Two walls along x that face each other and touch no other."""
-    walls = [
-        {"name": name, "start": [0.0, y], "end": [length, y], "thickness": thickness}
-        for name, y in (("a", 0.0), ("b", gap))
-    ]
+    walls = [{"name": name, "start": [0.0, y], "end": [length, y], "thickness": thickness} for name, y in (("a", 0.0), ("b", gap))]
     return {"storeys": [height], "walls": walls, **more}
 
 
 def box(**floor):
     """Four walls around a floor, one of them twice as thick as the others."""
-    sides = (
-        ("1", (0, 0), (5, 0), 0.4),
-        ("B", (5, 0), (5, 4), 0.2),
-        ("2", (5, 4), (0, 4), 0.2),
-        ("A", (0, 4), (0, 0), 0.2),
-    )
-    walls = [
-        {"name": name, "start": list(map(float, a)), "end": list(map(float, b)), "thickness": t}
-        for name, a, b, t in sides
-    ]
+    sides = (("1", (0, 0), (5, 0), 0.4), ("B", (5, 0), (5, 4), 0.2), ("2", (5, 4), (0, 4), 0.2), ("A", (0, 4), (0, 0), 0.2))
+    walls = [{"name": name, "start": list(map(float, a)), "end": list(map(float, b)), "thickness": t} for name, a, b, t in sides]
     return {"storeys": [3.0], "walls": walls, "floors": [{"storey": 1, "load": 3e3, **floor}]}
 
 
@@ -98,13 +87,13 @@ def test_the_load_of_a_floor_goes_to_the_walls_that_bear_it():
 def test_joists_hold_a_wall_at_one_that_is_propped():
     """One wall's top is propped. Through stiff joists the other is a propped cantilever too: they pull or push by three
     eighths of its load, but for what the joists give; their stiffness is that of their wood."""
-    floor = {"storey": 1, "kind": "joists", "young": 10e9, "joist_area": 0.02, "joist_spacing": 0.5, "bears_on": ["a", "b"],
-             "walls": None}  # fmt: skip
+    floor = {"storey": 1, "kind": "joists", "young": 10e9, "joist_area": 0.02, "joist_spacing": 0.5, "bears_on": ["a", "b"], "walls": None}
     plan = facing(props=[{"wall": "a", "storey": 1}])
     # Joists lie between walls of a ring: thin ends that nothing holds close it
     plan["walls"] += [
-        {"name": "c", "start": [0.0, 0.0], "end": [0.0, 4.0], "thickness": 1e-4}, {"name": "d", "start": [2.0, 0.0], "end": [2.0, 4.0], "thickness": 1e-4},
-    ]  # fmt: skip
+        {"name": "c", "start": [0.0, 0.0], "end": [0.0, 4.0], "thickness": 1e-4},
+        {"name": "d", "start": [2.0, 0.0], "end": [2.0, 4.0], "thickness": 1e-4},
+    ]
     plan["floors"] = [floor]
     mesh, _, _, moved = solved(plan, direction=90.0, size=0.25)
     joists = [bar for bar in mesh.bars if bar.name.endswith("joists")]

@@ -15,12 +15,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
 from extrados.analyses.statistics import summaries
 from extrados.analyses.statistics.fragility import EnsembleJob
-from extrados.analyses.statistics.resonance import (
-    cap_for_collapse_within,
-    half_cycles_to_collapse,
-    least_cap,
-    optimal_motion,
-)
+from extrados.analyses.statistics.resonance import cap_for_collapse_within, half_cycles_to_collapse, least_cap, optimal_motion
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.structures.block import make_block
@@ -36,13 +31,7 @@ BLOCK = {"kind": "block", "width": 0.1, "height": 0.4}
 GENERATED = {"kind": "generated", "mmi": 7, "duration": 4.0, "seed": 3}
 
 
-def run(
-    analysis: dict,
-    structure: dict = BLOCK,
-    motion: dict | None = GENERATED,
-    folder: Path | None = None,
-    code: dict | None = None,
-):
+def run(analysis: dict, structure: dict = BLOCK, motion: dict | None = GENERATED, folder: Path | None = None, code: dict | None = None):
     deck = {"structure": structure, "analysis": analysis, **({"code": code} if code else {})}
     if motion:
         deck["motion"] = motion
@@ -54,13 +43,7 @@ def test_shares_are_those_of_single_runs() -> None:
     result = run({"kind": "fragility", "count": 12})
     outcome = result.arrays["outcome"].data
     for k in (0, 5, 11):
-        one = extrados.run(
-            {
-                "structure": BLOCK,
-                "motion": {**GENERATED, "member": k + 1},
-                "analysis": {"kind": "rocking", "end_time": 8.0},
-            }
-        )
+        one = extrados.run({"structure": BLOCK, "motion": {**GENERATED, "member": k + 1}, "analysis": {"kind": "rocking", "end_time": 8.0}})
         assert one["rocking"]["outcome"] == rocking.OUTCOMES[outcome[k]]
         assert one["rocking"]["peak_rotation_ratio"] == pytest.approx(result.arrays["peak_ratio"].data[k], rel=1e-9)
     r = result.results
@@ -113,9 +96,7 @@ def test_curve_and_resurrections() -> None:
         return -np.sum(np.log(np.diff(p)[first]))
 
     best = minimize(loss, [-0.7, -0.7], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
-    assert (r["first_collapse_median"], r["first_collapse_dispersion"]) == pytest.approx(
-        tuple(np.exp(best.x)), rel=1e-6
-    )
+    assert (r["first_collapse_median"], r["first_collapse_dispersion"]) == pytest.approx(tuple(np.exp(best.x)), rel=1e-6)
     low, high = r["first_collapse_median_interval"]
     assert low < r["first_collapse_median"] < high
 
@@ -135,11 +116,7 @@ def test_uncertain_values_are_sampled_evenly() -> None:
     assert not np.array_equal(result.arrays["peak_ratio"].data, plain.arrays["peak_ratio"].data)
     from extrados.analyses.statistics.uncertain import sampled
 
-    context = Context(
-        make_deck(
-            {"structure": BLOCK, "motion": GENERATED, "analysis": {"kind": "fragility", "uncertain": {"width": 0.1}}}
-        )
-    )
+    context = Context(make_deck({"structure": BLOCK, "motion": GENERATED, "analysis": {"kind": "fragility", "uncertain": {"width": 0.1}}}))
     made = sampled(context, context.deck.analyses[0], context.building.rocker(), 256)
     # kind and number of the parameters of the block stand before them
     tangent = np.array([body.parameters[6] / body.parameters[5] for body in made.bodies])
@@ -156,8 +133,13 @@ def test_sobol_indices_are_those_of_a_full_factorial() -> None:
     spread = np.sqrt(np.log1p(0.1**2))
     factors = np.exp(spread * norm.ppf((np.arange(64) + 0.5) / 64) - 0.5 * spread**2)
     models = [BlockModel(make_block(0.1 * f, 0.4)) for f in factors]
-    grounds = [make_motion(make_deck({"structure": BLOCK, "motion": {**motion, "seed": 5, "member": k + 1},
-                                      "analysis": {"kind": "rocking"}}).motion, Path()).ground for k in range(16)]  # fmt: skip
+    grounds = [
+        make_motion(
+            make_deck({"structure": BLOCK, "motion": {**motion, "seed": 5, "member": k + 1}, "analysis": {"kind": "rocking"}}).motion,
+            Path(),
+        ).ground
+        for k in range(16)
+    ]
     body, index = (v.ravel() for v in np.meshgrid(np.arange(64), np.arange(16), indexing="ij"))
     end = np.array([g.end for g in grounds])[index] + 40.0 / BlockModel(make_block(0.1, 0.4)).frequency[0]
     runs = rocking.ensemble([m.body for m in models], grounds, body, index, np.ones(1024), end, threads=2)
@@ -199,18 +181,14 @@ def test_a_broken_record_fails_alone(tmp_path: Path) -> None:
 
 def test_durations() -> None:
     result = run(
-        {"kind": "fragility", "count": 40, "durations": [1.0, 4.0, 8.0]},
-        motion={**GENERATED, "mmi": 5, "scaling": "thesis", "factor": 5.0},
+        {"kind": "fragility", "count": 40, "durations": [1.0, 4.0, 8.0]}, motion={**GENERATED, "mmi": 5, "scaling": "thesis", "factor": 5.0}
     )
     mean = result.results["mean_peak_rotation_ratio"]
     assert result.results["count"] == [40, 40, 40] and len(result.results["collapsed"]) == 3
     assert "of 1 s" in result.verdict.statement or "of 8 s" in result.verdict.statement
     assert len(mean) == 3 and mean[0] < mean[2]
     assert (
-        run(
-            {"kind": "fragility", "durations": [1.0]}, motion={"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}
-        ).status
-        == "refused"
+        run({"kind": "fragility", "durations": [1.0]}, motion={"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}).status == "refused"
     )
 
 
@@ -241,10 +219,7 @@ def test_refusals() -> None:
     assert "expected at most 1" in run({"kind": "fragility", "count": 2}, motion=pulse).reason
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.15, "embrace": 157.5, "voussoirs": 7}
     assert "does not belong" in run({"kind": "fragility", "count": 2, "uncertain": {"width": 0.1}}, arch).reason
-    ok = run(
-        {"kind": "fragility", "count": 8, "uncertain": {"thickness": 0.05}, "joints": {"restitution": "energy-safe"}},
-        arch,
-    )
+    ok = run({"kind": "fragility", "count": 8, "uncertain": {"thickness": 0.05}, "joints": {"restitution": "energy-safe"}}, arch)
     assert ok.status == "ok" and ok.results["count"] == 8
 
 
@@ -252,15 +227,7 @@ def test_least_cap_is_where_the_optimal_motion_grows() -> None:
     """Closed form by energies against the integrated response with the sign changed at every turning point."""
     block = BlockModel(make_block(0.5, 1.0))
     model = Rocker(
-        "block",
-        "block",
-        block,
-        block.body,
-        0.5,
-        tuple(block.alpha),
-        float(block.restitution[0]),
-        float(1 / block.frequency[0]),
-        0.5,
+        "block", "block", block, block.body, 0.5, tuple(block.alpha), float(block.restitution[0]), float(1 / block.frequency[0]), 0.5
     )
     least = float(least_cap(block, 0.1))
     for factor, grows in ((0.995, False), (1.005, True)):
@@ -276,9 +243,7 @@ def test_least_cap_is_where_the_optimal_motion_grows() -> None:
 def test_rocking_spectrum_of_one_block_is_its_response() -> None:
     motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.3}
     result = run(
-        {"kind": "rocking-spectrum", "periods": [2.0, 3.0], "slenderness": [15.0]},
-        {"kind": "block", "width": 1.0, "height": 1.0},
-        motion,
+        {"kind": "rocking-spectrum", "periods": [2.0, 3.0], "slenderness": [15.0]}, {"kind": "block", "width": 1.0, "height": 1.0}, motion
     )
     radius = 0.75 * G / np.pi**2
     alpha = np.radians(15.0)
@@ -291,19 +256,11 @@ def test_rocking_spectrum_of_one_block_is_its_response() -> None:
 def test_rocking_spectrum_of_arches() -> None:
     """The arch of the deck itself is one point of its own spectrum."""
 
-    arch = {
-        "kind": "arch",
-        "radius": 1.0,
-        "thickness": 0.15,
-        "embrace": 157.5,
-        "voussoirs": 21,
-    }
+    arch = {"kind": "arch", "radius": 1.0, "thickness": 0.15, "embrace": 157.5, "voussoirs": 21}
     joints = {"restitution": "energy-safe"}
     motion = {"kind": "step-pulse", "amplitude": "0.6 g", "duration": 0.1}
     context = Context(
-        make_deck(
-            {"structure": arch, "motion": motion, "analysis": {"kind": "rocking", "hand_over": False, "joints": joints}}
-        )
+        make_deck({"structure": arch, "motion": motion, "analysis": {"kind": "rocking", "hand_over": False, "joints": joints}})
     )
     context.building = context.deck.buildings[0]
     period = 2.0 * np.pi * context.building.rocker().time_unit
@@ -331,10 +288,7 @@ def test_code_checks_against_the_formulas() -> None:
     assert ratio.capacity * G == pytest.approx((2 * np.pi * frequency) ** 2 * th * h, rel=1e-12)
     a, v = ishiyama(1.0, 4.0, 0.3, 0.4)
     assert (
-        a.capacity == 0.25
-        and v.capacity == pytest.approx(10 * 100 / np.sqrt(400) / 100)
-        and a.verdict == "fails"
-        and v.verdict == "holds"
+        a.capacity == 0.25 and v.capacity == pytest.approx(10 * 100 / np.sqrt(400) / 100) and a.verdict == "fails" and v.verdict == "holds"
     )
     strong = {x.rule: x.capacity for x in formulas_of_piers(2.0, 3.0, 0.3, 200e3, 3e6, 0.1e6, 0.4, False)}
     assert strong["FEMA 356 rocking"] == pytest.approx(0.9 * 0.5 * 200e3 * 2 / 3)
@@ -344,15 +298,15 @@ def test_code_checks_against_the_formulas() -> None:
 
 
 def test_panel_as_a_pier() -> None:
-    wall = {
-        "kind": "panel", "width": 1.0, "height": 2.0, "thickness": 0.25,
-    }  # fmt: skip
-    pier = {"kind": "code-checks", "axial_load": "100 kN", "joints": {"cohesion": "0.2 MPa"},
-            "material": {"compressive_strength": "4 MPa", "density": 1800.0}}  # fmt: skip
+    wall = {"kind": "panel", "width": 1.0, "height": 2.0, "thickness": 0.25}
+    pier = {
+        "kind": "code-checks",
+        "axial_load": "100 kN",
+        "joints": {"cohesion": "0.2 MPa"},
+        "material": {"compressive_strength": "4 MPa", "density": 1800.0},
+    }
     result = run(pier, wall, motion=None, code={"jurisdiction": "none", "research": ["FEMA 356"]})
-    assert (
-        not any("Magenes" in name for name in result.results["checks"]) and result.verdict.outcome == "not-applicable"
-    )
+    assert not any("Magenes" in name for name in result.results["checks"]) and result.verdict.outcome == "not-applicable"
     load = 100e3 + 1800.0 * 0.5 * G
     assert result.results["checks"]["FEMA 356 rocking"]["capacity"] == pytest.approx(0.9 * 0.5 * load * 1.0 / 2.0)
     assert result.results["checks"]["FEMA 356 bed-joint sliding"]["capacity"] == pytest.approx(
@@ -410,9 +364,7 @@ def test_one_verdict_of_all_code_checks() -> None:
     assert fallen.verdict.outcome == "stands", "a formula of other origin decides nothing"
     plain = run({"kind": "code-checks", "peak_acceleration": "0.25 g"}, block, motion=None)
     assert set(plain.results["checks"]) == {"NTC nonlinear", "NTC linear (at the ground)"}, "only where requested"
-    crushed = run(
-        {"kind": "code-checks", "axial_load": "10 MN", "material": {"compressive_strength": "2 MPa"}}, motion=None
-    )
+    crushed = run({"kind": "code-checks", "axial_load": "10 MN", "material": {"compressive_strength": "2 MPa"}}, motion=None)
     assert crushed.status == "refused" and "crushes" in crushed.reason
 
 
@@ -450,7 +402,14 @@ def test_rows_that_stay_on_disk_give_the_same(tmp_path, monkeypatch) -> None:
 def test_memory_does_not_grow_with_the_rows_on_disk(tmp_path, monkeypatch) -> None:
     """All that Python and numpy take for four times as many rows, from the first batch to the last file, figures left out:
     with rows in memory it grows by 100 bytes each."""
-    for where, name in ((batches, "IN_MEMORY"), (batches, "PIECE"), (batches, "LARGEST_BATCH"), (summaries, "FEW"), (store, "LARGE"), (store, "CSV_ROWS")):  # fmt: skip
+    for where, name in (
+        (batches, "IN_MEMORY"),
+        (batches, "PIECE"),
+        (batches, "LARGEST_BATCH"),
+        (summaries, "FEW"),
+        (store, "LARGE"),
+        (store, "CSV_ROWS"),
+    ):
         monkeypatch.setattr(where, name, 500)
     monkeypatch.setattr(store, "SMALL", 1)
 
@@ -458,9 +417,11 @@ def test_memory_does_not_grow_with_the_rows_on_disk(tmp_path, monkeypatch) -> No
         random = np.random.default_rng(first)
         names = ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity")
         return {
-            "outcome": random.integers(1, 3, count).astype(np.int8), "half_cycles": np.ones(count, np.int32),
-            **{name: random.random(count) for name in names}, "reason": np.full(count, ""),
-        }  # fmt: skip
+            "outcome": random.integers(1, 3, count).astype(np.int8),
+            "half_cycles": np.ones(count, np.int32),
+            **{name: random.random(count) for name in names},
+            "reason": np.full(count, ""),
+        }
 
     monkeypatch.setattr(EnsembleJob, "run", rows)
     most = {}

@@ -20,14 +20,19 @@ def deck(*analyses, corners="bonded", **changes):
         {"name": "left", "start": [0, 4], "end": [0, 0], "thickness": 0.3},
     ]
     structure = {
-        "kind": "building", "storeys": [3.0], "walls": walls, "corners": corners,
+        "kind": "building",
+        "storeys": [3.0],
+        "walls": walls,
+        "corners": corners,
         "floors": [{"storey": 1, "kind": "rigid"}],
-    } | changes  # fmt: skip
+    } | changes
     return {
-        "title": "room", "structure": structure,
+        "title": "room",
+        "structure": structure,
         "material": {"density": DENSITY, "young": YOUNG, "poisson": 0.25, "compressive_strength": STRENGTH},
-        "joints": {"cohesion": 0.1e6}, "analysis": list(analyses),
-    }  # fmt: skip
+        "joints": {"cohesion": 0.1e6},
+        "analysis": list(analyses),
+    }
 
 
 PUSH = {"kind": "frame-pushover", "patterns": ["uniform"], "eccentricities": [0.0], "frame": {"second_order": False}}

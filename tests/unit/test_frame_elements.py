@@ -66,9 +66,14 @@ def bench(height=3.0, top="free", **changes) -> Frame:
     """One pier on a held foot under N; freedoms of its top: u, w and, where it may turn, its rotation."""
     turns = top == "free"
     own = {
-        "freedoms": (-1, -1, -1, 0, 1, 2 if turns else -1), "length": height, "depth": L, "thickness": T, "young": E,
-        "shear_stiffness": FREE, "second_order": False,
-    } | changes  # fmt: skip
+        "freedoms": (-1, -1, -1, 0, 1, 2 if turns else -1),
+        "length": height,
+        "depth": L,
+        "thickness": T,
+        "young": E,
+        "shear_stiffness": FREE,
+        "second_order": False,
+    } | changes
     n = 3 if turns else 2
     weight = np.zeros(n)
     weight[1] = -N
@@ -138,15 +143,7 @@ def test_rigid_cantilever_of_second_order():
 def test_shear_of_the_damage_law():
     g, c, mu, ct, beta = 5e5, 100.0, 0.4, 3.0, 0.5
     stiff = g * L * T / 3.0
-    frame = bench(
-        top="fixed",
-        young=E_RIGID,
-        shear_stiffness=stiff,
-        shear="damage",
-        cohesion=c,
-        friction=mu,
-        damage=(ct / g, beta),
-    )
+    frame = bench(top="fixed", young=E_RIGID, shear_stiffness=stiff, shear="damage", cohesion=c, friction=mu, damage=(ct / g, beta))
     path = push(frame, 0.019, 2000)
     slip = path.control - path.multiple * (1.0 / stiff + 3.0**3 / (E_RIGID * T * L**3))
     for s, expected in ((0.225e-3, 232.0), (1.8e-3, 272.0), (3.6e-3, 255.50), (14.4e-3, 232.0)):
@@ -172,8 +169,9 @@ def test_shear_strength_of_a_pier(law, height, expected):
 
 def test_strength_is_lost_beyond_a_drift_limit():
     """Shear limits at 0.4 %: the force falls to nothing at that drift, and the weight is still carried."""
-    frame = bench(top="fixed", shear_stiffness=G * L * T / 3.6, shear="turnsek-cacovic", tension=150.0, slenderness=1.5,
-                  drifts=(0.01, 0.004))  # fmt: skip
+    frame = bench(
+        top="fixed", shear_stiffness=G * L * T / 3.6, shear="turnsek-cacovic", tension=150.0, slenderness=1.5, drifts=(0.01, 0.004)
+    )
     path = push(frame, 0.03, 200)
     lost = np.flatnonzero(path.state[:, 0] == 5)[0]
     assert path.control[lost] / 3.0 == pytest.approx(0.004, abs=1e-4)
@@ -187,9 +185,19 @@ def test_beam_between_hinges_and_what_it_keeps():
     depth, length, strength = 0.8, 1.2, 20.0
     shear = G * depth * T / (1.2 * length)
     own = MacroElement(
-        (-1, -1, -1, -1, 0, -1), length, depth, T, E, shear, pier=False, upright=False, moment=strength,
-        drifts=(0.015, 0.005), kept=0.4, second_order=False,
-    )  # fmt: skip
+        (-1, -1, -1, -1, 0, -1),
+        length,
+        depth,
+        T,
+        E,
+        shear,
+        pier=False,
+        upright=False,
+        moment=strength,
+        drifts=(0.015, 0.005),
+        kept=0.4,
+        second_order=False,
+    )
     frame = Frame([own], [], np.zeros((1, 1)), np.array([1e-9]), np.zeros((1, 1)))
     bending = 12 * E * T * depth**3 / 12 / length**3
     stiff = 1.0 / (1.0 / bending + 1.0 / shear)
@@ -223,9 +231,19 @@ def test_cyclic_pushes_dissipate():
     """A slow motion to and fro: the work on crushing, sliding sections is never negative over a cycle."""
     g = 5e5
     own = MacroElement(
-        (-1, -1, -1, 0, 1, -1), 3.0, L, T, E, g * L * T / 3.0, F, shear="damage", cohesion=100.0, friction=0.4,
-        damage=(3.0 / g, 0.5), second_order=False,
-    )  # fmt: skip
+        (-1, -1, -1, 0, 1, -1),
+        3.0,
+        L,
+        T,
+        E,
+        g * L * T / 3.0,
+        F,
+        shear="damage",
+        cohesion=100.0,
+        friction=0.4,
+        damage=(3.0 / g, 0.5),
+        second_order=False,
+    )
     mass, period = 1e-3, 1.0
     driver = 1e7  # a stiff spring moved by the ground: u follows the signal
     frame = Frame([own], [], np.diag([driver, 0.0]), np.array([0.0, -N]), np.diag([mass, 0.0]))

@@ -54,9 +54,13 @@ def test_pushovers_carry_what_the_verification_gives():
     """N2 over the same motions by `frame-pushover` with `verification.motions`: the same collapse at SLC."""
     (fragile,) = extrados.run(given(by="pushover"), threads=1).analyses
     push = {
-        "kind": "frame-pushover", "directions": [90.0], "eccentricities": [0.0], "frame": FRAME, "out_of_plane": False,
+        "kind": "frame-pushover",
+        "directions": [90.0],
+        "eccentricities": [0.0],
+        "frame": FRAME,
+        "out_of_plane": False,
         "verification": {"motions": 3, "shape": "mode"},
-    }  # fmt: skip
+    }
     code = {"jurisdiction": "NTC", "limit_states": ["SLC"], "confidence_factor": 1.0}
     (other,) = extrados.run(deck(push, floors=FLOOR) | {"motion": MOTION, "code": code}, threads=1).analyses
     (expected,) = other["results"]["verification"]["fragility"]
@@ -69,9 +73,7 @@ def test_uncertain_values_multiply_what_they_name():
     made = make_deck(given())
     options, building = made.analyses[0].frame, made.building
     plain = varied(building, options, {})
-    other = varied(
-        building, options, {"strength": 1.2, "cohesion": 1.5, "young": 0.8, "drift_shear": 0.5, "density": 1.1}
-    )
+    other = varied(building, options, {"strength": 1.2, "cohesion": 1.5, "young": 0.8, "drift_shear": 0.5, "density": 1.1})
     for a, b in zip(plain.elements, other.elements, strict=True):
         assert b.cohesion == pytest.approx(1.8 * a.cohesion) and b.tension == pytest.approx(1.2 * a.tension)
         assert b.strength == pytest.approx(1.2 * a.strength) and b.young == pytest.approx(0.8 * a.young)

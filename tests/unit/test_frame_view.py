@@ -16,11 +16,7 @@ WINDOW, DOOR, FREE = Side(0.9, 2.3), Side(0.0, 2.2), Side()
 
 @pytest.mark.parametrize(
     ("depth", "left", "right", "dolce", "lagomarsino"),
-    [
-        (1.5, FREE, WINDOW, (0.373, 2.744), 2.2),
-        (1.3, WINDOW, DOOR, (0.365, 2.410), 1.8),
-        (1.0, DOOR, FREE, (0.0, 2.557), 2.6),
-    ],
+    [(1.5, FREE, WINDOW, (0.373, 2.744), 2.2), (1.3, WINDOW, DOOR, (0.365, 2.410), 1.8), (1.0, DOOR, FREE, (0.0, 2.557), 2.6)],
 )
 def test_worked_wall(depth, left, right, dolce, lagomarsino):
     """A wall of 6 m and 3 m height with a window and a door, worked by hand; and its mirror image."""
@@ -38,10 +34,13 @@ def box(floor="rigid", **changes):
         {"name": "right", "start": [6, 0], "end": [6, 4], "thickness": 0.3},
         {"name": "back", "start": [6, 4], "end": [0, 4], "thickness": 0.4},
         {"name": "left", "start": [0, 4], "end": [0, 0], "thickness": 0.3},
-    ]  # fmt: skip
+    ]
     structure = {
-        "kind": "building", "storeys": [3.0], "walls": walls, "floors": [{"storey": 1, "load": 4e3, "bears_on": ["front", "back"], **kind}],
-    } | changes  # fmt: skip
+        "kind": "building",
+        "storeys": [3.0],
+        "walls": walls,
+        "floors": [{"storey": 1, "load": 4e3, "bears_on": ["front", "back"], **kind}],
+    } | changes
     return make_deck(
         {
             "structure": structure,
@@ -69,9 +68,7 @@ def test_weight_is_that_of_the_drawing():
 def test_weight_is_that_of_the_shells(name):
     building = read_deck(f"cases/{name}.toml").building
     shell = building.shell()
-    assert building.frame(FrameOptions(cohesion=1e5)).total_weight == pytest.approx(
-        shell.mass().sum() * GRAVITY, rel=1e-3
-    )
+    assert building.frame(FrameOptions(cohesion=1e5)).total_weight == pytest.approx(shell.mass().sum() * GRAVITY, rel=1e-3)
 
 
 def test_a_room_on_a_rigid_floor_is_a_sum_of_its_walls():
@@ -132,8 +129,10 @@ def test_soft_floors_leave_walls_apart():
 
 
 def test_what_a_frame_cannot_be_is_refused():
-    walls = [{"name": "a", "start": [0, 0], "end": [3, 0], "thickness": 0.4, "storeys": [2, 2]},
-             {"name": "b", "start": [0, 0], "end": [0, 3], "thickness": 0.4}]  # fmt: skip
+    walls = [
+        {"name": "a", "start": [0, 0], "end": [3, 0], "thickness": 0.4, "storeys": [2, 2]},
+        {"name": "b", "start": [0, 0], "end": [0, 3], "thickness": 0.4},
+    ]
     with pytest.raises(BadGeometry, match="does not reach the ground"):
         box(walls=walls, storeys=[3.0, 3.0], floors=[]).frame()
     with pytest.raises(BadGeometry, match="turnsek-cacovic needs diagonal_strength"):
@@ -142,8 +141,10 @@ def test_what_a_frame_cannot_be_is_refused():
 
 def test_a_spandrel_between_misaligned_windows_has_their_mean_edges():
     openings = [{"storey": 1, "x": [2.0, 3.0], "z": [0.0, 2.2]}, {"storey": 2, "x": [2.4, 3.4], "z": [0.8, 2.0]}]
-    walls = [{"name": "front", "start": [0, 0], "end": [6, 0], "thickness": 0.4, "openings": openings},
-             {"name": "side", "start": [0, 0], "end": [0, 4], "thickness": 0.3}]  # fmt: skip
+    walls = [
+        {"name": "front", "start": [0, 0], "end": [6, 0], "thickness": 0.4, "openings": openings},
+        {"name": "side", "start": [0, 0], "end": [0, 4], "thickness": 0.3},
+    ]
     frame = box(walls=walls, storeys=[3.0, 3.0], floors=[]).frame()
     spandrel = next(s for s in frame.strips if s.kind == "spandrel")
     assert spandrel.part == pytest.approx((2.2, 3.2, 2.2, 3.8))

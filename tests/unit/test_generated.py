@@ -33,9 +33,7 @@ def test_motion_is_the_sum_of_equation_6_6() -> None:
     np.testing.assert_allclose(made.window, window, atol=1e-15)
     phases = core.phases(-5, 41, 15)
     amplitude = 5.0 * made.spectrum * made.widths
-    expected = window * sum(
-        a * np.sin(2 * np.pi * f * t + p) for a, f, p in zip(amplitude, made.lines, phases, strict=True)
-    )
+    expected = window * sum(a * np.sin(2 * np.pi * f * t + p) for a, f, p in zip(amplitude, made.lines, phases, strict=True))
     np.testing.assert_allclose(made.motion(41), expected, atol=1e-12)
 
 
@@ -100,8 +98,9 @@ def test_line_sets_of_the_notes() -> None:
     np.testing.assert_allclose(made.widths[[0, 1, 7, 14]], [0.0997, 0.1279, 0.5685, 3.2409], rtol=1e-3)
     np.testing.assert_allclose(
         100 * made.spectrum,
-        [15.75, 17.86, 19.70, 21.04, 22.06, 22.74, 23.12, 23.02, 22.26, 20.78, 18.66, 16.07, 13.05, 9.91, 6.91], rtol=1e-3,
-    )  # fmt: skip
+        [15.75, 17.86, 19.70, 21.04, 22.06, 22.74, 23.12, 23.02, 22.26, 20.78, 18.66, 16.07, 13.05, 9.91, 6.91],
+        rtol=1e-3,
+    )
     uniform = generated(6, 3.0, spacing="uniform")
     np.testing.assert_allclose(uniform.lines, 0.4 + 0.9 * np.arange(15))
     np.testing.assert_allclose(uniform.widths, 0.9)
@@ -150,11 +149,16 @@ def test_envelopes() -> None:
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"mmi": 3.9}, "expected 4 to 9"), ({"lines": [0.1, 1.0]}, "expected 0.4 to 13"), ({"lines": 1}, "at least 2"),
-        ({"step": 0.05}, "needs a time step below"), ({"duration": 0.0}, "above zero"), ({"lines": [2.0, 1.0]}, "ascending"),
-        ({"spectrum": "nowhere.csv"}, "no such file"), ({"envelope": "square"}, "unknown envelope"),
+        ({"mmi": 3.9}, "expected 4 to 9"),
+        ({"lines": [0.1, 1.0]}, "expected 0.4 to 13"),
+        ({"lines": 1}, "at least 2"),
+        ({"step": 0.05}, "needs a time step below"),
+        ({"duration": 0.0}, "above zero"),
+        ({"lines": [2.0, 1.0]}, "ascending"),
+        ({"spectrum": "nowhere.csv"}, "no such file"),
+        ({"envelope": "square"}, "unknown envelope"),
     ],
-)  # fmt: skip
+)
 def test_refusals(keys, words) -> None:
     with pytest.raises(ValueError, match=words):
         generated(**({"mmi": 6, "duration": 3.0} | keys))
@@ -163,12 +167,14 @@ def test_refusals(keys, words) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("mmi,f,a\n", ":1: header"), ("mmi,frequency_Hz,amplitude_cm_s\n6,1\n", ":2: expected three numbers"),
+        ("mmi,f,a\n", ":1: header"),
+        ("mmi,frequency_Hz,amplitude_cm_s\n6,1\n", ":2: expected three numbers"),
         ("mmi,frequency_Hz,amplitude_cm_s\n6,1,nan\n", ":2: expected intensity"),
         ("mmi,frequency_Hz,amplitude_cm_s\n6,1,2\n6,1,2\n", ":3: .*stands twice"),
-        ("mmi,frequency_Hz,amplitude_cm_s\n6,1,2\n7,2,2\n", "all at the same"), ("", ":1: header"),
+        ("mmi,frequency_Hz,amplitude_cm_s\n6,1,2\n7,2,2\n", "all at the same"),
+        ("", ":1: header"),
     ],
-)  # fmt: skip
+)
 def test_bad_spectrum_files(tmp_path, text, words) -> None:
     (tmp_path / "s.csv").write_text(text)
     with pytest.raises(SpectrumFileError, match=words):
@@ -191,8 +197,9 @@ def test_code_spectra_at_printed_points() -> None:
     se = code_spectra.en1998(1, "C", 0.25 * G)
     np.testing.assert_allclose(
         se(np.array([0.0, 0.1, 0.2, 0.6, 1.2, 2.0, 4.0])) / G,
-        [0.2875, 0.2875 * 1.75, 0.71875, 0.71875, 0.359375, 0.215625, 0.05390625], rtol=1e-12,
-    )  # fmt: skip
+        [0.2875, 0.2875 * 1.75, 0.71875, 0.71875, 0.359375, 0.215625, 0.05390625],
+        rtol=1e-12,
+    )
     assert code_spectra.damping_factor(0.05) == 1.0 and code_spectra.damping_factor(0.3) == 0.55
     se = code_spectra.ntc("B", 0.2 * G, 2.4, 0.35)
     soil, corner = 1.4 - 0.4 * 2.4 * 0.2, 1.1 * 0.35**-0.2 * 0.35
@@ -200,9 +207,7 @@ def test_code_spectra_at_printed_points() -> None:
     assert se(np.array([corner]))[0] == pytest.approx(0.2 * G * 1.2 * 2.4)
     assert se(np.array([2.4]))[0] == pytest.approx(0.2 * G * 1.2 * 2.4 * corner / 2.4)
     se = code_spectra.asce7(1.0 * G, 0.6 * G, 8.0)
-    np.testing.assert_allclose(
-        se(np.array([0.0, 0.12, 0.6, 1.2, 16.0])) / G, [0.4, 1.0, 1.0, 0.5, 0.6 * 8 / 256], rtol=1e-12
-    )
+    np.testing.assert_allclose(se(np.array([0.0, 0.12, 0.6, 1.2, 16.0])) / G, [0.4, 1.0, 1.0, 0.5, 0.6 * 8 / 256], rtol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -241,11 +246,7 @@ def test_spectrum_tables(tmp_path) -> None:
     assert code_spectra.read_table(path)(np.array([0.5]))[0] == pytest.approx(0.2 * G)
     with pytest.raises(ValueError, match="ends at 1 s"):
         code_spectra.read_table(path)(np.array([1.5]))
-    for text, words in (
-        ("a,b\n", ":1: header"),
-        ("period_s,sa_g\n1,2\n1,3\n", ":3: expected ascending"),
-        ("period_s,sa_g\n1,x\n", ":2:"),
-    ):
+    for text, words in (("a,b\n", ":1: header"), ("period_s,sa_g\n1,2\n1,3\n", ":3: expected ascending"), ("period_s,sa_g\n1,x\n", ":2:")):
         path.write_text(text)
         with pytest.raises(ValueError, match=words):
             code_spectra.read_table(path)

@@ -82,9 +82,7 @@ def test_contacts_slide_and_rock_as_newton_and_euler(friction: float, push: floa
     ground = pulses.step_pulse(-push * GRAVITY, 0.2).ground
     contacts = contacts_of(rocker, building)
     shift, rate = contacts.begin(ground, 0.0).state(1.0)
-    run = dem.run(
-        contacts.bodies, dem.Options(0.01, 0.01, step=1e-5, rigid=True), ground.seen_from(0.0), shift=shift, rate=rate
-    )
+    run = dem.run(contacts.bodies, dem.Options(0.01, 0.01, step=1e-5, rigid=True), ground.seen_from(0.0), shift=shift, rate=rate)
     spin, along = slide_rock(0.25, 0.5, friction, push * GRAVITY)
     assert along > 0.0 and spin > 0.0
     turned = -run.place[-1, 0, 2]
@@ -114,9 +112,8 @@ def test_the_state_that_is_handed_over_is_that_of_the_mechanism(structure: dict)
     assert not r.impacts and r.joints.leaves_at < 0.0 and abs(r.rotation[k + later]) > 1.3 * abs(r.rotation[k])
     span = float(r.time[k + later] - r.time[k])
     run = dem.run(
-        contacts.bodies, dem.Options(span, span, step=span / 4000, rigid=True), motion.ground.seen_from(begin.time), shift=shift,
-        rate=rate,
-    )  # fmt: skip
+        contacts.bodies, dem.Options(span, span, step=span / 4000, rigid=True), motion.ground.seen_from(begin.time), shift=shift, rate=rate
+    )
     after, _ = contacts.begin(motion.ground, float(r.time[k + later])).state(1.0)
     moved = np.abs(after[:, 2]).max()
     n = rigid.count
@@ -156,7 +153,7 @@ def test_blocks_that_slide_or_rock_end_as_on_rigid_contacts(width: float, height
 CELLS = [(period, factor) for period in (0.7, 0.9, 1.1, 1.3, 1.5) for factor in (2.0, 2.5, 3.0, 3.5, 4.0)]
 
 
-@pytest.mark.parametrize("cell", [pytest.param(c, marks=() if c in {(0.7, 4.0), (1.3, 2.5)} else pytest.mark.verify) for c in CELLS])  # fmt: skip
+@pytest.mark.parametrize("cell", [pytest.param(c, marks=() if c in {(0.7, 4.0), (1.3, 2.5)} else pytest.mark.verify) for c in CELLS])
 def test_the_vault_ends_as_on_rigid_contacts(cell: tuple[float, float]) -> None:
     """All 25 cells of its map; fixed hinges err in 9 of them."""
     found, contacts = both(VAULT, 0.7, sine(0.134 * cell[1], cell[0]))
@@ -171,13 +168,7 @@ def test_the_vault_ends_as_on_rigid_contacts(cell: tuple[float, float]) -> None:
 def test_cells_of_a_map_are_decided_by_contacts() -> None:
     """A block at friction .35, which slides at rest or not: the map against single runs, and the verdict of a pulse of it."""
     block = {"kind": "block", "width": 0.3, "height": 0.9}
-    domain = {
-        "kind": "failure-domain",
-        "pulse": "sine",
-        "durations": [0.6, 1.2],
-        "amplitudes": 5,
-        "max_amplitude": "1.2 g",
-    }
+    domain = {"kind": "failure-domain", "pulse": "sine", "durations": [0.6, 1.2], "amplitudes": 5, "max_amplitude": "1.2 g"}
     deck = {"structure": block, "joints": {"friction": 0.35}, "motion": sine(0.96, 1.2), "analysis": domain}
     found = extrados.run(deck).results[0]
     codes = found.arrays["outcome"].data

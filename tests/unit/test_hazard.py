@@ -63,9 +63,7 @@ def test_a_bent_hazard_curve_against_quadrature() -> None:
     assert hazard.at(np.array([0.1, np.sqrt(0.15), 2.0])) == pytest.approx([1e-2, np.sqrt(3e-3 * 4e-4), 1e-6])
     # What may be missing: above the last point all that P leaves, below the first one what its slope goes on to
     slope = np.log(10 / 3) / np.log(3)
-    below = quad(
-        lambda s: float(probability(np.exp(s))) * slope * 1e-2 * (np.exp(s) / 0.1) ** -slope, -9.0, np.log(0.1)
-    )[0]
+    below = quad(lambda s: float(probability(np.exp(s))) * slope * 1e-2 * (np.exp(s) / 0.1) ** -slope, -9.0, np.log(0.1))[0]
     assert hazard.left_out(probability) == pytest.approx(1e-6 - above + below, rel=1e-6)
 
 
@@ -90,17 +88,13 @@ def test_levels_with_a_hazard_give_the_annual_rate_with_a_band(tmp_path: Path) -
     assert np.trapezoid(density, np.log(x)) == pytest.approx(expected, rel=0.02)
     assert "a year" in result.answer or "annual rate" in result.answer
     # the same from a file, and with units
-    (tmp_path / "h.csv").write_text(
-        "# PGA [g], rate\n" + "\n".join(f"{a},{b}" for a, b in zip(*HAZARD.values(), strict=True))
-    )
+    (tmp_path / "h.csv").write_text("# PGA [g], rate\n" + "\n".join(f"{a},{b}" for a, b in zip(*HAZARD.values(), strict=True)))
     filed = run({**levels, "hazard": {"file": "h.csv"}}, folder=tmp_path).results
     assert filed["annual_collapse_rate"] == r["annual_collapse_rate"]
     texts = {**HAZARD, "intensities": [f"{100 * v:g} cm/s^2" for v in HAZARD["intensities"]]}
     other = run({**levels, "hazard": texts}).results
     scaled = HazardCurve(curve.intensity / 9.80665, curve.rate)
-    assert other["annual_collapse_rate"] == pytest.approx(
-        float(scaled.rate_of(lambda x: ndtr(np.log(x / r["median"]) / r["dispersion"])))
-    )
+    assert other["annual_collapse_rate"] == pytest.approx(float(scaled.rate_of(lambda x: ndtr(np.log(x / r["median"]) / r["dispersion"]))))
 
 
 def test_the_verdict_is_on_the_accepted_rate() -> None:
@@ -141,8 +135,7 @@ def test_bad_questions(keys: dict, said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
-    [("0.1,0.1\n0.2\n", ":2: expected an intensity"), ("0.1,0.1\n", "1 pairs"), ("0.1,0.1\n0.2,0.2\n", "descend")],
+    ("text", "said"), [("0.1,0.1\n0.2\n", ":2: expected an intensity"), ("0.1,0.1\n", "1 pairs"), ("0.1,0.1\n0.2,0.2\n", "descend")]
 )
 def test_bad_hazard_files_are_refused(text: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "h.csv").write_text(text)
@@ -194,9 +187,7 @@ def test_cloud_curves_are_the_shares_of_many_motions() -> None:
     collapse = ndtr(np.log(x / r["median"]) / r["dispersion"])
     assert np.sqrt((errors(fell, collapse) ** 2).mean()) < 0.04
     z = np.log(x)
-    best = minimize(
-        lambda c: np.sum(np.logaddexp(0.0, c[0] + c[1] * z)) - np.sum(fell * (c[0] + c[1] * z)), [0.0, 2.0]
-    ).x
+    best = minimize(lambda c: np.sum(np.logaddexp(0.0, c[0] + c[1] * z)) - np.sum(fell * (c[0] + c[1] * z)), [0.0, 2.0]).x
     assert np.abs(1.0 / (1.0 + np.exp(-best[0] - best[1] * z)) - collapse).max() < 0.035
     rocks = outcome == 1
     slope, level = np.polyfit(z[rocks], np.log(ratio[rocks]), 1)
@@ -205,14 +196,9 @@ def test_cloud_curves_are_the_shares_of_many_motions() -> None:
     for row, limit in zip(r["rotation_limits"], limits, strict=True):
         passed = fell | (ratio > limit)
         assert np.sqrt((errors(passed, ndtr(np.log(x / row.median) / row.dispersion)) ** 2).mean()) < 0.03
-        assert (
-            row.median_interval[0] < row.median < row.median_interval[1] and row.annual_rate > r["annual_collapse_rate"]
-        )
+        assert row.median_interval[0] < row.median < row.median_interval[1] and row.annual_rate > r["annual_collapse_rate"]
         by_regression = ndtr((level + slope * z - np.log(limit)) / deviation)
-        composed = [
-            collapse[b].mean() + ((1 - collapse) * by_regression)[b].mean() * u
-            for b, u in zip(bins, lifted, strict=True)
-        ]
+        composed = [collapse[b].mean() + ((1 - collapse) * by_regression)[b].mean() * u for b, u in zip(bins, lifted, strict=True)]
         shares = np.array([passed[b].mean() for b in bins])
         assert np.abs(shares - composed).max() > 0.25
 
@@ -237,9 +223,7 @@ def test_histories_are_those_of_single_runs() -> None:
         rotation, ground = (result.arrays[f"history_{n}_{k}"].data for n in ("rotation", "motion"))
         reached = np.abs(rotation).max()
         assert reached == pytest.approx(min(peak[k - 1], reached), rel=1e-2)
-        single = generated_set(make_deck({"motion": GENERATED, "analysis": {"kind": "motion"}}).motion, Path()).motion(
-            k - 1
-        )
+        single = generated_set(make_deck({"motion": GENERATED, "analysis": {"kind": "motion"}}).motion, Path()).motion(k - 1)
         assert np.abs(ground).max() == pytest.approx(np.abs(single).max() / 9.80665, rel=1e-9)
 
 
@@ -248,12 +232,7 @@ def test_histories_are_those_of_single_runs() -> None:
 
 def models(uncertain: dict, draws: list[list[float]], structure: dict = ARCH, **joints: object) -> list:
     deck = make_deck(
-        {
-            "structure": structure,
-            "joints": joints,
-            "motion": GENERATED,
-            "analysis": {"kind": "fragility", "uncertain": uncertain},
-        }
+        {"structure": structure, "joints": joints, "motion": GENERATED, "analysis": {"kind": "fragility", "uncertain": uncertain}}
     )
     sample = Sample(deck.buildings[0], deck.analyses[0], np.array(draws))
     return [sample.rocker(k) for k in range(len(draws))]
@@ -277,10 +256,7 @@ def test_imperfect_stones_rock_about_as_the_perfect_ones() -> None:
     assert (near.uplift, near.restitution) == pytest.approx((perfect.uplift, perfect.restitution), rel=1e-6)
     made = generated_set(make_deck({"motion": GENERATED, "analysis": {"kind": "motion"}}).motion, Path())
     grounds = [made.ground(k) for k in range(4)]
-    peaks = [
-        rocking.ensemble([m.body], grounds, np.zeros(4, int), np.arange(4), 1.0, 16.0).peak_ratio
-        for m in (near, perfect)
-    ]
+    peaks = [rocking.ensemble([m.body], grounds, np.zeros(4, int), np.arange(4), 1.0, 16.0).peak_ratio for m in (near, perfect)]
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-3)
     draws = ((np.arange(16) + 0.5) / 16)[:, None]
     capacity = np.array([m.uplift for m in models({"imperfection": 0.02}, draws)])
@@ -295,9 +271,7 @@ def test_no_impact_of_a_sample_creates_energy() -> None:
     for rocker in models({"imperfection": 0.02, "restitution": 0.3}, draws):
         right, left = rocker.model.tables
         to_right, to_left = rocker.body.parameters[:2]
-        assert (
-            to_right**2 * right.mass / left.mass <= 1.0 + 1e-12 and to_left**2 * left.mass / right.mass <= 1.0 + 1e-12
-        )
+        assert to_right**2 * right.mass / left.mass <= 1.0 + 1e-12 and to_left**2 * left.mass / right.mass <= 1.0 + 1e-12
     low, high = models({"restitution": 0.1}, [[0.1], [0.4]])
     assert low.restitution < high.restitution
 
@@ -336,9 +310,7 @@ def test_what_a_building_does_not_know_is_refused() -> None:
 def test_structure_and_motion_together_by_sobol_indices() -> None:
     """Thickness, corners, impact, density and shape of an arch beside the motion: what has no scatter has no index."""
     uncertain = {"thickness": 0.05, "corners": 1e-6, "restitution": 0.05, "density": 1e-6, "imperfection": 0.01}
-    found = run(
-        {"count": 16, "seed": 1, "uncertain": uncertain, "sensitivity": 16, "bootstrap": 0}, {**ARCH, "voussoirs": 9}
-    ).results
+    found = run({"count": 16, "seed": 1, "uncertain": uncertain, "sensitivity": 16, "bootstrap": 0}, {**ARCH, "voussoirs": 9}).results
     index = {name: row.rotation_total for name, row in found["sensitivity"].items()}
     assert set(index) == {*uncertain, "motion"}
     assert index["corners"] == pytest.approx(0.0, abs=1e-3) and index["density"] == pytest.approx(0.0, abs=1e-3)

@@ -157,9 +157,8 @@ def test_hanging_lines_are_taken_away_one_by_one() -> None:
 def prism(corners: int, radius: float = 5.0) -> dict[str, Any]:
     """A block of COMPAS: the prism over a ring."""
     vertex = {
-        str(k + corners * y): {"x": float(x), "y": y, "z": float(z)}
-        for y in (0, 1) for k, (x, z) in enumerate(ring(corners, radius))
-    }  # fmt: skip
+        str(k + corners * y): {"x": float(x), "y": y, "z": float(z)} for y in (0, 1) for k, (x, z) in enumerate(ring(corners, radius))
+    }
     sides = [[k, (k + 1) % corners, corners + (k + 1) % corners, corners + k] for k in range(corners)]
     faces = [list(range(corners)), list(range(2 * corners - 1, corners - 1, -1)), *sides]
     return {"vertex": vertex, "face": {str(k): face for k, face in enumerate(faces)}}

@@ -149,18 +149,18 @@ def test_the_blow_is_the_nearest_admissible_velocity(section: int | str) -> None
     matrix, wanted = (np.array(rows) / root).T, change.ravel() / root
     one = np.ones((len(wanted), 1))
     found = linprog(
-        np.append(np.zeros(2 * count), 1.0), np.block([[matrix, -one], [-matrix, -one]]), np.append(wanted, -wanted),
+        np.append(np.zeros(2 * count), 1.0),
+        np.block([[matrix, -one], [-matrix, -one]]),
+        np.append(wanted, -wanted),
         bounds=[(0.0, None)] * count + [(None, None)] * count + [(0.0, None)],
-    )  # fmt: skip
+    )
     assert found.status == 0 and found.fun < 1e-6 * np.linalg.norm(wanted)
 
 
 def test_indices_are_checked() -> None:
     one = np.ones(1)
     with pytest.raises(ValueError, match="sides"):
-        core_mechanism.inelastic_blow(
-            one, one, [[0, 0]], [[0, 1]], np.zeros((1, 2, 2)), np.zeros((1, 2, 2)), [[0, 0, 1]]
-        )
+        core_mechanism.inelastic_blow(one, one, [[0, 0]], [[0, 1]], np.zeros((1, 2, 2)), np.zeros((1, 2, 2)), [[0, 0, 1]])
 
 
 def test_rules_that_differ_are_told_with_their_outcomes() -> None:
@@ -183,9 +183,7 @@ def test_where_the_blow_loses_too_much_the_answer_says_so() -> None:
     with what the run does where it keeps more; a motion that is slow, or has no beat, is not warned of."""
 
     def told(structure: dict, motion: dict, **keys) -> tuple[list[str], dict[str, str]]:
-        run = extrados.run(
-            {"structure": structure, "motion": motion, "analysis": [{"kind": "rocking", "hand_over": False, **keys}]}
-        )
+        run = extrados.run({"structure": structure, "motion": motion, "analysis": [{"kind": "rocking", "hand_over": False, **keys}]})
         outcomes = {one.rule: one.outcome for one in getattr(run["rocking"], "outcomes_by_rule", None) or ()}
         return [w for w in run.results[0].warnings if "discrete elements" in w], outcomes
 
@@ -198,16 +196,16 @@ def test_where_the_blow_loses_too_much_the_answer_says_so() -> None:
     wide = {"kind": "arch", "radius": 1.0, "thickness": 0.144, "embrace": 170.0, "voussoirs": 34}
     quiet, outcomes = told(wide, {"kind": "record", "file": "extrados:el-centro-1940"}, output_step=0.02)
     assert not quiet and outcomes["inelastic"] == "recovery"
-    for analysis in ({"kind": "harmonic-map", "frequencies": [6.0], "amplitudes": 2, "cycles": 2},
-                     {"kind": "failure-curves", "cycles": [1, 6], "durations": [0.1, 0.2], "amplitudes": 3, "accuracy": 0.05}):  # fmt: skip
+    for analysis in (
+        {"kind": "harmonic-map", "frequencies": [6.0], "amplitudes": 2, "cycles": 2},
+        {"kind": "failure-curves", "cycles": [1, 6], "durations": [0.1, 0.2], "amplitudes": 3, "accuracy": 0.05},
+    ):
         warnings = extrados.run({"structure": arch1, "analysis": [analysis]}).results[0].warnings
         assert sum("above 5 Hz" in warning for warning in warnings) == 1
     stocky = {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 140.0, "voussoirs": 13}
     (general, special), outcomes = told(stocky, {"kind": "step-pulse", "amplitude": "1.0 g", "duration": 0.1})
     assert "stocky" in general and "with 0.587 the outcome is recovery" in special and outcomes["0.587"] == "recovery"
-    (general,), outcomes = told(
-        stocky, {"kind": "step-pulse", "amplitude": "0.3 g", "duration": 0.1}
-    )  # it does not rock
+    (general,), outcomes = told(stocky, {"kind": "step-pulse", "amplitude": "0.3 g", "duration": 0.1})  # it does not rock
     assert not outcomes
 
 
@@ -243,10 +241,7 @@ def test_assessment_is_held_against_the_run() -> None:
 def test_impulses_beyond_the_criterion_are_told(amplitude: str, outcome: str) -> None:
     """The criterion ends at 2.3 times the uplift acceleration, here 0.14 g: it says that a short sine of any strength is harmless."""
     base = deck(0.10, 170.0, 0.08)
-    base |= {
-        "motion": {"kind": "sine-pulse", "amplitude": amplitude, "period": 0.15},
-        "analysis": [{"kind": "assessment"}],
-    }
+    base |= {"motion": {"kind": "sine-pulse", "amplitude": amplitude, "period": 0.15}, "analysis": [{"kind": "assessment"}]}
     run = extrados.run(base)
     assert (run["assessment"].verdict, run["assessment"].run_outcome) == ("stands", outcome)
     told = " ".join(run.results[0].warnings)
@@ -259,10 +254,7 @@ def test_another_rule_in_place_of_the_thesis_is_told() -> None:
     pointed = {"kind": "pointed-arch", "span": 8.0, "radius": 5.0, "thickness": 0.8, "voussoirs": 10}
     round_arch = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 157.5, "voussoirs": 9}
     told = [
-        any(
-            '"energy-safe" replaces it' in text
-            for text in extrados.run({"structure": s, **tables}).analyses[0]["warnings"]
-        )
+        any('"energy-safe" replaces it' in text for text in extrados.run({"structure": s, **tables}).analyses[0]["warnings"])
         for s in (pointed, round_arch)
     ]
     assert told == [True, False]

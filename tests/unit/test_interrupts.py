@@ -28,9 +28,7 @@ except KeyboardInterrupt:
 @pytest.mark.skipif(sys.platform == "win32", reason="timers are those of POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_amid_a_finaliser_is_not_lost(number: signal.Signals) -> None:
-    run = subprocess.run(
-        [sys.executable, "-c", UNHEARD, str(int(number))], capture_output=True, text=True, timeout=60
-    )  # fmt: skip
+    run = subprocess.run([sys.executable, "-c", UNHEARD, str(int(number))], capture_output=True, text=True, timeout=60)
     assert run.returncode == 128 + number, run.stderr
     assert not run.stderr
 
@@ -39,5 +37,5 @@ def test_other_errors_amid_a_finaliser_are_told_as_ever() -> None:
     raising = "class Held:\n    def __del__(self):\n        raise ValueError('of its own')\nheld = Held()\ndel held\n"
     run = subprocess.run(
         [sys.executable, "-c", "from extrados import interrupts\ninterrupts.insist()\n" + raising], capture_output=True, text=True
-    )  # fmt: skip
+    )
     assert run.returncode == 0 and "of its own" in run.stderr

@@ -11,9 +11,28 @@ from extrados.schema.isolated import environment
 
 #: Modules that this program, its libraries or a new process load, early and late
 PLANTED = (
-    "queue", "json", "random", "secrets", "socket", "numpy", "h5py", "matplotlib", "pydantic", "extrados", "extrados_core",
-    "sitecustomize", "usercustomize", "uvicorn", "starlette", "typst", "PIL", "tomllib", "csv", "multiprocessing", "distributed",
-)  # fmt: skip
+    "queue",
+    "json",
+    "random",
+    "secrets",
+    "socket",
+    "numpy",
+    "h5py",
+    "matplotlib",
+    "pydantic",
+    "extrados",
+    "extrados_core",
+    "sitecustomize",
+    "usercustomize",
+    "uvicorn",
+    "starlette",
+    "typst",
+    "PIL",
+    "tomllib",
+    "csv",
+    "multiprocessing",
+    "distributed",
+)
 DECK = """title = "planted"
 [structure]
 kind = "block"
@@ -44,21 +63,34 @@ def folder(tmp_path: Path) -> Path:
 
 
 def _run(folder: Path, *command: str, **more: str) -> str:
-    done = subprocess.run(
-        command, cwd=folder, env={**os.environ, **more}, capture_output=True, text=True, timeout=300, check=False
-    )
+    done = subprocess.run(command, cwd=folder, env={**os.environ, **more}, capture_output=True, text=True, timeout=300, check=False)
     assert not (folder / "ran").exists(), f"{command}: {(folder / 'ran').read_text()} was run"
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-@pytest.mark.parametrize("commands", [
-    ["check deck.toml", "run deck.toml --no-figures --out r"],
-    pytest.param(
-        ["run deck.toml --out r", "report r", "compare r r", "explain tilt", "new arch", "schema", "cases .",
-         "export deck.toml --to compas", "assess . --out all", "version"], marks=pytest.mark.verify,
-    ),
-], ids=["quick", "all"])  # fmt: skip
+@pytest.mark.parametrize(
+    "commands",
+    [
+        ["check deck.toml", "run deck.toml --no-figures --out r"],
+        pytest.param(
+            [
+                "run deck.toml --out r",
+                "report r",
+                "compare r r",
+                "explain tilt",
+                "new arch",
+                "schema",
+                "cases .",
+                "export deck.toml --to compas",
+                "assess . --out all",
+                "version",
+            ],
+            marks=pytest.mark.verify,
+        ),
+    ],
+    ids=["quick", "all"],
+)
 def test_no_command_runs_what_lies_in_its_folder(folder: Path, commands: list[str]) -> None:
     for words in commands:
         _run(folder, str(SCRIPT), *words.split())

@@ -51,28 +51,36 @@ COUPLET = {
     },
     "material": {"density": 0.0, "young": 16.7e9, "poisson": 0.15},
     "joints": {
-        "friction": 0.75, "cohesion": 0.87e6, "shear_energy": 58.0, "tension": 0.5e6, "fracture_energy": 20.0,
-        "normal_stiffness": 82e9, "shear_stiffness": 36e9,
+        "friction": 0.75,
+        "cohesion": 0.87e6,
+        "shear_energy": 58.0,
+        "tension": 0.5e6,
+        "fracture_energy": 20.0,
+        "normal_stiffness": 82e9,
+        "shear_stiffness": 36e9,
         "types": [{"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}],
     },
-}  # fmt: skip
+}
 
 
 def couplet(ways: list[float], **more: Any) -> Any:
     """Two bricks under 0.5 MPa, their joint sheared to one displacement after the other [m]."""
     stages = [
         {
-            "reference": [
-                {"kind": "displacement", "direction": "x", "parts": [{"y": [0.06, 0.1], "ratio": float(np.sign(way))}]}
-            ],
+            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"y": [0.06, 0.1], "ratio": float(np.sign(way))}]}],
             "target_displacement": abs(way),
         }
         for way in ways
     ]
     analysis = {
-        "kind": "sla", "constant": [{"kind": "pressure", "edge": "top", "value": 0.5e6}], "overshoot": False, "ripple": 0.05,
-        "mesh": {"size": 0.01}, "stages": stages, **more,
-    }  # fmt: skip
+        "kind": "sla",
+        "constant": [{"kind": "pressure", "edge": "top", "value": 0.5e6}],
+        "overshoot": False,
+        "ripple": 0.05,
+        "mesh": {"size": 0.01},
+        "stages": stages,
+        **more,
+    }
     return extrados.run({**COUPLET, "analysis": [analysis]}).results[0]
 
 

@@ -18,9 +18,7 @@ from extrados.show.charts import Shown
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 #: View -> what its maker is given
-GIVEN = {
-    "blocks": 1, "piers": 1, "solids": 1, "rigid": 3, "rocker": 2, "mesh": 3, "shell": 2,
-}  # fmt: skip
+GIVEN = {"blocks": 1, "piers": 1, "solids": 1, "rigid": 3, "rocker": 2, "mesh": 3, "shell": 2}
 
 
 def takes(place: str, count: int) -> None:
@@ -40,9 +38,14 @@ def test_a_structure_has_each_view_or_a_reason(kind: str) -> None:
     parts = kinds.STRUCTURES[kind]
     assert issubclass(kinds.load(parts.table), Structure)
     views = {
-        "blocks": parts.blocks, "piers": parts.piers, "solids": parts.solids, "rigid": parts.rigid, "rocker": parts.rocker,
-        "mesh": parts.mesh, "shell": parts.shell,
-    }  # fmt: skip
+        "blocks": parts.blocks,
+        "piers": parts.piers,
+        "solids": parts.solids,
+        "rigid": parts.rigid,
+        "rocker": parts.rocker,
+        "mesh": parts.mesh,
+        "shell": parts.shell,
+    }
     assert set(views) == set(GIVEN)
     for name, view in views.items():
         if isinstance(view, kinds.Lacks):

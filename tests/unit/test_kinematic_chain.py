@@ -18,9 +18,15 @@ from extrados.schema.table import storeys_in
 
 #: Results of a local mechanism that an immobile part must not change
 CAPACITY = (
-    "multiplier", "participating_mass_kg", "participating_part", "activation_acceleration_g", "zero_displacement_m",
-    "ultimate_displacement_m", "equivalent_period_s", "swaying_weight_N",
-)  # fmt: skip
+    "multiplier",
+    "participating_mass_kg",
+    "participating_part",
+    "activation_acceleration_g",
+    "zero_displacement_m",
+    "ultimate_displacement_m",
+    "equivalent_period_s",
+    "swaying_weight_N",
+)
 CASES = Path(__file__).parents[2] / "cases"
 SITE = {"code": "EN1998-1", "ground": "B", "acceleration": "0.15 g"}
 
@@ -46,11 +52,16 @@ def test_a_wall_with_a_floor_that_rests_and_a_mass_that_pushes() -> None:
     deck = {
         "material": {"density": 18e3 / GRAVITY},
         "analysis": {
-            "kind": "local-mechanism", "mechanism": "facade", "height": 3.0, "thickness": 0.4, "confidence_factor": 1.35,
+            "kind": "local-mechanism",
+            "mechanism": "facade",
+            "height": 3.0,
+            "thickness": 0.4,
+            "confidence_factor": 1.35,
             "floors": [{"height": 3.0, "load": 10e3, "arm": 0.25}, {"height": 3.0, "pushing": 5e3}],
-            "spectrum": SITE, "collapse_spectrum": SITE,
+            "spectrum": SITE,
+            "collapse_spectrum": SITE,
         },
-    }  # fmt: skip
+    }
     r = extrados.run(deck)["local-mechanism"]
     four = 6e-4  # g is 9.81 there
     assert r.multiplier == pytest.approx(6.82 / 77.4, rel=1e-9) == pytest.approx(0.08811, rel=four)
@@ -75,9 +86,7 @@ def test_the_mass_that_pushes_does_not_hold_down_at_a_finite_rotation() -> None:
     pushed = Overturning((*rests, Weight(5.0, 0.2, 3.0, rests=False)))
     assert pushed.ultimate() == pytest.approx(np.arctan(6.82 / 62.4)) == pytest.approx(Overturning(rests).ultimate())
     assert 3.0 * np.sin(pushed.ultimate()) == pytest.approx(0.3259, rel=2e-4), "exact displacement of the top"
-    assert pushed.travel(pushed.ultimate()) == pytest.approx(6.82 / 62.4), (
-        "of the centre of what rests, as on the straight curve"
-    )
+    assert pushed.travel(pushed.ultimate()) == pytest.approx(6.82 / 62.4), "of the centre of what rests, as on the straight curve"
 
 
 def test_the_teeth_of_side_walls_hold_by_friction() -> None:
@@ -89,9 +98,7 @@ def test_the_teeth_of_side_walls_hold_by_friction() -> None:
     assert force == pytest.approx(each.sum()) and below == pytest.approx(each @ (0.2 * courses) / each.sum())
     wall = {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.5}
     teeth = {"unit_height": 0.2, "overlap": 0.15, "thickness": 0.4, "count": 2}
-    plain, held = (
-        extrados.run({"analysis": {**wall, **more}})["local-mechanism"] for more in ({}, {"interlocking": teeth})
-    )
+    plain, held = (extrados.run({"analysis": {**wall, **more}})["local-mechanism"] for more in ({}, {"interlocking": teeth}))
     force, below = ntc.toothed_edge(30, 0.2, 0.15, 0.4, 2000.0 * GRAVITY)
     moment = 2.0 * force * (6.0 - below)
     assert held.multiplier - plain.multiplier == pytest.approx(moment / (2000.0 * GRAVITY * 0.5 * 6.0 * 3.0))
@@ -101,9 +108,7 @@ def test_the_teeth_of_side_walls_hold_by_friction() -> None:
 def test_the_floor_spectrum_of_a_building_of_three_storeys() -> None:
     """[C7.2.6], [C7.2.7]: psi 2/3, T_1 0.3 s, S_e(T_1) 0.6 g, 5 % of the building, 8 % of the part."""
     place = ntc.floor(lambda t, xi: 0.6 if t == 0.3 else 0.0, 2.0, 3.0, 3, 0.3)
-    assert place.modes[0].part == pytest.approx(9.0 / 7.0 * 2.0 / 3.0) and place.acceleration == pytest.approx(
-        0.5169, rel=1e-4
-    )
+    assert place.modes[0].part == pytest.approx(9.0 / 7.0 * 2.0 / 3.0) and place.acceleration == pytest.approx(0.5169, rel=1e-4)
     for period, value in ((0.0, 0.5169), (0.1, 0.9295), (0.3, 2.230), (0.6, 0.6185), (1.0, 0.2548)):
         assert place(period, 0.08) == pytest.approx(value, rel=2e-4), period
 
@@ -117,10 +122,7 @@ def test_a_pinnacle_on_a_base_of_any_size_is_the_pinnacle(width: float, height: 
     stable = 0.2 * 1.6 * (0.4 * 2.0 * (height + 1.0) + width * height * height / 2.0)
     if (width / 2.0 - abs(middle)) * 0.4 * 2.0 + width / 2.0 * width * height <= stable:
         return
-    blocks = [
-        rectangle("base", -width / 2.0, 0.0, width, height),
-        rectangle("pinnacle", middle - 0.2, height, 0.4, 2.0),
-    ]
+    blocks = [rectangle("base", -width / 2.0, 0.0, width, height), rectangle("pinnacle", middle - 0.2, height, 0.4, 2.0)]
     whole = local({"kind": "blocks", "block": blocks})
     same(whole, alone)
     assert whole.activation_acceleration_g == pytest.approx(0.2 / 1.35)
@@ -130,20 +132,19 @@ def test_a_pinnacle_on_a_base_of_any_size_is_the_pinnacle(width: float, height: 
 
 @settings(max_examples=20, deadline=None)
 @given(
-    radius=st.floats(1.0, 8.0), ratio=st.floats(0.14, 0.3), voussoirs=st.integers(7, 30), width=st.floats(2.5, 10.0), height=st.floats(1.0, 2.5)
-)  # fmt: skip
+    radius=st.floats(1.0, 8.0),
+    ratio=st.floats(0.14, 0.3),
+    voussoirs=st.integers(7, 30),
+    width=st.floats(2.5, 10.0),
+    height=st.floats(1.0, 2.5),
+)
 def test_the_arch_between_abutments_of_any_size_is_the_arch(
     radius: float, ratio: float, voussoirs: int, width: float, height: float
 ) -> None:
     """Stones that move sideways, down and up: four hinges in the ring, nothing of the abutments."""
     ring = {"radius": radius, "thickness": ratio * radius, "embrace": 180.0, "voussoirs": voussoirs}
     alone = local({"kind": "arch", **ring})
-    side = {
-        "buttress_width": width * radius,
-        "face": radius * (1.0 - 0.5 * ratio),
-        "height": height * radius,
-        "height_to": "centre",
-    }
+    side = {"buttress_width": width * radius, "face": radius * (1.0 - 0.5 * ratio), "height": height * radius, "height_to": "centre"}
     whole = local({"kind": "vault", **ring, **side})
     same(whole, alone)
     assert whole.base_height_m >= height * radius - 1e-9
@@ -166,18 +167,14 @@ def test_what_moves_backwards_counts_with_its_sign() -> None:
     """[C8.7.1.5] of masses 3 and 1 that move by 2 and -1: (6 - 1)^2/(4 (12 + 1)); d* is scaled by (12 + 1)/(6 - 1)."""
     found = capacity(0.1, np.array([3.0, 1.0]), np.array([2.0, -1.0]), 0.2)
     assert found.part == pytest.approx(25.0 / 52.0) and found.mass == pytest.approx(25.0 / 13.0 / GRAVITY)
-    assert found.acceleration == pytest.approx(0.1 * GRAVITY * 52.0 / 25.0) and found.d0 == pytest.approx(
-        0.2 * 13.0 / 5.0
-    )
+    assert found.acceleration == pytest.approx(0.1 * GRAVITY * 52.0 / 25.0) and found.d0 == pytest.approx(0.2 * 13.0 / 5.0)
 
 
 def test_the_chain_is_what_moves_beyond_rounding() -> None:
     """A stone that turns about its own centre, or moves upwards alone, belongs to it; one that moves by rounding does not."""
     velocity = np.array([[1.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.1], [1e-9, -1e-9, 1e-9], [0.0, 0.0, 0.0]])
     assert in_chain(velocity, 10.0).tolist() == [True, True, True, False, False]
-    assert in_chain(1e-6 * velocity, 10.0).tolist() == in_chain(velocity, 10.0).tolist(), (
-        "whatever the scale of the motion"
-    )
+    assert in_chain(1e-6 * velocity, 10.0).tolist() == in_chain(velocity, 10.0).tolist(), "whatever the scale of the motion"
 
 
 def test_a_nave_takes_its_moving_stones() -> None:
@@ -198,21 +195,29 @@ def test_a_chain_that_slides_leaves_what_it_slides_on() -> None:
             "structure": {"kind": "blocks", "block": blocks},
             "joints": {"friction": 0.3, "types": [{"joints": ["ground"], "friction": 0.6}]},
             "analysis": {"kind": "local-mechanism", "mechanism": "building", "spectrum": SITE},
-        }  # fmt: skip
+        }
         run = extrados.run(deck)
         r = run["local-mechanism"]
-        assert r.participating_part == pytest.approx(1.0) and r.swaying_weight_N == pytest.approx(2000.0 * GRAVITY), (
-            width
-        )
+        assert r.participating_part == pytest.approx(1.0) and r.swaying_weight_N == pytest.approx(2000.0 * GRAVITY), width
 
 
 @pytest.mark.parametrize(
     "structure",
     [
-        {"kind": "vault", "radius": 3.0, "thickness": 0.6, "embrace": 180.0, "voussoirs": 20, "face": 2.7, "buttress_width": 1.8, "height": 6.0, "height_to": "centre"},
+        {
+            "kind": "vault",
+            "radius": 3.0,
+            "thickness": 0.6,
+            "embrace": 180.0,
+            "voussoirs": 20,
+            "face": 2.7,
+            "buttress_width": 1.8,
+            "height": 6.0,
+            "height_to": "centre",
+        },
         {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7},
     ],
-)  # fmt: skip
+)
 def test_the_chain_by_the_centres_of_its_links(structure: dict) -> None:
     """Three links between four hinges: the outer turn about their hinges on what stays, the middle one about the point where the
     lines through the hinges of both meet; M*, e* and alpha_0 by virtual work of the stones of the three."""
@@ -308,9 +313,10 @@ def test_a_verdict_that_hangs_on_how_a_link_is_drawn_is_open(tmp_path: Path) -> 
             file.write_text(f"period_s,sa_g\n0,{acceleration}\n0.1,{acceleration}\n8,{acceleration}\n")
             table = {"code": "table", "table": str(file)}
             deck = {
-                "structure": structure, "joints": {"friction": "no-sliding"},
+                "structure": structure,
+                "joints": {"friction": "no-sliding"},
                 "analysis": {"kind": "local-mechanism", "mechanism": "building", "spectrum": table, "confidence_factor": 1.35},
-            }  # fmt: skip
+            }
             outcomes[name, acceleration] = extrados.run(deck).analyses[0]["verdict"]
     assert outcomes["whole", 0.16]["outcome"] == "collapses"
     assert outcomes["cut", 0.16]["outcome"] == "open" and "rigid link" in outcomes["cut", 0.16]["statement"]

@@ -76,10 +76,14 @@ def test_tools_keep_the_glossary() -> None:
 @pytest.mark.parametrize(
     ("text", "found"),
     [
-        ("The arch bears 3 kN.", 1), ("What it does is told.", 2), ("A flying buttress, in turn, carries it.", 0),
-        ("The base gives way, where there is none.", 2), ("What is the load?", 0), ("The block is in free fall.", 0),
+        ("The arch bears 3 kN.", 1),
+        ("What it does is told.", 2),
+        ("A flying buttress, in turn, carries it.", 0),
+        ("The base gives way, where there is none.", 2),
+        ("What is the load?", 0),
+        ("The block is in free fall.", 0),
     ],
-)  # fmt: skip
+)
 def test_the_lint_finds_words_of_the_left_column(text: str, found: int) -> None:
     assert len(language.hits(text)) == found
 
@@ -87,6 +91,4 @@ def test_the_lint_finds_words_of_the_left_column(text: str, found: int) -> None:
 def test_the_lint_reads_sentences_and_messages() -> None:
     page = "# Title\nOne two three (Fig. 5-1). Four five\nsix.\n\n```\nwhat bears\n```\n| seven eight | `what` nine |\n"
     assert [len(s.split()) for s in language.sentences(language.prose(page))] == [5, 3, 2, 2]
-    assert language.strings('"""Module, what it bears."""\nraise E(f"{n} the arch bears it")\nz = "key"\n') == [
-        " the arch bears it"
-    ]
+    assert language.strings('"""Module, what it bears."""\nraise E(f"{n} the arch bears it")\nz = "key"\n') == [" the arch bears it"]

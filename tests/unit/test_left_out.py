@@ -75,12 +75,13 @@ WALL = {"kind": "panel", "width": 1.0, "height": 2.0, "thickness": 0.2}
 SINE = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
 RECORD = {"kind": "record", "file": "extrados:el-centro-1940", "scale": 3.0}
 HOUSE = {
-    "kind": "building", "storeys": [2.8],
+    "kind": "building",
+    "storeys": [2.8],
     "walls": [
         {"name": n, "start": s, "end": e, "thickness": 0.3}
         for n, s, e in (("a", [0, 0], [3, 0]), ("b", [3, 0], [3, 2]), ("c", [3, 2], [0, 2]), ("d", [0, 2], [0, 0]))
     ],
-}  # fmt: skip
+}
 #: Kinds that take long, or need files; `assess` asks others, and dem-domain and fragility run `dem` and `rocking` many times
 LONG = {"survey", "fragility", "dem-domain", "assess"}
 DECKS = {
@@ -115,11 +116,7 @@ DECKS = {
     "pushover": (HOUSE, None, {"mesh": {"size": 0.9, "layers": 3}, "events": 25}),
     "modes": (ARCH, None, {}),
     "frame-modes": (HOUSE, None, {}),
-    "frame-pushover": (
-        HOUSE,
-        None,
-        {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]},
-    ),
+    "frame-pushover": (HOUSE, None, {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]}),
     "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
     "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),
@@ -162,9 +159,7 @@ def test_every_property_has_two_values_here_and_every_kind_a_deck() -> None:
     assert {*DECKS, *LONG} >= set(kinds.ANALYSES)
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.verify] if name == "strengthen" else []) for name in DECKS]
-)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.verify] if name == "strengthen" else []) for name in DECKS])
 def test_no_property_is_silently_without_effect(name: str) -> None:
     """Another value changes the answer, or it is told to be left out, or refused, or fixed by the method in so many words."""
     silent = []
@@ -251,9 +246,7 @@ def test_what_some_analyses_leave_out_is_told_of_what_bears_on_standing_alone() 
         "analysis": [{"kind": "tilt"}, {"kind": "rocking"}, {"kind": "dem"}],
     }
     remarks = left_out(make_deck(deck))
-    assert [(remark.text, remark.analysis) for remark in remarks] == [
-        ("deck: joints.cohesion: dem uses it, tilt, rocking do not", 0)
-    ]
+    assert [(remark.text, remark.analysis) for remark in remarks] == [("deck: joints.cohesion: dem uses it, tilt, rocking do not", 0)]
     deck["analysis"][0]["joints"] = {"cohesion": 0.0}
     deck["analysis"][1]["joints"] = {"cohesion": 0.0}
     assert left_out(make_deck(deck)) == [], "who overrides it for itself knows"
@@ -270,9 +263,7 @@ def test_a_building_that_cannot_be_made_is_told_by_its_analysis(monkeypatch: pyt
     def fails(*_: object) -> None:
         raise MemoryError("no room")
 
-    deck = make_deck(
-        {"structure": ARCH, "motion": {**RECORD, "scale": 1.0}, "analysis": [{"kind": "supports"}, {"kind": "motion"}]}
-    )
+    deck = make_deck({"structure": ARCH, "motion": {**RECORD, "scale": 1.0}, "analysis": [{"kind": "supports"}, {"kind": "motion"}]})
     monkeypatch.setattr(type(deck.structure), "assembly", fails)
     first, second = compute(Context(deck)).results
     assert first.status == "failed" and "no room" in first.reason and second.status == "ok"
@@ -280,12 +271,7 @@ def test_a_building_that_cannot_be_made_is_told_by_its_analysis(monkeypatch: pyt
 
 def test_an_analysis_that_does_not_use_it_is_not_named_among_those_that_can() -> None:
     """Rigid contacts know no stiffness, springs do: both are `dem`."""
-    deck = {
-        "structure": ARCH,
-        "motion": SINE,
-        "material": {"young": 7e9},
-        "analysis": [{"kind": "dem", "solver": "nonsmooth"}],
-    }
+    deck = {"structure": ARCH, "motion": SINE, "material": {"young": 7e9}, "analysis": [{"kind": "dem", "solver": "nonsmooth"}]}
     (remark,) = left_out(make_deck(deck))
     words, _, others = remark.text.partition(";")
     assert words == "deck: material.young: dem does not use it"

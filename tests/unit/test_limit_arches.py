@@ -42,21 +42,36 @@ def full_programme(a: Assembly, loads: Loads | None = None, friction: float | No
             for row, sign in ((2 * j, 1.0), (2 * j + 1, -1.0)):
                 cone[row, 3 * j : 3 * j + 3] = -friction, -friction, sign
     found = linprog(
-        cost, A_ub=cone, b_ub=None if cone is None else np.zeros(2 * m), A_eq=matrix,
-        b_eq=-(loads.dead / unit).ravel(), bounds=bounds, method="highs-ds",
-    )  # fmt: skip
+        cost,
+        A_ub=cone,
+        b_ub=None if cone is None else np.zeros(2 * m),
+        A_eq=matrix,
+        b_eq=-(loads.dead / unit).ravel(),
+        bounds=bounds,
+        method="highs-ds",
+    )
     return -found.fun
 
 
 # (embrace, thickness, voussoirs) -> gamma, all with a radius of 10 m (computed with SciPy's full programme)
 CAPACITY = {
     (157.5, 1.5, 7): 0.3700097380218763,
-    (157.5, 1.5, 14): 0.3589, (157.5, 1.5, 21): 0.3557, (157.5, 1.5, 35): 0.3536,
-    (157.5, 1.5, 70): 0.3535, (157.5, 1.5, 140): 0.3534, (157.5, 1.5, 700): 0.3534,
-    (120.0, 1.5, 120): 0.9135, (120.0, 1.5, 12): 0.9159, (120.0, 1.5, 8): 0.9304, (120.0, 1.5, 7): 0.9519,
+    (157.5, 1.5, 14): 0.3589,
+    (157.5, 1.5, 21): 0.3557,
+    (157.5, 1.5, 35): 0.3536,
+    (157.5, 1.5, 70): 0.3535,
+    (157.5, 1.5, 140): 0.3534,
+    (157.5, 1.5, 700): 0.3534,
+    (120.0, 1.5, 120): 0.9135,
+    (120.0, 1.5, 12): 0.9159,
+    (120.0, 1.5, 8): 0.9304,
+    (120.0, 1.5, 7): 0.9519,
     (120.0, 1.5, 6): 0.9423,
-    (162.0, 1.5, 16): 0.3120, (162.0, 1.2, 16): 0.2096, (152.0, 1.5, 15): 0.4107, (152.0, 1.2, 15): 0.3027,
-}  # fmt: skip
+    (162.0, 1.5, 16): 0.3120,
+    (162.0, 1.2, 16): 0.2096,
+    (152.0, 1.5, 15): 0.4107,
+    (152.0, 1.2, 15): 0.3027,
+}
 
 
 @pytest.mark.parametrize(("arch", "gamma"), CAPACITY.items())
@@ -95,7 +110,7 @@ def test_state_at_collapse() -> None:
 @pytest.mark.parametrize(
     ("embrace", "voussoirs", "least", "most"),
     [(157.5, 7, 0.1938, 0.3268), (157.5, 140, 0.2010, 0.3268), (120.0, 140, 0.2638, 0.5840), (180.0, 180, 0.1759, 0.2270)],
-)  # fmt: skip
+)
 def test_least_and_greatest_thrust(embrace: float, voussoirs: int, least: float, most: float) -> None:
     arch = make_arch(10.0, 1.5, embrace, voussoirs)
     limit = LimitAnalysis(arch)
@@ -106,16 +121,7 @@ def test_least_and_greatest_thrust(embrace: float, voussoirs: int, least: float,
     assert thrust_of(arch, high, chain) / weight == pytest.approx(most, abs=5.1e-5)
 
 
-FRICTION = {
-    0.50: 0.3700,
-    0.48: 0.3525,
-    0.45: 0.3184,
-    0.42: 0.2853,
-    0.40: 0.2638,
-    0.38: 0.2426,
-    0.36: 0.2196,
-    0.34: 0.1955,
-}
+FRICTION = {0.50: 0.3700, 0.48: 0.3525, 0.45: 0.3184, 0.42: 0.2853, 0.40: 0.2638, 0.38: 0.2426, 0.36: 0.2196, 0.34: 0.1955}
 
 
 @pytest.mark.parametrize(("friction", "gamma"), FRICTION.items())
@@ -174,9 +180,12 @@ def thinnest(voussoirs: int, friction: float | None) -> float:
 
 @settings(max_examples=25, deadline=None)
 @given(
-    ratio=st.floats(0.06, 0.4), embrace=st.floats(60.0, 190.0), voussoirs=st.integers(4, 24),
-    friction=st.none() | st.floats(0.3, 1.0), radius=st.floats(0.1, 50.0),
-)  # fmt: skip
+    ratio=st.floats(0.06, 0.4),
+    embrace=st.floats(60.0, 190.0),
+    voussoirs=st.integers(4, 24),
+    friction=st.none() | st.floats(0.3, 1.0),
+    radius=st.floats(0.1, 50.0),
+)
 def test_all_formulations_agree(ratio, embrace, voussoirs, friction, radius) -> None:
     arch = make_arch(radius, ratio * radius, embrace, voussoirs)
     try:
@@ -215,9 +224,7 @@ def test_crushing_law_holds_in_an_arch() -> None:
     assert (moment <= n * length / 2 - n**2 / (2 * strength * arch.depth) + 1e-6 * n.max()).all()
     assert state.gamma < LimitAnalysis(arch).collapse()[0].gamma - 0.01
     assert abs(state.gamma - mechanism.upper_bound) < 1e-9
-    assert LimitAnalysis(arch, strength=1e15).collapse()[0].gamma == pytest.approx(
-        LimitAnalysis(arch).collapse()[0].gamma
-    )
+    assert LimitAnalysis(arch, strength=1e15).collapse()[0].gamma == pytest.approx(LimitAnalysis(arch).collapse()[0].gamma)
 
 
 def test_point_load() -> None:
@@ -248,9 +255,7 @@ def test_whole_answer() -> None:
     rays = answer.polygons(state)["arch"]
     # From tip to tip of the rays leads the load of each voussoir: weight, and gamma times it to +x.
     weight = arch.mass * GRAVITY
-    assert np.diff(rays, axis=0) == pytest.approx(
-        np.column_stack([state.gamma * weight, -weight]), abs=1e-6 * weight[0]
-    )
+    assert np.diff(rays, axis=0) == pytest.approx(np.column_stack([state.gamma * weight, -weight]), abs=1e-6 * weight[0])
     corners = answer.funiculars(state)["arch"][1:-1]
     # Corners of the funicular polygon lie on the lines of action of the loads.
     arm = corners - arch.centroid

@@ -18,16 +18,7 @@ from extrados.model.geometry.builder import BadGeometry
 from extrados.model.geometry.contacts import Overlap, find_contacts
 from extrados.model.geometry.drawing import Drawing, read_json
 from extrados.model.geometry.inspection import inspect
-from extrados.model.geometry.polygons import (
-    below,
-    crossing_edges,
-    crossings,
-    cut,
-    inside,
-    properties,
-    reach,
-    signed_area,
-)
+from extrados.model.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, reach, signed_area
 from extrados.model.structures.arch import make_arch
 from extrados.model.structures.blocks import Polygon, assemble, make_blocks
 from extrados.model.structures.brickwork import Bond, make_brickwork
@@ -62,9 +53,7 @@ def wall(rows: int, columns: int) -> list[Polygon]:
         edges = [0.5 * c for c in range(columns + 1)]
         if r % 2:
             edges = [0.0, *(0.25 + 0.5 * c for c in range(columns)), 0.5 * columns]
-        blocks += [
-            square(f"{r}/{c}", x0, 0.25 * r, x1 - x0, 0.25) for c, (x0, x1) in enumerate(itertools.pairwise(edges))
-        ]
+        blocks += [square(f"{r}/{c}", x0, 0.25 * r, x1 - x0, 0.25) for c, (x0, x1) in enumerate(itertools.pairwise(edges))]
     return blocks
 
 
@@ -186,10 +175,7 @@ def test_contacts_of_many_stones() -> None:
     ("blocks", "words"),
     [
         ([square("low", 0, 0), square("high", 0, 0.9)], "'low' and 'high' overlap"),
-        (
-            [square("big", 0, 0, 3, 3), square("small", 1, 1, 0.5, 0.5)],
-            "'big' and 'small' overlap by 1.5 m .* draw them anew",
-        ),
+        ([square("big", 0, 0, 3, 3), square("small", 1, 1, 0.5, 0.5)], "'big' and 'small' overlap by 1.5 m .* draw them anew"),
         ([square("one", 0, 0), square("same", 0, 0)], "overlap"),
         ([square("base", 0, 0), square("afloat", 5, 5)], "no joint leads from the ground to block 'afloat'"),
         ([square("base", 0, 0), square("gap", 0, 1.002)], "'base' and 'gap' are 2 mm apart"),
@@ -292,9 +278,7 @@ def test_curved_voussoirs_of_a_drawing(tmp_path: Path) -> None:
     bulge = np.tan(np.radians(157.5 / 7) / 4)
     for i in range(7):
         p0, q0, q1, p1 = a.p[i], a.q[i], a.q[i + 1], a.p[i + 1]
-        document.modelspace().add_lwpolyline(
-            [(*p0, 0.0), (*q0, -bulge), (*q1, 0.0), (*p1, bulge)], format="xyb", close=True
-        )
+        document.modelspace().add_lwpolyline([(*p0, 0.0), (*q0, -bulge), (*q1, 0.0), (*p1, bulge)], format="xyb", close=True)
     for j in (0, 7):
         document.modelspace().add_line(a.p[j], a.q[j], dxfattribs={"layer": "GROUND"})
     document.saveas(tmp_path / "sectors.dxf")
@@ -317,7 +301,5 @@ def test_overlap_is_a_complaint_about_geometry() -> None:
 def test_a_long_row_of_stones_is_answered() -> None:
     """500 squares side by side slide together, each under its own friction: the joints between them are idle."""
     row = [{"name": f"s{i}", "points": [[i, 0], [i + 1, 0], [i + 1, 1], [i, 1]]} for i in range(500)]
-    run = extrados.run(
-        {"structure": {"kind": "blocks", "block": row}, "joints": {"friction": 0.7}, "analysis": {"kind": "tilt"}}
-    )
+    run = extrados.run({"structure": {"kind": "blocks", "block": row}, "joints": {"friction": 0.7}, "analysis": {"kind": "tilt"}})
     assert run["tilt"].collapse_acceleration_g == pytest.approx(0.7, abs=1e-8)

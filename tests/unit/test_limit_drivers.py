@@ -96,10 +96,7 @@ def test_sweep_finds_changes_and_optimum() -> None:
     assert [m["number"] for m in fine["mechanisms"]] == [1, 2, 3]
     # On either side of a change the capacities agree: it is one curve.
     for change in fine["changes"][1:]:
-        both = [
-            run({**CHURCH, "buttress_width": change["value"] + d}, kind="tilt")["collapse_acceleration_g"]
-            for d in (-1e-5, 1e-5)
-        ]
+        both = [run({**CHURCH, "buttress_width": change["value"] + d}, kind="tilt")["collapse_acceleration_g"] for d in (-1e-5, 1e-5)]
         assert both[0] == pytest.approx(both[1], abs=1e-5)
     assert all("cannot stand" in gap["reason"] for gap in fine["gaps"]) and len(fine["gaps"]) > 2
 
@@ -111,14 +108,11 @@ def test_sweep_through_impossible_geometry() -> None:
     assert result["collapse_accelerations_g"][0] > 0.06
     thick = run(ARCH, kind="sweep", vary="thickness", values=[0.5, 1.5, 11.0, -1.0])
     reasons = {g["value"]: g["reason"] for g in thick["gaps"]}
-    assert (
-        "greater than 0" in reasons[-1.0] and "not below the radius" in reasons[11.0] and "cannot stand" in reasons[0.5]
-    )
+    assert "greater than 0" in reasons[-1.0] and "not below the radius" in reasons[11.0] and "cannot stand" in reasons[0.5]
 
 
 @pytest.mark.parametrize(
-    ("vary", "words"),
-    [("girth", "no key 'girth'"), ("kind", "holds no number"), ("right.girth", "no key 'right.girth'")],
+    ("vary", "words"), [("girth", "no key 'girth'"), ("kind", "holds no number"), ("right.girth", "no key 'right.girth'")]
 )
 def test_sweep_of_a_wrong_key(vary: str, words: str) -> None:
     result = run(CHURCH, kind="sweep", vary=vary, start=0.0, stop=1.0)
@@ -128,9 +122,7 @@ def test_sweep_of_a_wrong_key(vary: str, words: str) -> None:
 def test_sweep_of_whole_numbers_and_nested_keys() -> None:
     result = run(ARCH, kind="sweep", vary="voussoirs", start=4, stop=12, count=30)
     assert result["values"] == [float(n) for n in range(4, 13)]
-    nested = run(
-        {**CHURCH, "right": {"buttress_width": 1.8}}, kind="sweep", vary="right.buttress_width", values=[1.4, 1.8]
-    )
+    nested = run({**CHURCH, "right": {"buttress_width": 1.8}}, kind="sweep", vary="right.buttress_width", values=[1.4, 1.8])
     assert nested["collapse_accelerations_g"][1] == pytest.approx(0.0681, abs=1e-4)
 
 
@@ -172,11 +164,7 @@ def test_survey(tmp_path: Path) -> None:
 def test_cracked_buttress_that_cannot_stand(tmp_path: Path) -> None:
     """A slender buttress stands whole, but not once it cracks."""
     whole = run({**VAULT, "buttress_width": 3.6}, kind="tilt", fracture=True, joints=NO_SLIDING)
-    assert (
-        whole.status == "ok"
-        and whole["fracture"].as_json() == {"stands": False}
-        and "cannot stand upright" in whole.warnings[0]
-    )
+    assert whole.status == "ok" and whole["fracture"].as_json() == {"stands": False} and "cannot stand upright" in whole.warnings[0]
     (tmp_path / "s.csv").write_text("name,buttress_width\nslender,3.6\nstout,6.0\n")
     table = run(VAULT, tmp_path, kind="survey", file="s.csv", fracture=True, joints=NO_SLIDING).tables["survey"].columns
     assert table["fractured_collapse_acceleration"][0] == 0.0 and "cracked" in table["reason"][0]
@@ -233,9 +221,7 @@ def test_what_cannot_stand_is_an_answer_with_its_proof() -> None:
             assert words in found.verdict.statement and "certificate" in found.results.certificate
             assert found.results.collapse_acceleration_g == 0.0
     pulse = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 1.0}
-    deck = make_deck(
-        {"structure": {**ARCH, "thickness": 0.9, "embrace": 180.0}, "motion": pulse, "analysis": {"kind": "rocking"}}
-    )
+    deck = make_deck({"structure": {**ARCH, "thickness": 0.9, "embrace": 180.0}, "motion": pulse, "analysis": {"kind": "rocking"}})
     rocked = run_analyses(Context(deck, threads=1))[0]
     assert "least for 180 deg" in rocked.verdict.statement and rocked.verdict.outcome == "cannot-stand"
 
@@ -249,11 +235,7 @@ def test_strength_that_the_proof_neglects_leaves_it_open() -> None:
 
 
 def test_refusals_say_why() -> None:
-    blocks = {
-        "kind": "blocks",
-        "block": [{"name": "up", "points": [[0, 1], [1, 1], [1, 2], [0, 2]]}],
-        "ground": [[0, 0, 1, 0]],
-    }
+    blocks = {"kind": "blocks", "block": [{"name": "up", "points": [[0, 1], [1, 1], [1, 2], [0, 2]]}], "ground": [[0, 0, 1, 0]]}
     assert "no block touches the ground" in run(blocks, kind="tilt").reason
 
 
@@ -318,20 +300,8 @@ def test_what_cannot_stand_moves_on_the_page(tmp_path: Path) -> None:
 @pytest.mark.parametrize("strength", [2e5, 5e4])
 def test_a_buttress_that_is_crushed_by_itself_carries_nothing(strength: float) -> None:
     """Weak stone: proven for the section, and at 50 kPa for its buttress alone too."""
-    vault = {
-        "kind": "vault",
-        "radius": 5.0,
-        "thickness": 0.6,
-        "embrace": 157.5,
-        "voussoirs": 12,
-        "face": 4.65,
-        "height": 8.0,
-    }
+    vault = {"kind": "vault", "radius": 5.0, "thickness": 0.6, "embrace": 157.5, "voussoirs": 12, "face": 4.65, "height": 8.0}
     asked = {"kind": "sweep", "vary": "buttress_width", "values": [2.0, 3.0], "buttress_alone": True}
-    deck = {
-        "structure": vault | {"buttress_width": 2.0},
-        "material": {"compressive_strength": strength},
-        "analysis": asked,
-    }
+    deck = {"structure": vault | {"buttress_width": 2.0}, "material": {"compressive_strength": strength}, "analysis": asked}
     found = extrados.run(deck).results[0]
     assert found.status == "ok" and found.verdict.outcome == "cannot-stand"

@@ -80,10 +80,7 @@ def test_residuals_see_what_is_wrong() -> None:
 
 def test_single_chains_show_no_difference() -> None:
     """Gilbert's semicircle of 27 blocks and Oppenheim's arch: dilatant and not, above and below where sliding begins."""
-    for arch, frictions in (
-        (make_arch(10.0, 1.5, 157.5, 7), (0.34, 0.42, 0.6)),
-        (make_arch(1.0, 0.16, 180.0, 27), (0.36, 0.4, 0.7)),
-    ):
+    for arch, frictions in ((make_arch(10.0, 1.5, 157.5, 7), (0.34, 0.42, 0.6)), (make_arch(1.0, 0.16, 180.0, 27), (0.36, 0.4, 0.7))):
         for friction in frictions:
             both = [LimitAnalysis(arch, friction, associated=a, starts=2).collapse()[0].gamma for a in (True, False)]
             assert both[1] == pytest.approx(both[0], abs=1e-7)
@@ -223,14 +220,12 @@ def test_a_load_may_pull_down_what_stands() -> None:
 def test_a_stone_held_by_friction_alone_bears_nothing() -> None:
     """A stone between two piers, with nothing below it: it stands with dilatancy, which wedges it, and slides out without."""
     names = {"left": (0.0, 0.0, 1.0, 1.0), "right": (1.5, 0.0, 1.0, 1.0), "held": (1.0, 0.5, 0.5, 0.4)}
-    stones = [
-        {"name": name, "points": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]}
-        for name, (x, y, w, h) in names.items()
-    ]
+    stones = [{"name": name, "points": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]} for name, (x, y, w, h) in names.items()]
     deck = {
-        "structure": {"kind": "blocks", "block": stones}, "joints": {"friction": 0.6},
+        "structure": {"kind": "blocks", "block": stones},
+        "joints": {"friction": 0.6},
         "analysis": [{"kind": "tilt"}, {"kind": "tilt", "friction_rule": "non-associated"}],
-    }  # fmt: skip
+    }
     dilating, sliding = run_analyses(Context(make_deck(deck), threads=1))
     assert dilating.results.collapse_acceleration_g > 0.1
     assert sliding.status == "ok" and sliding.results.collapse_acceleration_g == 0.0

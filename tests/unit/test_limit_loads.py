@@ -14,11 +14,7 @@ BLOCK = {"kind": "column", "width": WIDTH, "height": HEIGHT}
 
 
 def tilt(load: list[dict], structure: dict = BLOCK, **more) -> Result:
-    deck = {
-        "structure": structure,
-        "joints": {"friction": "no-sliding"},
-        "analysis": {"kind": "tilt", "load": load, **more},
-    }
+    deck = {"structure": structure, "joints": {"friction": "no-sliding"}, "analysis": {"kind": "tilt", "load": load, **more}}
     return run_analyses(Context(make_deck(deck), threads=1))[0]
 
 
@@ -76,13 +72,24 @@ def test_figures_know_the_loads_and_the_line_through_every_stone() -> None:
     force, number = arrays["load_force"].data, arrays["load_number"].data
     assert [force[number == k].sum(axis=0).tolist() for k in (0, 1)] == [[0.0, -12e3], [2e3, -1e3]]
     points = [
-        [[0, 0], [0.8, 0], [0.8, 2], [0, 2]], [[2, 0], [2.8, 0], [2.8, 2], [2, 2]], [[0.4, 2], [1.4, 2], [1.5, 2.4], [0.4, 2.4]],
-        [[1.4, 2], [2.4, 2], [2.4, 2.4], [1.5, 2.4]], [[0, 2], [0.4, 2], [0.4, 3.4], [0, 3.4]],
+        [[0, 0], [0.8, 0], [0.8, 2], [0, 2]],
+        [[2, 0], [2.8, 0], [2.8, 2], [2, 2]],
+        [[0.4, 2], [1.4, 2], [1.5, 2.4], [0.4, 2.4]],
+        [[1.4, 2], [2.4, 2], [2.4, 2.4], [1.5, 2.4]],
+        [[0, 2], [0.4, 2], [0.4, 3.4], [0, 3.4]],
         [[2.4, 2], [2.8, 2], [2.8, 3.4], [2.4, 3.4]],
-    ]  # fmt: skip
+    ]
     stones = [{"name": f"stone {k}", "points": outline} for k, outline in enumerate(points)]
-    found = run_analyses(Context(make_deck({
-        "structure": {"kind": "blocks", "block": stones}, "joints": {"friction": 0.6},
-        "analysis": {"kind": "moving-load", "count": 5},
-    }), threads=1))[0]  # fmt: skip
+    found = run_analyses(
+        Context(
+            make_deck(
+                {
+                    "structure": {"kind": "blocks", "block": stones},
+                    "joints": {"friction": 0.6},
+                    "analysis": {"kind": "moving-load", "count": 5},
+                }
+            ),
+            threads=1,
+        )
+    )[0]
     assert set(found.arrays["collapse_line_of"].data) == {f"stone {k}" for k in range(6)}

@@ -89,29 +89,27 @@ def test_driver_and_refusals() -> None:
     assert [o.name for o in spread.results.openings] and spread.results.movement_at_fall_m is None
     column = {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4}
     assert "has one support" in run(None, column).reason
-    assert (
-        run(None, {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}).status == "ok"
-    )
+    assert run(None, {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}).status == "ok"
 
 
 def test_the_right_support_of_any_structure_spreads() -> None:
     """A wall over a door: its right pier moves out; what the stones of the pier do is what [[initial.movements]] asks."""
     structure = {
-        "kind": "brickwork", "units": 6, "courses": 9, "unit_length": 0.5, "unit_height": 0.25,
+        "kind": "brickwork",
+        "units": 6,
+        "courses": 9,
+        "unit_length": 0.5,
+        "unit_height": 0.25,
         "openings": [{"x": [1.0, 2.0], "y": [0.0, 1.25]}],
-    }  # fmt: skip
+    }
 
     def run(**tables):
-        deck = make_deck(
-            {"structure": structure, "analysis": {"kind": "supports", **tables.pop("asked", {})}, **tables}
-        )
+        deck = make_deck({"structure": structure, "analysis": {"kind": "supports", **tables.pop("asked", {})}, **tables})
         return deck.building.blocks(), run_analyses(Context(deck, threads=1))[0]
 
     assembly, found = run(asked={"movement": "5 mm"})
     right = [
-        assembly.joint_names[j]
-        for j in range(len(assembly.a))
-        if GROUND in (assembly.a[j], assembly.b[j]) and assembly.middle[j, 0] > 1.5
+        assembly.joint_names[j] for j in range(len(assembly.a)) if GROUND in (assembly.a[j], assembly.b[j]) and assembly.middle[j, 0] > 1.5
     ]
     _, same = run(initial={"movements": [{"joint": name, "dx": 0.005} for name in right]})
     assert found.status == same.status == "ok"
@@ -127,9 +125,11 @@ def test_stones_wedged_without_sliding_follow_where_they_can() -> None:
 
     def run(**movement: float):
         deck = {
-            "structure": structure, "joints": {"friction": "no-sliding"}, "analysis": {"kind": "supports"},
+            "structure": structure,
+            "joints": {"friction": "no-sliding"},
+            "analysis": {"kind": "supports"},
             "initial": {"movements": [{"joint": "base of unit 4", **movement}]},
-        }  # fmt: skip
+        }
         return run_analyses(Context(make_deck(deck), threads=1))[0]
 
     apart = run(dx=0.02)

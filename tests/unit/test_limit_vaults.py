@@ -47,10 +47,7 @@ def test_readings(make, width: float, degrees: float) -> None:
     assert abs(np.degrees(np.arctan(answer.gamma)) - 7.7) < 0.22  # thesis 3.4
     assert answer.gap < 1e-9
     assert [side for _, side in answer.mechanism.hinges] == ["intrados", "extrados", "intrados", "extrados"]
-    assert [j for j, _ in answer.mechanism.hinges] in (
-        [0, 11, 22, 26],
-        [0, 10, 22, 26],
-    )  # the last: toe of the leeward buttress
+    assert [j for j, _ in answer.mechanism.hinges] in ([0, 11, 22, 26], [0, 10, 22, 26])  # the last: toe of the leeward buttress
 
 
 @pytest.mark.parametrize(("make", "limit", "thesis"), [(reading_a, 7.58, None), (reading_b, 9.12, 9.2)])
@@ -131,8 +128,14 @@ def test_free_wall_cracks() -> None:
 
 @pytest.mark.parametrize(
     ("share", "force", "monolithic", "height"),
-    [(0.0, 5.0 / 30.0, 0.5, 5.0), (0.1, 0.3739, 0.6, 3.3915), (0.25, 0.5585, 0.75, 2.873), (0.5, 0.8333, 1.0, 2.5), (1.0, 1.3539, 1.5, 2.1922)],
-)  # fmt: skip
+    [
+        (0.0, 5.0 / 30.0, 0.5, 5.0),
+        (0.1, 0.3739, 0.6, 3.3915),
+        (0.25, 0.5585, 0.75, 2.873),
+        (0.5, 0.8333, 1.0, 2.5),
+        (1.0, 1.3539, 1.5, 2.1922),
+    ],
+)
 def test_thrust_on_a_buttress(share: float, force: float, monolithic: float, height: float) -> None:
     """Thrust at the inner top edge with a vertical part of `share` of the weight: closed forms of the crack."""
 
@@ -243,9 +246,7 @@ def test_a_section_that_nothing_crosses_has_no_place() -> None:
         warnings.simplefilter("error", RuntimeWarning)
         force, x = section_forces(answer.assembly, 0, np.array([4.0, 1.0]), answer.collapse_state, answer.loads)
     assert not force[0].any() and np.isnan(x[0])
-    assert force[1] == pytest.approx(np.array([1.0, -3.0]) * 2000.0 * GRAVITY * 2.0 / 3.0) and x[1] == pytest.approx(
-        1.0 / 3.0
-    )
+    assert force[1] == pytest.approx(np.array([1.0, -3.0]) * 2000.0 * GRAVITY * 2.0 / 3.0) and x[1] == pytest.approx(1.0 / 3.0)
 
 
 @pytest.mark.parametrize(
@@ -259,15 +260,7 @@ def test_a_section_that_nothing_crosses_has_no_place() -> None:
     ],
 )
 def test_impossible_vaults_are_named(change: dict, words: str) -> None:
-    sizes = {
-        "radius": 10.0,
-        "thickness": 1.5,
-        "embrace": 120.0,
-        "voussoirs": 24,
-        "face": 8.5,
-        "buttress_width": 5.0,
-        "height": 25.0,
-    }
+    sizes = {"radius": 10.0, "thickness": 1.5, "embrace": 120.0, "voussoirs": 24, "face": 8.5, "buttress_width": 5.0, "height": 25.0}
     with pytest.raises(BadGeometry, match=words):
         make_vault(**{**sizes, **change})
 

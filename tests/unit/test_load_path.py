@@ -30,9 +30,14 @@ from extrados.results.model import Result
 WALL = {"kind": "brickwork", "units": 5, "courses": 6, "unit_length": 0.4, "unit_height": 0.175, "begins": "half"}
 #: Ferris and Tin-Loi 2001, wall 3: printed .40369 associated, .35582 without dilatancy
 OPENING = {
-    "kind": "brickwork", "unit_length": 0.4, "unit_height": 0.175, "units": 4, "courses": 11, "lintels": False,
+    "kind": "brickwork",
+    "unit_length": 0.4,
+    "unit_height": 0.175,
+    "units": 4,
+    "courses": 11,
+    "lintels": False,
     "openings": [{"x": [0.6, 1.0], "y": [0.525, 1.4]}],
-}  # fmt: skip
+}
 
 
 def run(structure: dict[str, Any], friction: Any = 0.65, **keys: Any) -> Result:
@@ -46,10 +51,8 @@ def asked(peak_g: float) -> Demanded:
 
 @pytest.mark.parametrize(
     ("direction", "associated", "paths", "least"), [(90.0, 0.4532, (0.2535, 0.2595), 0.25), (270.0, 0.3419, (0.2499, 0.2503), 0.25)]
-)  # fmt: skip
-def test_the_corner_of_the_reference(
-    direction: float, associated: float, paths: tuple[float, float], least: float
-) -> None:
+)
+def test_the_corner_of_the_reference(direction: float, associated: float, paths: tuple[float, float], least: float) -> None:
     """Another program: paths .254 to .259 and .2500 to .2502 g, least .2500, where an iteration to the greatest ends at .3562."""
     limit = SolidLimit(assemble(corner()), 0.65)
     row, state = slide(limit, direction, None, 2)
@@ -86,15 +89,7 @@ def test_a_block_that_slides_has_no_interval(direction: float) -> None:
 
 def test_dowels_along_a_path() -> None:
     """Friction plus the strength over the weight of the upper drum, as with dilatancy."""
-    drums = {
-        "kind": "column",
-        "width": 1.0,
-        "height": 1.0,
-        "drums": 2,
-        "section": "round",
-        "sides": 20,
-        "dowels": 2000.0,
-    }
+    drums = {"kind": "column", "width": 1.0, "height": 1.0, "drums": 2, "section": "round", "sides": 20, "dowels": 2000.0}
     tables = {
         "structure": drums,
         "joints": {"friction": 0.2, "types": [{"joints": ["ground"], "friction": 5.0}]},
@@ -110,9 +105,7 @@ def test_dowels_along_a_path() -> None:
 
 
 def test_paths_in_the_plane_end_at_printed_states() -> None:
-    limit = LimitAnalysis(
-        make_deck({"structure": OPENING, "analysis": {"kind": "tilt"}}).building.blocks(), 0.65, associated=False
-    )
+    limit = LimitAnalysis(make_deck({"structure": OPENING, "analysis": {"kind": "tilt"}}).building.blocks(), 0.65, associated=False)
     for direction in (1, -1):
         state, mechanism = collapse_along_path(limit, direction, 0.5)
         assert direction * state.gamma == pytest.approx(0.35582, abs=1e-5)
@@ -123,13 +116,9 @@ def test_plane_and_space_have_one_path() -> None:
     """A plane wall in space, whose corners share what the ends of its joints carry."""
     plane = run(coursed(2))
     space = run(coursed(2), direction=0.0, rose=4, starts=1)
-    assert space.results.collapse_acceleration_load_path_g == pytest.approx(
-        plane.results.collapse_acceleration_load_path_g, abs=2e-3
-    )
+    assert space.results.collapse_acceleration_load_path_g == pytest.approx(plane.results.collapse_acceleration_load_path_g, abs=2e-3)
     for r in (plane.results, space.results):
-        least, design, most = (
-            r.collapse_acceleration_non_associated_g, r.collapse_acceleration_load_path_g, r.collapse_acceleration_g,
-        )  # fmt: skip
+        least, design, most = (r.collapse_acceleration_non_associated_g, r.collapse_acceleration_load_path_g, r.collapse_acceleration_g)
         assert least <= design + 1e-6 and design < most
     r = plane.results
     verdict = r.judged(asked(0.5 * (design + most)))
@@ -187,10 +176,7 @@ def test_a_descent_never_rises() -> None:
 
 def test_no_path_under_crushing() -> None:
     limit = LimitAnalysis(
-        make_deck({"structure": WALL, "analysis": {"kind": "tilt"}}).building.blocks(),
-        0.65,
-        strength=2e6,
-        associated=False,
+        make_deck({"structure": WALL, "analysis": {"kind": "tilt"}}).building.blocks(), 0.65, strength=2e6, associated=False
     )
     with pytest.raises(NoAnswer, match="crushing"):
         collapse_along_path(limit, 1, 0.5)
@@ -214,9 +200,14 @@ def test_the_design_value_is_of_certified_paths() -> None:
 
     def path(gamma: float | None, certified: bool) -> results.LoadPath:
         return results.LoadPath(
-            shear_stiffness_ratio=1.0, collapse_acceleration_g=gamma, certified=certified, zero_gap_g=None,
-            equilibrium_residual=None, friction_residual=None, overlap_residual=None,
-        )  # fmt: skip
+            shear_stiffness_ratio=1.0,
+            collapse_acceleration_g=gamma,
+            certified=certified,
+            zero_gap_g=None,
+            equilibrium_residual=None,
+            friction_residual=None,
+            overlap_residual=None,
+        )
 
     assert results.design_value([path(0.2, False), path(0.3, True), path(0.25, True), path(None, False)]) == 0.25
     assert results.design_value([path(0.2, False)]) is None and results.design_value(None) is None

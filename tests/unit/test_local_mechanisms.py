@@ -33,11 +33,7 @@ def test_a_single_block_is_what_the_rocking_block_is() -> None:
     block = Overturning((Weight(2000.0 * GRAVITY * b * h, 0.5 * b, 0.5 * h),))
     weight, displacement = block.swaying
     found = capacity(block.multiplier(), weight, displacement, float(block.travel(block.ultimate())))
-    assert (
-        found.alpha0 == pytest.approx(b / h)
-        and found.part == pytest.approx(1.0)
-        and found.mass == pytest.approx(2000.0 * b * h)
-    )
+    assert found.alpha0 == pytest.approx(b / h) and found.part == pytest.approx(1.0) and found.mass == pytest.approx(2000.0 * b * h)
     assert found.d0 == pytest.approx(0.5 * b), "its centre then stands above the toe"
     rocking = {"structure": {"kind": "block", "width": b, "height": h}, "analysis": {"kind": "tilt"}}
     assert extrados.run(rocking)["tilt"].collapse_acceleration_g == pytest.approx(found.alpha0)
@@ -72,19 +68,14 @@ def test_what_holds_and_what_pushes_moves_the_multiplier_the_right_way() -> None
     carried = mechanism(**base, floors=[{"height": 6.0, "load": 1e4}])["local-mechanism"].multiplier
     assert held > bare > carried
     assert mechanism(**base, side_walls={"thickness": 0.5, "crack_angle": 20.0})["local-mechanism"].multiplier > bare
-    crushed = extrados.run(
-        {"material": {"density": 2000.0, "compressive_strength": 1e6}, "analysis": {"kind": "local-mechanism", **base}}
-    )
+    crushed = extrados.run({"material": {"density": 2000.0, "compressive_strength": 1e6}, "analysis": {"kind": "local-mechanism", **base}})
     setback = 2.0 * 2000.0 * GRAVITY * 0.6 * 6.0 / (3.0 * 1e6)
     assert crushed["local-mechanism"].multiplier == pytest.approx((0.3 - setback) / 3.0)
 
 
 def test_a_corner_says_that_its_stone_does_not_crush() -> None:
     corner = {"kind": "local-mechanism", "mechanism": "corner", "height": 6.0, "thickness": 0.5, "crack_angle": 30.0}
-    hard, soft = (
-        extrados.run({"material": material, "analysis": corner}).analyses[0]
-        for material in ({}, {"compressive_strength": 1e5})
-    )
+    hard, soft = (extrados.run({"material": material, "analysis": corner}).analyses[0] for material in ({}, {"compressive_strength": 1e5}))
     assert soft["results"]["multiplier"] == hard["results"]["multiplier"]
     assert not hard["warnings"] and any("crushing there is neglected" in text for text in soft["warnings"])
 
@@ -92,9 +83,7 @@ def test_a_corner_says_that_its_stone_does_not_crush() -> None:
 def test_refusals_name_what_is_missing() -> None:
     (told,) = mechanism(mechanism="gable", height=3.0, thickness=0.4).analyses
     assert told["status"] == "refused" and "needs width" in told["reason"]
-    (told,) = mechanism(
-        mechanism="facade", height=6.0, thickness=0.6, floors=[{"height": 6.0, "thrust": "10 kN"}]
-    ).analyses
+    (told,) = mechanism(mechanism="facade", height=6.0, thickness=0.6, floors=[{"height": 6.0, "thrust": "10 kN"}]).analyses
     assert told["status"] == "ok" and told["verdict"]["outcome"] == "cannot-stand"
     (told,) = mechanism(mechanism="building").analyses
     assert told["status"] == "refused" and "[structure]" in told["reason"]
@@ -123,17 +112,9 @@ def test_a_wall_on_a_plan_is_the_facade_of_the_table() -> None:
     """A floor of 2 kPa over 25 m^2 that two walls of 5 m bear: 5 kN on each metre of them."""
     floor = {"storey": 2, "young": "50 MPa", "thickness": 0.05, "load": "2 kPa", "bears_on": ["front", "back"]}
     found, run = walls_of(house(floors=[floor]), peak_acceleration="0.1 g")
-    table = mechanism(
-        mechanism="facade",
-        height=6.0,
-        thickness=0.5,
-        floors=[{"height": 6.0, "load": "5 kN"}],
-        peak_acceleration="0.1 g",
-    )
+    table = mechanism(mechanism="facade", height=6.0, thickness=0.5, floors=[{"height": 6.0, "load": "5 kN"}], peak_acceleration="0.1 g")
     own, alone = found["front", 1], table["local-mechanism"]
-    assert own.multiplier == pytest.approx(alone.multiplier) and own.zero_displacement_m == pytest.approx(
-        alone.zero_displacement_m
-    )
+    assert own.multiplier == pytest.approx(alone.multiplier) and own.zero_displacement_m == pytest.approx(alone.zero_displacement_m)
     assert own.margin == pytest.approx(alone.governing()[0][0])
     assert found["left", 1].multiplier == pytest.approx(0.5 / 6.0), "which bears no floor"
     assert len(found) == 8 and run["local-mechanism"].multiplier == min(w.multiplier for w in found.values())
@@ -159,18 +140,13 @@ def test_of_a_wall_on_a_plan_openings_thicknesses_and_what_holds_it_count() -> N
 
 def test_walls_that_are_all_held_have_no_mechanism_and_the_crushing_hinge_is_set_back() -> None:
     slabs = [{"storey": k, "kind": "rigid"} for k in (1, 2)]
-    run = extrados.run(
-        {"structure": house(floors=slabs), "analysis": {"kind": "local-mechanism", "mechanism": "building"}}
-    )
+    run = extrados.run({"structure": house(floors=slabs), "analysis": {"kind": "local-mechanism", "mechanism": "building"}})
     (told,) = run.analyses
     assert told["status"] == "ok" and told["verdict"]["outcome"] == "not-applicable"
     assert "restrain the top of every wall" in told["verdict"]["statement"] == run["local-mechanism"].statement()
     soft = {"density": 2000.0, "compressive_strength": "1 MPa"}
     whole = {"structure": house(), "material": soft, "analysis": {"kind": "local-mechanism", "mechanism": "building"}}
-    table = {
-        "material": soft,
-        "analysis": {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.5},
-    }
+    table = {"material": soft, "analysis": {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.5}}
     own, alone = (extrados.run(d)["local-mechanism"] for d in (whole, table))
     found = {(w.wall, w.storey): w.multiplier for w in own.walls}
     assert [found[name, 1] for name in ("front", "right", "back", "left")] == pytest.approx([alone.multiplier] * 4)
@@ -184,11 +160,7 @@ def test_what_openings_share_is_left_out_once() -> None:
     found = []
     for openings in ([whole], parts):
         structure = house({"openings": [*openings, {"storey": 1, "x": [0.2, 0.9], "z": [0.0, 2.0]}]})
-        deck = {
-            "structure": structure,
-            "material": soft,
-            "analysis": {"kind": "local-mechanism", "mechanism": "building"},
-        }
+        deck = {"structure": structure, "material": soft, "analysis": {"kind": "local-mechanism", "mechanism": "building"}}
         found.append(extrados.run(deck)["local-mechanism"].as_json())
     assert found[0] == found[1]
 
@@ -201,27 +173,13 @@ def test_what_a_wall_on_a_plan_cannot_be_asked_is_refused_with_its_key() -> None
         return told["reason"]
 
     whole = [{"storey": 1, "x": [0.0, 5.0], "z": [0.0, 2.0]}]
-    assert "structure.walls.openings: wall 'front' has no masonry at the foot of storey 1" in refused(
-        house({"openings": whole})
-    )
+    assert "structure.walls.openings: wall 'front' has no masonry at the foot of storey 1" in refused(house({"openings": whole}))
     inner = {"name": "inner", "start": [2.0, 1.0], "end": [2.0, 4.0], "thickness": 0.5}
-    floor = {
-        "storey": 1,
-        "kind": "none",
-        "load": "2 kPa",
-        "walls": ["front", "right", "back", "left"],
-        "bears_on": ["inner"],
-    }
+    floor = {"storey": 1, "kind": "none", "load": "2 kPa", "walls": ["front", "right", "back", "left"], "bears_on": ["inner"]}
     apart = house(floors=[floor])
     apart["walls"].append(inner)
     assert "none of the walls that carry its load lies beside it" in refused(apart)
-    for name, value in {
-        "height": 5.0,
-        "width": 2.0,
-        "ties": [{"height": 2.0, "force": 1e3}],
-        "storeys": 3,
-        "building_height": 9.0,
-    }.items():
+    for name, value in {"height": 5.0, "width": 2.0, "ties": [{"height": 2.0, "force": 1e3}], "storeys": 3, "building_height": 9.0}.items():
         assert f"remove {name}" in refused(house(), **{name: value})
     tie = {"ties": [{"from": "front", "to": "back", "area": 1e-3}]}
     abutting = {"supports": {"abutting_wall": "left"}}
@@ -237,17 +195,16 @@ def test_what_goes_for_every_wall_is_said_once() -> None:
 def test_the_worked_example_of_a_pier() -> None:
     """Advanced Design Examples of Seismic Retrofit of Structures, section 2.7.5, its wall 1, Eqs 2.31 to 2.36 [kg, cm]."""
     stress = GRAVITY / 1e-4  # kg/cm^2
-    pier = Pier(
-        0.93, 1.8, 0.35, 10883.0 * GRAVITY, 2864.0 * GRAVITY, True, 30.0 * stress, 2.5 * stress, 0.4, 2.0 / 1.5 * stress
-    )  # fmt: skip
-    rows = [
-        *asce41_piers(pier, 1.0, None, 1.0, "LS"), *en1998_piers(pier, 1.0, None, "SD"), *ntc_piers(pier, 1.0, 1.0, None, "SLV")
-    ]  # fmt: skip
+    pier = Pier(0.93, 1.8, 0.35, 10883.0 * GRAVITY, 2864.0 * GRAVITY, True, 30.0 * stress, 2.5 * stress, 0.4, 2.0 / 1.5 * stress)
+    rows = [*asce41_piers(pier, 1.0, None, 1.0, "LS"), *en1998_piers(pier, 1.0, None, "SD"), *ntc_piers(pier, 1.0, 1.0, None, "SLV")]
     found = {x.rule: x.capacity for x in rows}
     printed = {
-        "ASCE 41 rocking of a pier": 5726.0, "ASCE 41 residual sliding": 5441.0, "ASCE 41 bed-joint sliding": 8493.0,
-        "ASCE 41 toe crushing": 4961.0, "ASCE 41 diagonal tension": 7957.0,
-    }  # fmt: skip
+        "ASCE 41 rocking of a pier": 5726.0,
+        "ASCE 41 residual sliding": 5441.0,
+        "ASCE 41 bed-joint sliding": 8493.0,
+        "ASCE 41 toe crushing": 4961.0,
+        "ASCE 41 diagonal tension": 7957.0,
+    }
     # they round v_me to 2.61, and press the pier with 4.63 where 1.1 (P_D + P_W)/A_n is 4.65
     within = {"ASCE 41 bed-joint sliding": 6e-4, "ASCE 41 toe crushing": 1.5e-3, "ASCE 41 diagonal tension": 1e-3}
     for name, value in printed.items():
@@ -256,9 +213,7 @@ def test_the_worked_example_of_a_pier() -> None:
     nu = load / (0.93 * 0.35) / (30.0 * stress)
     assert found["EN 1998-3 flexure"] == pytest.approx(0.93 * load / 1.8 * (1.0 - 1.15 * nu))
     tension = 2.0 * stress
-    assert found["NTC diagonal cracking"] == pytest.approx(
-        0.93 * 0.35 * tension / 1.5 * np.sqrt(1.0 + load / (0.93 * 0.35) / tension)
-    )
+    assert found["NTC diagonal cracking"] == pytest.approx(0.93 * 0.35 * tension / 1.5 * np.sqrt(1.0 + load / (0.93 * 0.35) / tension))
 
 
 SITE = {"code": "EN1998-1", "ground": "B", "acceleration": "0.15 g"}
@@ -331,10 +286,7 @@ def test_at_a_height_the_floor_is_asked_and_either_check_suffices() -> None:
     low = mechanism(**base)["local-mechanism"].checks
     high = mechanism(**base, base_height=9.0, building_height=10.0, storeys=3)["local-mechanism"]
     linear = high.checks["NTC linear (at height z)"]
-    assert (
-        linear.demand == pytest.approx(high.floor_acceleration_g)
-        and linear.demand > low["NTC linear (at the ground)"].demand
-    )
+    assert linear.demand == pytest.approx(high.floor_acceleration_g) and linear.demand > low["NTC linear (at the ground)"].demand
     assert {linear.code, high.checks["NTC nonlinear"].code} == {"NTC 2018"}
     near = mechanism(**base, base_height=0.1, building_height=10.0, storeys=3)["local-mechanism"].checks
     assert near["NTC linear (at height z)"].demand == pytest.approx(0.18), "not less than the ground itself"
@@ -342,20 +294,19 @@ def test_at_a_height_the_floor_is_asked_and_either_check_suffices() -> None:
 
 def test_a_place_at_a_height_is_not_checked_as_if_it_stood_on_the_ground() -> None:
     """A peak alone does not say what the floor does: no check of NTC holds by it."""
-    run = mechanism(
-        mechanism="parapet",
-        height=1.2,
-        thickness=0.3,
-        peak_acceleration="0.15 g",
-        base_height=9.0,
-        building_height=10.0,
-    )
+    run = mechanism(mechanism="parapet", height=1.2, thickness=0.3, peak_acceleration="0.15 g", base_height=9.0, building_height=10.0)
     checks = run["local-mechanism"].checks
     assert checks["NTC linear (at height z)"].demand is None and not any("at the ground" in name for name in checks)
-    table = {"kind": "local-mechanism", "mechanism": "parapet", "height": 1.2, "thickness": 0.3, "peak_acceleration": "0.15 g", "base_height": 9.0, "building_height": 10.0}  # fmt: skip
-    part = extrados.run({"code": {"jurisdiction": "EN1998"}, "analysis": table})["local-mechanism"].checks[
-        "EN 1998-1 part of a building"
-    ]
+    table = {
+        "kind": "local-mechanism",
+        "mechanism": "parapet",
+        "height": 1.2,
+        "thickness": 0.3,
+        "peak_acceleration": "0.15 g",
+        "base_height": 9.0,
+        "building_height": 10.0,
+    }
+    part = extrados.run({"code": {"jurisdiction": "EN1998"}, "analysis": table})["local-mechanism"].checks["EN 1998-1 part of a building"]
     assert part.capacity == pytest.approx(0.25) and part.verdict == "fails", "q_a of Table 4.4 is 1 of a parapet"
     assert any("without a spectrum they have no demand" in w for w in run.results[0].warnings)
 
@@ -370,10 +321,7 @@ def test_the_motion_is_not_asked_where_a_code_gives_the_spectrum() -> None:
 
 
 def test_the_spectrum_of_the_motion_where_a_deck_has_no_code() -> None:
-    block = {
-        "structure": {"kind": "block", "width": 1.0, "height": 5.0},
-        "motion": {"kind": "record", "file": "extrados:el-centro-1940"},
-    }
+    block = {"structure": {"kind": "block", "width": 1.0, "height": 5.0}, "motion": {"kind": "record", "file": "extrados:el-centro-1940"}}
 
     def checked(**keys) -> object:
         return extrados.run({**block, "analysis": {"kind": "code-checks", **keys}})
@@ -403,7 +351,7 @@ def test_ties_and_a_wall_hold_the_buildings_own_mechanism() -> None:
             {"start": [-0.3, z], "start_stone": "block", "ground": [-5.3, z], "stiffness": "8 MN/m", "yield_force": f"{force} kN"}
             for z, force in ((3.8, 6), (7.4, 4))
         ],
-    }  # fmt: skip
+    }
     asked = {"kind": "local-mechanism", "mechanism": "building", "peak_acceleration": "0.2 g"}
     weight = 2000.0 * GRAVITY * 0.6 * 8.0
     held = 0.075 + (6e3 * 3.8 + 4e3 * 7.4) / (weight * 4.0)
@@ -414,13 +362,9 @@ def test_ties_and_a_wall_hold_the_buildings_own_mechanism() -> None:
     assert found.multiplier == pytest.approx(held, rel=1e-6)
     assert found.zero_displacement_m == pytest.approx(0.3, rel=1e-6)
     alone = 0.075 * GRAVITY / 1.35
-    assert found.equivalent_period_s == pytest.approx(
-        1.68 * np.pi * np.sqrt(0.4 * found.zero_displacement_m / (0.6 * alone)), rel=1e-6
-    )
+    assert found.equivalent_period_s == pytest.approx(1.68 * np.pi * np.sqrt(0.4 * found.zero_displacement_m / (0.6 * alone)), rel=1e-6)
     facade["ties"][0].pop("yield_force")
-    (told,) = extrados.run(
-        {**facade, "supports": {"abutting_wall": "left", "rebound": 0.4}, "analysis": asked}
-    ).analyses
+    (told,) = extrados.run({**facade, "supports": {"abutting_wall": "left", "rebound": 0.4}, "analysis": asked}).analyses
     assert told["status"] == "refused" and "never yields" in told["reason"]
 
 
@@ -438,9 +382,7 @@ def test_a_mechanism_that_slides_is_not_taken_as_one_that_turns() -> None:
 def test_ties_of_the_table_are_not_counted_on_to_collapse() -> None:
     """Circ. 7/2019 C8.7.1.2.1.6: d_0 on a curve of the actions that are there until collapse."""
     base = {"mechanism": "facade", "height": 6.0, "thickness": 0.6}
-    bare, tied = (
-        mechanism(**base, **more)["local-mechanism"] for more in ({}, {"ties": [{"height": 5.5, "force": 2e3}]})
-    )
+    bare, tied = (mechanism(**base, **more)["local-mechanism"] for more in ({}, {"ties": [{"height": 5.5, "force": 2e3}]}))
     assert tied.multiplier > bare.multiplier and tied.zero_displacement_m == pytest.approx(bare.zero_displacement_m)
     pushed = mechanism(**base, floors=[{"height": 6.0, "thrust": 1e3}])["local-mechanism"]
     assert pushed.zero_displacement_m < bare.zero_displacement_m
@@ -451,20 +393,12 @@ def test_ties_of_the_table_are_not_counted_on_to_collapse() -> None:
 def test_a_mechanism_whose_stones_crush_is_not_said_to_slide() -> None:
     arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
     own = {"kind": "local-mechanism", "mechanism": "building"}
-    deck = {
-        "structure": arch,
-        "material": {"compressive_strength": 1e6},
-        "joints": {"friction": "no-sliding"},
-        "analysis": own,
-    }
+    deck = {"structure": arch, "material": {"compressive_strength": 1e6}, "joints": {"friction": "no-sliding"}, "analysis": own}
     found = extrados.run(deck).results[0]
     assert (
-        any("Blocks crush at the hinges before the rigid-body mechanism starts" in w for w in found.warnings)
-        and "crushes" in found.answer
+        any("Blocks crush at the hinges before the rigid-body mechanism starts" in w for w in found.warnings) and "crushes" in found.answer
     )
-    assert found.results.multiplier == pytest.approx(
-        extrados.run({**deck, "analysis": {"kind": "tilt"}})["tilt"].collapse_acceleration_g
-    )
+    assert found.results.multiplier == pytest.approx(extrados.run({**deck, "analysis": {"kind": "tilt"}})["tilt"].collapse_acceleration_g)
 
 
 OWN = {"kind": "local-mechanism", "mechanism": "building"}
@@ -506,9 +440,7 @@ def test_a_mechanism_without_a_known_motion_keeps_what_needs_none() -> None:
 
     def arch(thickness: float, friction: float = 2.0):
         structure = {"kind": "arch", "radius": 1.0, "thickness": thickness, "embrace": 170.0, "voussoirs": 6}
-        return extrados.run(
-            {"structure": structure, "joints": {"friction": friction}, "analysis": [OWN, {"kind": "tilt"}]}
-        )
+        return extrados.run({"structure": structure, "joints": {"friction": friction}, "analysis": [OWN, {"kind": "tilt"}]})
 
     stocky, warned = arch(0.2932), arch(0.2932).analyses[0]["warnings"]
     found = stocky["local-mechanism"]

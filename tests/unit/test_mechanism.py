@@ -54,10 +54,7 @@ def lopsided() -> Assembly:
 def stones(*shapes: tuple[str, list, list]) -> Assembly:
     """Free blocks of a deck without file."""
     deck = make_deck(
-        {
-            "structure": {"kind": "blocks", "block": [{"name": n, "points": p} for n, p, _ in shapes]},
-            "analysis": [{"kind": "tilt"}],
-        }
+        {"structure": {"kind": "blocks", "block": [{"name": n, "points": p} for n, p, _ in shapes]}, "analysis": [{"kind": "tilt"}]}
     )
     return deck.building.blocks()
 
@@ -140,9 +137,14 @@ def test_a_block_is_the_block(toes) -> None:
 
 
 SECTIONS = [
-    "vault/dejong-a.toml", "vault/vezelay-like.toml", "vault/flyers.toml", "limit/trapezoids.toml", "limit/lintel.toml",
-    "dem/column.toml", "dem/wall.toml",
-]  # fmt: skip
+    "vault/dejong-a.toml",
+    "vault/vezelay-like.toml",
+    "vault/flyers.toml",
+    "limit/trapezoids.toml",
+    "limit/lintel.toml",
+    "dem/column.toml",
+    "dem/wall.toml",
+]
 
 
 @pytest.mark.parametrize("name", SECTIONS)
@@ -255,9 +257,7 @@ def test_an_ensemble_does_not_depend_on_threads() -> None:
     m = model("vault/dejong-a.toml")
     motions = [pulses.step_pulse(0.2 * GRAVITY, t).ground for t in np.linspace(0.2, 2.0, 12)]
     runs = np.arange(12)
-    answers = [
-        rocking.ensemble([m.body], motions, np.zeros(12, dtype=int), runs, 1.0, 20.0, threads=k) for k in (1, 2, 5)
-    ]
+    answers = [rocking.ensemble([m.body], motions, np.zeros(12, dtype=int), runs, 1.0, 20.0, threads=k) for k in (1, 2, 5)]
     assert len(set(answers[0].outcome.tolist())) == 2
     for other in answers[1:]:
         for name in ("outcome", "peak", "peak_ratio", "stop_time", "steps"):

@@ -84,9 +84,12 @@ def test_a_further_test_fails_as_often_as_stated(count: int) -> None:
 def test_the_pool_of_two_strategies() -> None:
     """Weights are shares of the tests, and the interval encloses both; the others are named with their reasons."""
     rows = [
-        row("tilt", margin=1.2), row("sla", margin=0.7, outcome="collapses"), row("rocking", margin_at_least=1.5),
-        row("code-checks", margin=0.5), row("dem", status="refused"),
-    ]  # fmt: skip
+        row("tilt", margin=1.2),
+        row("sla", margin=0.7, outcome="collapses"),
+        row("rocking", margin_at_least=1.5),
+        row("code-checks", margin=0.5),
+        row("dem", status="refused"),
+    ]
     found = estimate_collapse(rows)
     (tilt,) = (u for u in uncertainties_of("tilt") if u.quantity == "capacity in acceleration")
     (sla,) = (u for u in uncertainties_of("sla") if u.quantity == "peak load")
@@ -123,12 +126,9 @@ def test_the_share_under_the_motion_itself_comes_first() -> None:
 
 
 @pytest.mark.parametrize(
-    ("intensity", "levels", "collapsed"),
-    [("scale", [0.5, 1.0], 9), ("scale", [0.5, 1.2], None), ("pga", [0.5, 1.0], None)],
+    ("intensity", "levels", "collapsed"), [("scale", [0.5, 1.0], 9), ("scale", [0.5, 1.2], None), ("pga", [0.5, 1.0], None)]
 )
-def test_levels_of_another_intensity_are_not_the_hazard(
-    intensity: str, levels: list[float], collapsed: int | None
-) -> None:
+def test_levels_of_another_intensity_are_not_the_hazard(intensity: str, levels: list[float], collapsed: int | None) -> None:
     runs = OverLevels.model_construct(intensity=intensity, levels=levels, count=[20, 20], collapsed=[1, 9])
     moving = estimate_collapse([row("tilt", margin=1.2)], runs).in_motion
     assert (moving and moving.collapsed) == collapsed

@@ -170,7 +170,7 @@ MOTIONS = {
     "suite": {"pattern": "*.at2", "sa": "0.3 g", "sa_period": 0.5},
     "generated": {"mmi": 6.5, "duration": 4.0, "envelope": "trapezoid"},
     "compatible": {"code": "EN1998-1", "acceleration": "0.2 g", "ground": "B", "duration": 12.0},
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", MOTIONS)
@@ -198,29 +198,21 @@ def test_every_motion_kind_is_studied_and_played(tmp_path, kind) -> None:
 
 def test_members(tmp_path) -> None:
     record(tmp_path, "a.at2"), record(tmp_path, "b.at2", 0.5)
-    deck = make_deck(
-        {"motion": {"kind": "suite", "folder": ".", "member": 2}, "analysis": {"kind": "motion"}}, tmp_path
-    )
+    deck = make_deck({"motion": {"kind": "suite", "folder": ".", "member": 2}, "analysis": {"kind": "motion"}}, tmp_path)
     assert make_motion(deck.motion, tmp_path).name == "b"
     assert [m.name for m in suite_motions(deck.motion, tmp_path)] == ["a", "b"]
-    deck = make_deck(
-        {"motion": {"kind": "generated", "mmi": 7, "duration": 3.0, "member": 4}, "analysis": {"kind": "motion"}}
-    )
+    deck = make_deck({"motion": {"kind": "generated", "mmi": 7, "duration": 3.0, "member": 4}, "analysis": {"kind": "motion"}})
     (member,) = Generated(generated_set(deck.motion, tmp_path)).motions(3, 1, 1)
     assert member.name == make_motion(deck.motion, tmp_path).name == "generated motion 4"
     assert np.array_equal(member.ground.samples, make_motion(deck.motion, tmp_path).ground.samples)
 
 
 def test_exported_record_is_the_motion(tmp_path) -> None:
-    out = extrados.run(
-        {"motion": {"kind": "record", "file": "extrados:el-centro-1940"}, "analysis": {"kind": "motion"}},
-        tmp_path / "o",
-    )
+    out = extrados.run({"motion": {"kind": "record", "file": "extrados:el-centro-1940"}, "analysis": {"kind": "motion"}}, tmp_path / "o")
     r = out["motion"]
     assert r["pga_g"] == pytest.approx(0.31882) and r["pga_time_s"] == pytest.approx(2.04)
     again = extrados.run(
-        {"motion": {"kind": "record", "file": str(tmp_path / "o" / "motion.AT2")}, "analysis": {"kind": "motion"}},
-        tmp_path / "p",
+        {"motion": {"kind": "record", "file": str(tmp_path / "o" / "motion.AT2")}, "analysis": {"kind": "motion"}}, tmp_path / "p"
     )["motion"]
     for key in ("pga_g", "pgv_m_s", "arias_m_s", "cav_m_s", "housner_intensity_m"):
         assert again[key] == pytest.approx(r[key], rel=1e-6)
@@ -238,7 +230,7 @@ def test_exported_record_is_the_motion(tmp_path) -> None:
         ('kind = "compatible"\ncode = "ASCE7"\nsds = "1 g"', "needs sd1"),
         ('kind = "velocity-pulse"\nvelocity = 0.3\nperiod = 1\ncycles = 0.5', "greater than 1"),
     ],
-)  # fmt: skip
+)
 def test_wrong_decks(deck, words) -> None:
     with pytest.raises(DeckError) as error:
         read_text(f'[motion]\n{deck}\n[analysis]\nkind = "motion"\n'.encode())
@@ -278,9 +270,7 @@ def test_command_line(tmp_path, monkeypatch) -> None:
     (tmp_path / "bare.txt").write_text("".join(f"{v}\n" for v in files.series()))
     answer = runner.invoke(app, ["motion", "bare.txt", "--no-figures"])
     assert answer.exit_code == 3 and "time step" in answer.output
-    answer = runner.invoke(
-        app, ["motion", "bare.txt", "--time-step", "0.005", "--unit", "cm/s^2", "--no-figures", "--json"]
-    )
+    answer = runner.invoke(app, ["motion", "bare.txt", "--time-step", "0.005", "--unit", "cm/s^2", "--no-figures", "--json"])
     assert answer.exit_code == 0
     assert json.loads(answer.output)["analyses"][0]["results"]["time_step_s"] == 0.005
     assert runner.invoke(app, ["motion", "r.at2", "--unit", "furlong"]).exit_code == 2
@@ -294,9 +284,7 @@ def test_measures_of_spectra_agree_with_their_definitions() -> None:
     s = spectral_measures(a, step)
     assert s.predominant_period == pytest.approx(1 / f, rel=0.03) and s.mean_period == pytest.approx(1 / f, rel=0.03)
     band = np.linspace(0.1, 2.5, 1201)
-    assert s.housner_intensity == pytest.approx(
-        np.trapezoid(core.response_spectra(a, step, band).psv[0], band), rel=3e-3
-    )
+    assert s.housner_intensity == pytest.approx(np.trapezoid(core.response_spectra(a, step, band).psv[0], band), rel=3e-3)
     frequency, amplitude = fourier_spectrum(a, step)
     # Parseval: int a^2 dt = 2 int |X|^2 df
     assert 2 * np.trapezoid(amplitude**2, frequency) == pytest.approx(np.sum(a**2) * step, rel=1e-3)
@@ -304,9 +292,17 @@ def test_measures_of_spectra_agree_with_their_definitions() -> None:
 
 @pytest.mark.parametrize(
     "raw",
-    [b"", b"\xff\xfe0\x001\x00", b"\0" * 100, b"0,1\n0,2\n0,3\n", b"0 1\n1 nan\n2 3\n", files.at2(files.series())[:900].encode(), b"\xe9" * 400],
+    [
+        b"",
+        b"\xff\xfe0\x001\x00",
+        b"\0" * 100,
+        b"0,1\n0,2\n0,3\n",
+        b"0 1\n1 nan\n2 3\n",
+        files.at2(files.series())[:900].encode(),
+        b"\xe9" * 400,
+    ],
     ids=["empty", "utf-16", "binary", "commas", "nan", "cut", "latin"],
-)  # fmt: skip
+)
 def test_hostile_files_on_the_command_line(tmp_path, monkeypatch, raw) -> None:
     """A message with the file and exit code 3, never a traceback."""
     monkeypatch.chdir(tmp_path)

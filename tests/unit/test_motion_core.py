@@ -33,10 +33,7 @@ def scipy_peaks(a: np.ndarray, step: float, period: float, damping: float) -> np
     fine = np.interp(time, np.arange(len(a)) * step, a)
     w = 2.0 * np.pi / period
     system = signal.StateSpace(
-        [[0, 1], [-(w**2), -2 * damping * w]],
-        [[0], [-1]],
-        [[1, 0], [0, 1], [-(w**2), -2 * damping * w]],
-        np.zeros((3, 1)),
+        [[0, 1], [-(w**2), -2 * damping * w]], [[0], [-1]], [[1, 0], [0, 1], [-(w**2), -2 * damping * w]], np.zeros((3, 1))
     )
     _, y, x = signal.lsim(system, fine, time)
     tail = int(np.ceil(0.5 * period / (h * np.sqrt(1.0 - damping**2))))
@@ -138,8 +135,19 @@ def test_kinematics_are_exact_for_straight_lines() -> None:
 
 def test_refusals(el_centro) -> None:
     a, step = el_centro
-    for bad in ({"step": 0.0}, {"step": np.nan}, {"periods": [0.0]}, {"periods": []}, {"dampings": [1.0]}, {"dampings": [-0.1]},
-                {"threads": 0}, {"periods": [1e-6]}, {"motions": [1.0]}, {"motions": [1.0, np.nan]}, {"points_per_cycle": 4}):  # fmt: skip
+    for bad in (
+        {"step": 0.0},
+        {"step": np.nan},
+        {"periods": [0.0]},
+        {"periods": []},
+        {"dampings": [1.0]},
+        {"dampings": [-0.1]},
+        {"threads": 0},
+        {"periods": [1e-6]},
+        {"motions": [1.0]},
+        {"motions": [1.0, np.nan]},
+        {"points_per_cycle": 4},
+    ):
         keys = {"motions": a, "step": step, "periods": [1.0], "dampings": [0.05]} | bad
         with pytest.raises((ValueError, CoreError)):
             core.response_spectra(**keys)

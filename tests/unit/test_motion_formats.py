@@ -27,7 +27,10 @@ FILES = {
     "cosmos.v2c": (files.cosmos([[("acceleration", "cm/sec2(04)", A)]]), "COSMOS", files.STEP, "cm/s^2", A),
     "cosmos.v2": (
         files.cosmos([[("acceleration", "cm/sec2(04)", A), ("velocity", "cm/sec(05)", 2 * A), ("displacement", "cm(06)", 3 * A)]]),
-        "COSMOS", files.STEP, "cm/s^2", A,
+        "COSMOS",
+        files.STEP,
+        "cm/s^2",
+        A,
     ),
     "csmip.v2": (files.csmip_v2(A), "CSMIP", files.STEP, "cm/s^2", A),
     "csmip-touching.v2": (files.csmip_v2(np.round(A, 3) - 100.0, width=8), "CSMIP", files.STEP, "cm/s^2", A - 100.0),
@@ -39,7 +42,7 @@ FILES = {
     "tabs.txt": ("".join(f"{k * 0.005:.3f}\t{v}\n" for k, v in enumerate(G)), "columns", 0.005, None, G),
     "one.acc": ("# a comment in cm/s/s\n" + "".join(f"{v}\n" for v in A), "columns", None, "cm/s^2", A),
     "path.dat": ("# format (8F10.6)\n" + "\n".join(files.fixed(G, 8, "10.6f")) + "\n", "columns", None, None, G),
-}  # fmt: skip
+}
 
 
 def put(folder: Path, name: str, text: str | bytes) -> Path:
@@ -64,11 +67,7 @@ def test_read_back(tmp_path, name) -> None:
 def test_line_ends(tmp_path, name, ends) -> None:
     text, *_, values = FILES[name]
     lines = text.split("\n")
-    text = (
-        ends.join(lines)
-        if ends != "mixed"
-        else "".join(line + ("\r\n", "\n", "\r")[k % 3] for k, line in enumerate(lines))
-    )
+    text = ends.join(lines) if ends != "mixed" else "".join(line + ("\r\n", "\n", "\r")[k % 3] for k, line in enumerate(lines))
     assert len(read_record(put(tmp_path, name, text)).values) == len(values)
 
 
@@ -212,11 +211,22 @@ def test_velocity_files_are_differentiated(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("text", "unit"),
     [
-        ("in cm/sec2.", "cm/s^2"), ("(UNITS: G)", "g"), ("acc (g)", "g"), ("m/s/s", "m/s^2"), ("units are gal", "gal"),
-        ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER", "g"), ("mm/s^2", "mm/s^2"), ("in/s^2", "in/s^2"), ("Golden Gate", None),
-        ("The units are (g)", "g"), ("m/s**2", "m/s^2"), ("[cm/s²]", "cm/s^2"), ("time,acc", None), ("gravity", None),
+        ("in cm/sec2.", "cm/s^2"),
+        ("(UNITS: G)", "g"),
+        ("acc (g)", "g"),
+        ("m/s/s", "m/s^2"),
+        ("units are gal", "gal"),
+        ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER", "g"),
+        ("mm/s^2", "mm/s^2"),
+        ("in/s^2", "in/s^2"),
+        ("Golden Gate", None),
+        ("The units are (g)", "g"),
+        ("m/s**2", "m/s^2"),
+        ("[cm/s²]", "cm/s^2"),
+        ("time,acc", None),
+        ("gravity", None),
     ],
-)  # fmt: skip
+)
 def test_units_in_headers(text, unit) -> None:
     assert unit_in(text) == unit
 
@@ -261,9 +271,7 @@ def test_a_broken_record_does_not_stop_a_suite(tmp_path) -> None:
 
     put(tmp_path, "a.at2", FILES["peer.at2"][0])
     put(tmp_path, "b.at2", FILES["peer.at2"][0][:900])
-    deck = put(
-        tmp_path, "d.toml", '[motion]\nkind = "suite"\npattern = "*.at2"\n[analysis]\nkind = "motion"\nperiods = 20\n'
-    )
+    deck = put(tmp_path, "d.toml", '[motion]\nkind = "suite"\npattern = "*.at2"\n[analysis]\nkind = "motion"\nperiods = 20\n')
     run = extrados.run(deck, tmp_path / "out")
     assert run["motion"]["count"] == 1 and "b.at2" in run.analyses[0]["warnings"][0]
     put(tmp_path, "a.at2", "words")
@@ -308,6 +316,4 @@ def test_peaks_of_real_records(records, name) -> None:
     treatment = Treatment(time_step=None if step else 0.02, unit=None if unit else "g" if step else "m/s^2")
     motion = record_motion(record, treatment)
     factor = 1.0 if unit is None and step is None else 9.80665
-    assert float(core.measures(motion.ground.samples[0], motion.ground.step).pga[0]) == pytest.approx(
-        abs(peak) * factor, rel=1e-3
-    )
+    assert float(core.measures(motion.ground.samples[0], motion.ground.step).pga[0]) == pytest.approx(abs(peak) * factor, rel=1e-3)

@@ -94,9 +94,7 @@ def test_the_vertical_and_the_second_component_are_looked_at_too(tmp_path) -> No
     level = 'file = "extrados:el-centro-1940"\n'
     for key, word in (("vertical", "vertical component"), ("second", "second component")):
         more = "angle = 0\n" if key == "second" else ""
-        deck = (
-            f'[motion]\nkind = "record"\n{level}{key} = "offset.csv"\n{more}[analysis]\nkind = "motion"\nperiods = 10\n'
-        )
+        deck = f'[motion]\nkind = "record"\n{level}{key} = "offset.csv"\n{more}[analysis]\nkind = "motion"\nperiods = 10\n'
         (told,) = warnings_of(tmp_path, deck)
         assert len([w for w in told if f"{word}: the ground ends" in w]) == 1, told
 

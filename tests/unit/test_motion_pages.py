@@ -36,11 +36,21 @@ def study(path: Path, **motion: Any) -> Result:
 @pytest.mark.parametrize(
     ("name", "unit"),
     [
-        ("time_ms", "ms"), ("t [ms]", "ms"), ("Time (msec)", "ms"), ("milliseconds", "ms"), ("time_us", "us"),
-        ("time (s)", "s"), ("t_s", "s"), ("Time [sec]", "s"), ("time", None), ("t", None), ("samples", None),
-        ("time (min)", "min"), ("item", None),
+        ("time_ms", "ms"),
+        ("t [ms]", "ms"),
+        ("Time (msec)", "ms"),
+        ("milliseconds", "ms"),
+        ("time_us", "us"),
+        ("time (s)", "s"),
+        ("t_s", "s"),
+        ("Time [sec]", "s"),
+        ("time", None),
+        ("t", None),
+        ("samples", None),
+        ("time (min)", "min"),
+        ("item", None),
     ],
-)  # fmt: skip
+)
 def test_unit_of_a_time_column(name: str, unit: str | None) -> None:
     assert time_unit_in(name) == unit
 
@@ -112,9 +122,7 @@ def test_the_page_says_why_which_station_and_which_event(tmp_path: Path) -> None
     assert "RSN6 (Imperial Valley-02, 5/19/1940, El Centro Array #9, 180): peak" in found.answer
     assert "not pulse-like: " in found.answer and "is not above 30" in found.answer
     assert found["wavelet_pulse"]["fails"]
-    shipped = make_deck(
-        {"motion": {"kind": "record", "file": "extrados:el-centro-1940"}, "analysis": {"kind": "motion"}}
-    )
+    shipped = make_deck({"motion": {"kind": "record", "file": "extrados:el-centro-1940"}, "analysis": {"kind": "motion"}})
     page = run_analyses(Context(shipped, threads=1))[0]
     assert page["title"].startswith("El Centro, Imperial Valley earthquake, 18 May 1940")
 
@@ -128,7 +136,7 @@ def test_the_page_says_why_which_station_and_which_event(tmp_path: Path) -> None
         (files.knet(np.arange(1000)), "2011/03/11 14:46:00", "MYG004"),
         (files.esm(files.series()), "TEST", ""),
     ],
-)  # fmt: skip
+)
 def test_event_and_station_of_other_formats(tmp_path: Path, text: str, title: str, station: str) -> None:
     (tmp_path / "record").write_text(text)
     record = read_record(tmp_path / "record")
@@ -169,11 +177,13 @@ def test_smoothed_spectrum_beside_the_raw_one(tmp_path: Path) -> None:
 
 def test_levels_have_units() -> None:
     def levels(values: list, **keys: Any) -> list[float]:
-        deck = make_deck({
-            "structure": {"kind": "block", "width": 1.0, "height": 5.0},
-            "motion": {"kind": "generated", "mmi": 7, "duration": 5.0},
-            "analysis": {"kind": "fragility", "count": 10, "levels": values, **keys},
-        })  # fmt: skip
+        deck = make_deck(
+            {
+                "structure": {"kind": "block", "width": 1.0, "height": 5.0},
+                "motion": {"kind": "generated", "mmi": 7, "duration": 5.0},
+                "analysis": {"kind": "fragility", "count": 10, "levels": values, **keys},
+            }
+        )
         return deck.analyses[0].levels
 
     assert levels(["0.1 g", 0.2, "2.9419950 m/s^2"]) == pytest.approx([0.1, 0.2, 0.3])
@@ -203,9 +213,8 @@ def test_other_keys_with_units() -> None:
     assert "is not a unit of m" in results(kind="sweep", vary="thickness", values=["1 kg", 2.0]).reason
     assert "has no unit" in results(kind="sweep", vary="joints.friction", values=["1 m", 2.0]).reason
     church = {"kind": "aisled-vault", "preset": "vezelay-like"}
-    deck = make_deck({
-        "structure": church,
-        "analysis": {"kind": "sweep", "vary": "right.buttress_width", "values": ["120 cm", "1.4 m"], "locate": False},
-    })  # fmt: skip
+    deck = make_deck(
+        {"structure": church, "analysis": {"kind": "sweep", "vary": "right.buttress_width", "values": ["120 cm", "1.4 m"], "locate": False}}
+    )
     found = run_analyses(Context(deck, threads=1))[0]
     assert found["values"] == pytest.approx([1.2, 1.4]) and found["unit"] == "m"

@@ -29,10 +29,11 @@ SAMPLES = Motion("samples", Ground(samples=np.random.default_rng(1).normal(size=
 PIECES = Motion(
     "pieces",
     Ground(
-        breaks=np.array([0.0, 0.7, 2.0]), linear=np.random.default_rng(2).normal(size=(2, 1, 2)),
+        breaks=np.array([0.0, 0.7, 2.0]),
+        linear=np.random.default_rng(2).normal(size=(2, 1, 2)),
         harmonic=np.random.default_rng(3).uniform(0.5, 3.0, size=(2, 1, 2, 4)),
     ),
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize("motion", [SAMPLES, PIECES, None], ids=["samples", "pieces", "rest"])
@@ -48,9 +49,7 @@ def test_accelerations_add_up(motion: Motion | None) -> None:
         for s in shifts:
             phase = (time - s.start) / s.duration
             way = (s.dx, s.dy)[channel]
-            expected += np.where(
-                (phase >= 0) & (phase < 1), way / s.duration**2 * 2 * np.pi * np.sin(2 * np.pi * phase), 0.0
-            )
+            expected += np.where((phase >= 0) & (phase < 1), way / s.duration**2 * 2 * np.pi * np.sin(2 * np.pi * phase), 0.0)
         assert made.sample(time, channel) == pytest.approx(expected, abs=1e-10)
 
 

@@ -76,10 +76,8 @@ def test_the_corner_of_the_reference() -> None:
 @pytest.mark.parametrize(
     ("noise", "tolerance", "within"),
     [(1e-6, 4e-6, 1e-4), (1e-5, 4e-5, 1e-4), (1e-5, 1e-4, 1e-4), (1e-4, 4e-4, 5e-4), (3e-4, 2e-3, 2e-3), (1e-3, 4e-3, 3.5e-3)],
-)  # fmt: skip
-def test_noise_below_the_tolerance_changes_nothing(
-    noise: float, tolerance: float, within: float, triangles: bool
-) -> None:
+)
+def test_noise_below_the_tolerance_changes_nothing(noise: float, tolerance: float, within: float, triangles: bool) -> None:
     """Surveys of the corner, ten of each noise; the errors that an independent program found with the same rule: 10 um added 8 to 25 % once."""
     for seed in range(5 if triangles else 10):
         solids = read(obj(corner(), noise, seed, triangles=triangles), tolerance)
@@ -101,10 +99,7 @@ def test_noise_far_from_the_origin() -> None:
 def test_noise_of_a_dome_in_bond() -> None:
     """Stones of two parts each, faces that are no rectangles, a keystone of sixteen sides."""
     made = make_dome(5.0, 0.6, 180.0, 5, 8, running=True)
-    stones = [
-        Stone(name, [made.parts[k] for k in np.flatnonzero(made.owner == i)], 2000.0)
-        for i, name in enumerate(made.block_names)
-    ]
+    stones = [Stone(name, [made.parts[k] for k in np.flatnonzero(made.owner == i)], 2000.0) for i, name in enumerate(made.block_names)]
     exact = pushed(made, 0.0)
     for noise, within in ((1e-6, 1e-4), (1e-3, 2e-3)):
         for seed in range(3):
@@ -138,9 +133,7 @@ def test_noise_that_is_much_for_the_stones_is_said() -> None:
 def test_a_stone_on_slivers_alone_is_refused_by_name() -> None:
     base = Stone("base", [box((0, 0, 0), (1, 1, 1))], 2000.0)
     slab = Stone("slab", [box((0.999, 0, 1), (2, 1, 1.3))], 2000.0)
-    with pytest.raises(
-        BadGeometry, match=r"slab touches no other stone.*: its widest contact measures 1 mm, less than 2 mm"
-    ):
+    with pytest.raises(BadGeometry, match=r"slab touches no other stone.*: its widest contact measures 1 mm, less than 2 mm"):
         assemble([base, slab], 2e-3)
     assert len(assemble([base, slab], 1e-4).a) == 2
 

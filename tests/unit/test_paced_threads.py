@@ -28,10 +28,14 @@ def wall_run(threads: int) -> dem3.Run:
     middle = np.array([part.vertices.mean(axis=0) for part in below])
     parts = [*one.parts, *below]
     solids = dem3.Solids(
-        np.concatenate([one.centroid, middle]), np.append(one.mass, np.zeros(n)),
-        np.concatenate([one.inertia, np.tile(np.eye(3), (n, 1, 1))]), [p.vertices for p in parts], [p.faces for p in parts],
-        [*one.owner.tolist(), *range(len(one.mass), len(one.mass) + n)], [dem3.Law(5e9, 5e9, 0.7, damping=1e-3)],
-    )  # fmt: skip
+        np.concatenate([one.centroid, middle]),
+        np.append(one.mass, np.zeros(n)),
+        np.concatenate([one.inertia, np.tile(np.eye(3), (n, 1, 1))]),
+        [p.vertices for p in parts],
+        [p.faces for p in parts],
+        [*one.owner.tolist(), *range(len(one.mass), len(one.mass) + n)],
+        [dem3.Law(5e9, 5e9, 0.7, damping=1e-3)],
+    )
     options = dem3.Options(0.3, fraction=0.6, residual_limit=1e9, settle_steps=0, threads=threads)
     with dem3.Model(solids, options) as model, as_motion_set([STILL]) as motions:
         return model.run(motions)
@@ -52,9 +56,7 @@ def test_threads_give_the_same_bits_on_a_busy_machine():
         assert len({getattr(run, name).tobytes() for run in runs}) == 1
 
 
-@pytest.mark.parametrize(
-    ("text", "count"), [("1", 1), (" 1,4", 1), ("100000", None), ("", None), ("all", None), ("0", None)]
-)
+@pytest.mark.parametrize(("text", "count"), [("1", 1), (" 1,4", 1), ("100000", None), ("", None), ("all", None), ("0", None)])
 def test_default_follows_the_environment(monkeypatch: pytest.MonkeyPatch, text: str, count: int | None):
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     monkeypatch.setenv("OMP_NUM_THREADS", text)
@@ -71,13 +73,7 @@ def test_time_left(monkeypatch: pytest.MonkeyPatch):
     now, said = [0.0], []
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
     progress = Progress(False, Plain, said.append)
-    for seconds, done, text in (
-        (0.5, 0.0, "run"),
-        (1.5, 0.01, "run"),
-        (3.0, 0.02, "run"),
-        (7.5, 0.1, "run"),
-        (13.5, 0.5, "other"),
-    ):
+    for seconds, done, text in ((0.5, 0.0, "run"), (1.5, 0.01, "run"), (3.0, 0.02, "run"), (7.5, 0.1, "run"), (13.5, 0.5, "other")):
         now[0] = seconds
         progress(done, 1.0, text)
     assert said == ["run: 1 %, about 2 min left", "run: 10 %, about 63 s left", "other: 50 %"]

@@ -20,14 +20,7 @@ DECK = {
 
 
 @pytest.mark.parametrize(
-    "case",
-    [
-        "rocking/el-centro-block",
-        "rocking/soft-base-elements",
-        "limit/tied-frame",
-        "fragility/cloud",
-        "motion/appendix-c",
-    ],
+    "case", ["rocking/el-centro-block", "rocking/soft-base-elements", "limit/tied-frame", "fragility/cloud", "motion/appendix-c"]
 )
 def test_a_run_comes_back_from_its_pickle(case: str) -> None:
     run = extrados.run(CASES / f"{case}.toml")

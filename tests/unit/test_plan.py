@@ -13,12 +13,17 @@ from extrados.views.shell.mesh import nodal_areas
 from extrados.views.shell.options import ShellOptions
 
 WALLS = (
-    {"name": "front", "start": [0.0, 0.0], "end": [6.0, 0.0], "thickness": 0.3,
-     "openings": [{"storey": 1, "x": [1.0, 2.0], "z": [0.0, 2.1]}, {"storey": 2, "x": [1.0, 2.0], "z": [0.8, 2.0]}]},
+    {
+        "name": "front",
+        "start": [0.0, 0.0],
+        "end": [6.0, 0.0],
+        "thickness": 0.3,
+        "openings": [{"storey": 1, "x": [1.0, 2.0], "z": [0.0, 2.1]}, {"storey": 2, "x": [1.0, 2.0], "z": [0.8, 2.0]}],
+    },
     {"name": "right", "start": [6.0, 0.0], "end": [6.0, 5.0], "thickness": 0.3},
     {"name": "back", "start": [6.0, 5.0], "end": [0.0, 5.0], "thickness": 0.3},
     {"name": "left", "start": [0.0, 5.0], "end": [0.0, 0.0], "thicknesses": [0.3, 0.2]},
-)  # fmt: skip
+)
 FLOOR = {"storey": 2, "young": 50e6, "thickness": 0.05, "load": 2e3}
 
 
@@ -34,13 +39,7 @@ def edges_of(mesh, name):
     """Of a part, its edges and how many of its elements have each."""
     part = next(p for p in mesh.parts if p.name == name)
     sides = np.sort(
-        np.concatenate(
-            [
-                np.stack([part.connect[:, k], np.roll(part.connect, -1, 1)[:, k]], 1)
-                for k in range(part.connect.shape[1])
-            ]
-        ),
-        1,
+        np.concatenate([np.stack([part.connect[:, k], np.roll(part.connect, -1, 1)[:, k]], 1) for k in range(part.connect.shape[1])]), 1
     )
     return np.unique(sides, axis=0, return_counts=True)
 
@@ -49,10 +48,7 @@ def test_walls_meet_at_their_corners():
     """Every edge of one wall on a corner is an edge of the other too: the mesh conforms."""
     mesh = meshed(plan())
     for one, two, (x, y) in (("front", "right", (6, 0)), ("right", "back", (6, 5)), ("left", "front", (0, 0))):
-        on = [
-            {tuple(e) for e, n in zip(*edges_of(mesh, name), strict=True) if np.allclose(mesh.xyz[e, :2], (x, y))}
-            for name in (one, two)
-        ]
+        on = [{tuple(e) for e, n in zip(*edges_of(mesh, name), strict=True) if np.allclose(mesh.xyz[e, :2], (x, y))} for name in (one, two)]
         assert on[0] == on[1] and len(on[0]) >= 11
     assert len(np.unique(np.round(mesh.xyz, 9), axis=0)) == len(mesh.xyz)
 
@@ -68,9 +64,7 @@ def test_open_corners_share_no_node_and_weak_ones_have_less_strength():
     bonded = meshed(plan())
     opened = meshed(plan(corners=[{"walls": ["front", "right"], "bond": "open"}]))
     assert len(opened.xyz) == len(bonded.xyz) + len(np.unique(np.round(bonded.xyz[:, 2], 9)))
-    front, right = (
-        {n for p in opened.parts if p.name == name for n in p.connect.ravel().tolist()} for name in ("front", "right")
-    )
+    front, right = ({n for p in opened.parts if p.name == name for n in p.connect.ravel().tolist()} for name in ("front", "right"))
     assert not front & right
     weak = meshed(plan(corners=[{"walls": ["front", "right"], "bond": "weak", "strength": 0.4}]))
     part = next(p for p in weak.parts if p.name == "right")
@@ -100,13 +94,9 @@ def test_cross_walls_and_skew_walls_conform():
         {"name": "skew", "start": [3.0, 2.5], "end": [6.0, 4.0], "thickness": 0.2},
     ]
     mesh = meshed(plan(walls))
-    middle, skew = (
-        {n for p in mesh.parts if p.name == name for n in p.connect.ravel().tolist()} for name in ("middle", "skew")
-    )
+    middle, skew = ({n for p in mesh.parts if p.name == name for n in p.connect.ravel().tolist()} for name in ("middle", "skew"))
     front = {n for p in mesh.parts if p.name == "front" for n in p.connect.ravel().tolist()}
-    assert {round(z, 9) for z in mesh.xyz[sorted(front & middle), 2]} == {
-        z for z in np.round(mesh.xyz[:, 2], 9) if z <= 3.0
-    }
+    assert {round(z, 9) for z in mesh.xyz[sorted(front & middle), 2]} == {z for z in np.round(mesh.xyz[:, 2], 9) if z <= 3.0}
     assert len(middle & skew) == len(front & middle)
     assert (mesh.xyz[sorted(middle), 2] <= 3.0 + 1e-9).all()
 
@@ -136,10 +126,7 @@ def test_springs_of_the_ground_are_those_of_the_soles():
         ({"walls": [{**WALLS[0], "openings": [{"storey": 3, "x": [1.0, 2.0], "z": [0.0, 2.0]}]}]}, "no storey 3"),
         ({"walls": [WALLS[0], WALLS[0]]}, "stands twice"),
         ({"walls": [{**WALLS[1], "thicknesses": [0.3]}]}, "either thickness or thicknesses"),
-        (
-            {"walls": [{"name": "a", "start": [0.0, 0.0], "end": [1.0, 0.0], "thicknesses": [0.3]}]},
-            "1 thicknesses for 2",
-        ),
+        ({"walls": [{"name": "a", "start": [0.0, 0.0], "end": [1.0, 0.0], "thicknesses": [0.3]}]}, "1 thicknesses for 2"),
         ({"corners": [{"walls": ["front", "nowhere"], "bond": "open"}]}, "no wall 'nowhere'"),
         ({"floors": [{"storey": 3, "kind": "none"}]}, "no storey 3"),
         ({"floors": [{"storey": 1, "kind": "flexible"}]}, "needs young"),

@@ -11,9 +11,30 @@ from extrados.schema.files import File
 
 #: Two rooms, 10 by 6 m outside, walls 0.4 m, a partition 0.3 m whose axis is at x = 6, a door in the front (2 to 3 m), one in the partition
 FACES = [
-    [(0, 0), (2, 0), (2, 0.4), (0.4, 0.4), (0.4, 5.6), (5.85, 5.6), (5.85, 4), (6.15, 4), (6.15, 5.6), (9.6, 5.6), (9.6, 0.4), (6.15, 0.4),
-     (6.15, 3), (5.85, 3), (5.85, 0.4), (3, 0.4), (3, 0), (10, 0), (10, 6), (0, 6), (0, 0)],
-]  # fmt: skip
+    [
+        (0, 0),
+        (2, 0),
+        (2, 0.4),
+        (0.4, 0.4),
+        (0.4, 5.6),
+        (5.85, 5.6),
+        (5.85, 4),
+        (6.15, 4),
+        (6.15, 5.6),
+        (9.6, 5.6),
+        (9.6, 0.4),
+        (6.15, 0.4),
+        (6.15, 3),
+        (5.85, 3),
+        (5.85, 0.4),
+        (3, 0.4),
+        (3, 0),
+        (10, 0),
+        (10, 6),
+        (0, 6),
+        (0, 0),
+    ]
+]
 WINDOW = [[(7, 0.05), (8.2, 0.05), (8.2, 0.35), (7, 0.35), (7, 0.05)]]
 
 
@@ -34,13 +55,7 @@ def walls_in(text):
 
 def test_faces_of_two_rooms(tmp_path):
     found, deck = walls_in(deck_of_plan(drawn(tmp_path), ["A-WALL"], ["A-GLAZ"], None, [3.0, 2.8]))
-    assert set(found) == {
-        (0.2, 0.2, 9.8, 0.2),
-        (0.2, 5.8, 9.8, 5.8),
-        (0.2, 0.2, 0.2, 5.8),
-        (9.8, 0.2, 9.8, 5.8),
-        (6.0, 0.2, 6.0, 5.8),
-    }
+    assert set(found) == {(0.2, 0.2, 9.8, 0.2), (0.2, 5.8, 9.8, 5.8), (0.2, 0.2, 0.2, 5.8), (9.8, 0.2, 9.8, 5.8), (6.0, 0.2, 6.0, 5.8)}
     front, inner = found[0.2, 0.2, 9.8, 0.2], found[6.0, 0.2, 6.0, 5.8]
     assert front.thickness == pytest.approx(0.4) and inner.thickness == pytest.approx(0.3)
     assert [o.x for o in front.openings if o.storey == 1] == [pytest.approx([1.8, 2.8]), pytest.approx([6.8, 8.0])]
@@ -64,13 +79,7 @@ def test_a_turned_plan_is_the_same(tmp_path, angle):
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     straight, _ = walls_in(deck_of_plan(drawn(tmp_path), ["A-WALL"], ["A-GLAZ"], None, [3.0]))
     turned, _ = walls_in(
-        deck_of_plan(
-            drawn(tmp_path, [np.array(FACES[0]) @ turn], [np.array(WINDOW[0]) @ turn]),
-            ["A-WALL"],
-            ["A-GLAZ"],
-            None,
-            [3.0],
-        )
+        deck_of_plan(drawn(tmp_path, [np.array(FACES[0]) @ turn], [np.array(WINDOW[0]) @ turn]), ["A-WALL"], ["A-GLAZ"], None, [3.0])
     )
 
     def described(walls):

@@ -128,11 +128,7 @@ def test_walls_share_the_push(run):
     assert r.first_crack.wall in ("long", "low") and 0.0 <= r.first_crack.height_m < 1.0
     assert r.flanges is not None and sum(r.cracked_points_by_storey) > 0
     piers = run[0].results[0].tables["piers"].columns
-    foot = [
-        k
-        for k, (wall, storey) in enumerate(zip(piers["wall"], piers["storey"], strict=True))
-        if (wall, storey) == ("long", 1)
-    ]
+    foot = [k for k, (wall, storey) in enumerate(zip(piers["wall"], piers["storey"], strict=True)) if (wall, storey) == ("long", 1)]
     assert sum(piers["shear"][k] for k in foot) == pytest.approx(long.shear_N, rel=1e-9)
 
 
@@ -195,17 +191,18 @@ def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
     stored = [("house", read(pushed)), ("wall", read(tmp_path / "wall"))]
     curves = pushes(stored)
     assert [(c.analysis, c.sense, c.incremental) for c in curves] == [
-        ("house, pushover", "+", False), ("house, pushover-2", "+", False), ("wall, sla", "+", False),
-        ("wall, sla", "-", False), ("wall, sla-2", "+", True),
-    ]  # fmt: skip
+        ("house, pushover", "+", False),
+        ("house, pushover-2", "+", False),
+        ("wall, sla", "+", False),
+        ("wall, sla", "-", False),
+        ("wall, sla-2", "+", True),
+    ]
     assert curves[0].greatest()[0] == pytest.approx(found["pushover"].greatest_load_N, rel=1e-12)
     with style.kept() as pictures:
         draw(curves, tmp_path / "together.png")
     ax = pictures["together"].axes[0]
     marked = [float(line.get_ydata()[0]) for line in ax.lines if len(line.get_xdata()) == 1]
-    carried = [
-        row.shear_N / 1e3 for name in ("pushover", "pushover-2") for row in found[name].walls if row.share > 0.05
-    ]
+    carried = [row.shear_N / 1e3 for name in ("pushover", "pushover-2") for row in found[name].walls if row.share > 0.05]
     assert marked == pytest.approx(carried) and marked
     lines = [line for line in ax.lines if len(line.get_xdata()) > 2]
     assert len(lines) == len(curves)
@@ -226,9 +223,7 @@ def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
     assert call(pushed, tmp_path / "wall", "--together", tmp_path / "new" / "curves.png").exit_code == 0
     assert (tmp_path / "new" / "curves.svg").read_text() == "mine" and (tmp_path / "new" / "curves-2.svg").exists()
     arch = tmp_path / "arch.toml"
-    arch.write_text(
-        '[structure]\nkind = "arch"\nradius = 10\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n[analysis]\nkind = "tilt"\n'
-    )
+    arch.write_text('[structure]\nkind = "arch"\nradius = 10\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n[analysis]\nkind = "tilt"\n')
     extrados.run(arch).write(tmp_path / "arch", figures=False)
     refused = call(tmp_path / "arch", "--together", tmp_path / "none.png")
     assert refused.exit_code == 3 and "no analysis of it has a capacity curve" in refused.output

@@ -70,11 +70,14 @@ def deck(tmp_path, corners="[]", events=1200, more=""):
 
 
 def one_wall(size=0.5, **options):
-    wall = {"name": "a", "start": [0.0, 0.0], "end": [3.0, 0.0], "thickness": 0.25,
-            "openings": [{"storey": 1, "x": [1.0, 2.0], "z": [0.0, 2.0]}]}  # fmt: skip
-    mesh = Building(Plan(kind="building", storeys=[3.0], walls=[wall]), MASONRY).shell(
-        ShellOptions(size=size, layers=3)
-    )
+    wall = {
+        "name": "a",
+        "start": [0.0, 0.0],
+        "end": [3.0, 0.0],
+        "thickness": 0.25,
+        "openings": [{"storey": 1, "x": [1.0, 2.0], "z": [0.0, 2.0]}],
+    }
+    mesh = Building(Plan(kind="building", storeys=[3.0], walls=[wall]), MASONRY).shell(ShellOptions(size=size, layers=3))
     return build(mesh, Pushover(kind="pushover", mesh=ShellOptions(size=size, layers=3), **options))
 
 
@@ -264,9 +267,7 @@ def test_a_frame_of_piers_beside_the_push(tmp_path):
     above = 1900 * gravity * 0.25 * (3.0 + 2 * 0.5) / total  # of the push, over the middle of the storey
     area, height = 0.25, 2.0
     stress = load / area
-    fema = min(
-        0.9 * load / height, area * 0.75 * (0.75 * 0.1e6 + stress) / 1.5, load / height * (1 - stress / (0.7 * 3e6))
-    )
+    fema = min(0.9 * load / height, area * 0.75 * (0.75 * 0.1e6 + stress) / 1.5, load / height * (1 - stress / (0.7 * 3e6)))
     tension = 1.5 * 0.05e6
     ntc = min(load / height * (1 - stress / (0.85 * 3e6)), area * tension / 1.5 * np.sqrt(1 + stress / tension))
     assert frame["FEMA 356"].base_shear_N == pytest.approx(2 * fema / above, rel=0.03)
@@ -334,13 +335,22 @@ def test_stages_of_a_building_continue_under_load_reversal():
     """A wall that rocks in its plane, pushed to 6 mm and back: the same load in both senses, above the rocking of a rigid wall
     without tension, W L / (2 z) with the centre of the masses at z, by what its tensile strength adds."""
     stages = [{"target_displacement": 6e-3}, {"sense": "-", "target_displacement": 6e-3}]
-    found = extrados.run(
-        {
-            "structure": {"kind": "building", "storeys": [3.0], "walls": [{"name": "a", "start": [0, 0], "end": [3, 0], "thickness": 0.3}]},
-            "material": {"density": 1800, "young": 1.7e9, "poisson": 0.0, "tensile_strength": 5e4, "fracture_energy": 20},
-            "analysis": [{"kind": "pushover", "mesh": {"size": 0.5, "layers": 3}, "without_equilibrium": "continue", "stages": stages}],
-        }, threads=1,
-    ).results[0].results  # fmt: skip
+    found = (
+        extrados.run(
+            {
+                "structure": {
+                    "kind": "building",
+                    "storeys": [3.0],
+                    "walls": [{"name": "a", "start": [0, 0], "end": [3, 0], "thickness": 0.3}],
+                },
+                "material": {"density": 1800, "young": 1.7e9, "poisson": 0.0, "tensile_strength": 5e4, "fracture_energy": 20},
+                "analysis": [{"kind": "pushover", "mesh": {"size": 0.5, "layers": 3}, "without_equilibrium": "continue", "stages": stages}],
+            },
+            threads=1,
+        )
+        .results[0]
+        .results
+    )
     forth, back = found.stages
     rocking = found.weight_N * 1.5 / 1.5
     assert forth.end_load_N == pytest.approx(back.end_load_N, rel=0.02)
@@ -353,10 +363,14 @@ def test_the_load_of_unequal_drives_is_not_the_base_shear(ratios: list[float], w
     """One drive: the wall carries the load. Floor and roof in an unnatural ratio: more, with a warning."""
     drives = [{"wall": "1", "storey": 2 - k, "ratio": ratio} for k, ratio in enumerate(ratios)]
     deck = {
-        "structure": {"kind": "building", "storeys": ["3 m", "3 m"], "walls": [{"name": "1", "start": [0, 0], "end": [3, 0], "thickness": 0.3}]},
+        "structure": {
+            "kind": "building",
+            "storeys": ["3 m", "3 m"],
+            "walls": [{"name": "1", "start": [0, 0], "end": [3, 0], "thickness": 0.3}],
+        },
         "material": {"young": "2 GPa", "poisson": 0.2, "density": 1800, "tensile_strength": "0.1 MPa", "fracture_energy": "20 N/m"},
         "analysis": [{"kind": "pushover", "drives": drives, "mesh": {"size": "0.75 m"}, "events": 3, "states": [1]}],
-    }  # fmt: skip
+    }
     (found,) = extrados.run(deck).results
     (wall,) = found.results.walls
     assert any("not the base shear" in text for text in found.warnings) == warned

@@ -32,10 +32,22 @@ def building(**tables: dict) -> Building:
 
 def row(strategy: str, outcome: str, **more: object) -> StrategyVerdict:
     keys = {
-        "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "capacity": None,
-        "demand": None, "margin": None, "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
+        "label": strategy,
+        "part": None,
+        "status": "ok",
+        "reason": "",
+        "axis": "acceleration",
+        "unit": "g",
+        "capacity": None,
+        "demand": None,
+        "margin": None,
+        "margin_at_least": None,
+        "margin_below": None,
+        "parameters": "",
+        "assumes": "",
+        "statement": "",
         "violated": [],
-    }  # fmt: skip
+    }
     return StrategyVerdict(strategy=strategy, outcome=outcome, bound=None, **(keys | more))
 
 
@@ -49,20 +61,30 @@ def rocking(outcome: str = "recovery", ratio: float = 0.3, arrays: dict | None =
 
 def dem(outcome: str = "recovery", moved: float = 0.1, slip: float = 0.0, **more: object) -> Result:
     keys = {
-        "outcome": outcome, "peak_displacement_m": moved, "collapse_displacement_m": 1.0, "peak_slip_m": slip,
-        "decided_by_last_digits": False, "perturbation_growth": 10.0, "perturbed_outcome": outcome,
-    }  # fmt: skip
+        "outcome": outcome,
+        "peak_displacement_m": moved,
+        "collapse_displacement_m": 1.0,
+        "peak_slip_m": slip,
+        "decided_by_last_digits": False,
+        "perturbation_growth": 10.0,
+        "perturbed_outcome": outcome,
+    }
     return Result("dem", results=DemRun.model_construct(**(keys | more)))
 
 
-def tilt(
-    right: float, left: float | None = None, fracture: Fracture | None = None, dilating: list[int] | None = None
-) -> Result:
-    sliding = {} if dilating is None else {
-        "dilating_joints": dilating, "dilating_joints_opposite": dilating, "collapse_acceleration_non_associated_g": right,
-        "collapse_acceleration_non_associated_opposite_g": right, "non_dilatant": NonDilatant.model_construct(associated_g=right),
-        "non_dilatant_opposite": NonDilatant.model_construct(associated_g=right),
-    }  # fmt: skip
+def tilt(right: float, left: float | None = None, fracture: Fracture | None = None, dilating: list[int] | None = None) -> Result:
+    sliding = (
+        {}
+        if dilating is None
+        else {
+            "dilating_joints": dilating,
+            "dilating_joints_opposite": dilating,
+            "collapse_acceleration_non_associated_g": right,
+            "collapse_acceleration_non_associated_opposite_g": right,
+            "non_dilatant": NonDilatant.model_construct(associated_g=right),
+            "non_dilatant_opposite": NonDilatant.model_construct(associated_g=right),
+        }
+    )
     keys = {
         "collapse_acceleration_g": right,
         "collapse_acceleration_opposite_g": right if left is None else left,
@@ -72,9 +94,7 @@ def tilt(
     return Result("tilt", results=Tilt.model_construct(**keys))
 
 
-def checked(
-    capacity: float, demand: float | None = 0.3, multiplier: float | None = None, part: float = 1.0, **more: Check
-) -> Result:  # fmt: skip
+def checked(capacity: float, demand: float | None = 0.3, multiplier: float | None = None, part: float = 1.0, **more: Check) -> Result:
     checks = {"NTC linear (at the ground)": check(capacity, demand), **more}
     factors = {"behaviour_factor": 2.43, "confidence_factor": 1.35}
     if multiplier is None:
@@ -87,18 +107,26 @@ def check(capacity: float, demand: float | None, unit: str = "g", code: str = "N
     verdict = "" if demand is None else "holds" if capacity >= demand else "fails"
     alternative = "SLV" if code == "NTC 2018" else ""
     return Check(
-        capacity=capacity, demand=demand, unit=unit, quantity="", verdict=verdict, source="", note="", code=code,
-        limit_state="SLV" if alternative else "", scope="", reason="", alternative=alternative,
-    )  # fmt: skip
+        capacity=capacity,
+        demand=demand,
+        unit=unit,
+        quantity="",
+        verdict=verdict,
+        source="",
+        note="",
+        code=code,
+        limit_state="SLV" if alternative else "",
+        scope="",
+        reason="",
+        alternative=alternative,
+    )
 
 
 def walls(multiplier: float) -> Result:
     """Of the codes: one wall that turns by itself."""
     one = WallMechanism.model_construct(wall="back", storey=1, multiplier=multiplier)
     checks = {"NTC linear (at the ground)": check(0.1, 0.3)}
-    return Result(
-        "local-mechanism", results=LocalMechanism.model_construct(checks=checks, multiplier=multiplier, walls=[one])
-    )
+    return Result("local-mechanism", results=LocalMechanism.model_construct(checks=checks, multiplier=multiplier, walls=[one]))
 
 
 def framed(peak: float) -> Result:
@@ -115,10 +143,7 @@ def shells(load: float) -> Result:
 def house(across: float) -> Building:
     """Two walls of 4 m and 0.4 m along x, two of another thickness along y."""
     corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]
-    sides = [
-        {"name": str(k), "start": corners[k], "end": corners[(k + 1) % 4], "thickness": (0.4, across)[k % 2]}
-        for k in range(4)
-    ]
+    sides = [{"name": str(k), "start": corners[k], "end": corners[(k + 1) % 4], "thickness": (0.4, across)[k % 2]} for k in range(4)]
     return Building(Plan(kind="building", storeys=[3.0], walls=sides))
 
 
@@ -207,8 +232,12 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "ties that others leave out": (
         "left-out",
-        lambda: facts([STANDS, row("dem", "collapses")], {"rocking": rocking(ratio=0.1)}, bare={"dem": ("[[ties]]",)},
-                      probes={"without-restraints": rocking("collapse", 2.0)}),
+        lambda: facts(
+            [STANDS, row("dem", "collapses")],
+            {"rocking": rocking(ratio=0.1)},
+            bare={"dem": ("[[ties]]",)},
+            probes={"without-restraints": rocking("collapse", 2.0)},
+        ),
         {
             "none is left out": lambda f: replace(f, bare={}),
             "without them it turns no farther": lambda f: probed(f, without_restraints=rocking(ratio=0.11)),
@@ -220,8 +249,11 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "ties of statics": (
         "left-out",
-        lambda: facts([row("tilt", "stands", capacity=0.5, margin=1.25), row("sla", "collapses", capacity=0.3, margin=0.75)],
-                      bare={"sla": ("[[ties]]",)}, probes={"tilt-without": tilt(0.31)}),
+        lambda: facts(
+            [row("tilt", "stands", capacity=0.5, margin=1.25), row("sla", "collapses", capacity=0.3, margin=0.75)],
+            bare={"sla": ("[[ties]]",)},
+            probes={"tilt-without": tilt(0.31)},
+        ),
         {
             "without them it says otherwise than the elements": lambda f: probed(f, tilt_without=tilt(0.42)),
             "a wall lets only the other sense count": lambda f: replace(
@@ -264,8 +296,11 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "one sine for the whole motion": (
         "sine-for-record",
-        lambda: facts([row("assessment", "stands"), row("rocking", "collapses")],
-                      {"assessment": criterion("stands"), "rocking": rocking("collapse", 2.0)}, probes={"sine": rocking(ratio=0.2)}),
+        lambda: facts(
+            [row("assessment", "stands"), row("rocking", "collapses")],
+            {"assessment": criterion("stands"), "rocking": rocking("collapse", 2.0)},
+            probes={"sine": rocking(ratio=0.2)},
+        ),
         {
             "under the sine it falls, against the criterion": lambda f: probed(f, sine=rocking("collapse", 2.0)),
             "the motion turns it no farther than the sine": lambda f: probed(
@@ -299,9 +334,7 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
         lambda: facts(DYNAMIC, {"rocking": rocking(), "dem": dem("collapse", 1.0)}, probes={"monolith": dem(moved=0.1)}),
         {
             "as one body they fall, and rocking stands": lambda f: probed(f, monolith=dem("collapse", 1.0)),
-            "apart they do as one body does": lambda f: having(
-                probed(f, monolith=dem("collapse", 1.0)), rocking=rocking("collapse", 2.0)
-            ),
+            "apart they do as one body does": lambda f: having(probed(f, monolith=dem("collapse", 1.0)), rocking=rocking("collapse", 2.0)),
             "nobody tried one body": lambda f: probed(f, monolith=None),
             "the run is one draw of many": lambda f: having(f, dem=dem("collapse", 1.0, slip=0.1, decided_by_last_digits=True)),
         },
@@ -317,8 +350,12 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "a wall of elements that cannot slide": (
         "membrane-without-sliding",
-        lambda: facts([FALLS, row("sla", "stands", capacity=0.55, margin=1.4)], {"tilt": tilt(0.2)},
-                      building=building(structure=PANEL), probes={"tilt-no-sliding": tilt(0.6)}),
+        lambda: facts(
+            [FALLS, row("sla", "stands", capacity=0.55, margin=1.4)],
+            {"tilt": tilt(0.2)},
+            building=building(structure=PANEL),
+            probes={"tilt-no-sliding": tilt(0.6)},
+        ),
         {
             "sliding takes nothing": lambda f: probed(f, tilt_no_sliding=tilt(0.205)),
             "the elements are nearer to what slides": lambda f: probed(f, tilt_no_sliding=tilt(2.0)),
@@ -327,8 +364,11 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "elements that bear tension": (
         "tension",
-        lambda: facts([FALLS, row("sla", "stands", capacity=0.55, margin=1.4)], {"tilt": tilt(0.2)},
-                      building=building(structure=PANEL, material={"tensile_strength": 1e5, "fracture_energy": 10.0})),
+        lambda: facts(
+            [FALLS, row("sla", "stands", capacity=0.55, margin=1.4)],
+            {"tilt": tilt(0.2)},
+            building=building(structure=PANEL, material={"tensile_strength": 1e5, "fracture_energy": 10.0}),
+        ),
         {
             "they bear none": lambda f: replace(f, building=building(structure=PANEL)),
             "they bear less than the stones": lambda f: having(f, tilt=tilt(0.6)),
@@ -336,8 +376,9 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "mortar": (
         "mortar",
-        lambda: facts([STANDS, row("dem", "stands", margin_at_least=3.0), FALLS],
-                      building=building(joints={"tension": 1e5, "cohesion": 1e5})),
+        lambda: facts(
+            [STANDS, row("dem", "stands", margin_at_least=3.0), FALLS], building=building(joints={"tension": 1e5, "cohesion": 1e5})
+        ),
         {
             "joints are dry": lambda f: replace(f, building=building()),
             "the elements bear less": lambda f: rated(f, row("dem", "collapses"), row("tilt", "stands", margin=1.25)),
@@ -357,8 +398,10 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "a displacement that the code allows": (
         "code-check",
-        lambda: facts([FALLS, row("code-checks", "stands", margin=4.0)],
-                      {"tilt": tilt(0.2), "code-checks": checked(0.24, nonlinear=check(0.8, 0.2, "m"))}),
+        lambda: facts(
+            [FALLS, row("code-checks", "stands", margin=4.0)],
+            {"tilt": tilt(0.2), "code-checks": checked(0.24, nonlinear=check(0.8, 0.2, "m"))},
+        ),
         {
             "the linear check says the same": lambda f: having(f, **{"code-checks": checked(1.0, nonlinear=check(0.8, 0.2, "m"))}),
             "it has no demand": lambda f: having(f, **{"code-checks": checked(0.24, None, nonlinear=check(0.8, 0.2, "m"))}),
@@ -369,8 +412,9 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "a code that allows less than another": (
         "code-check",
-        lambda: facts([STANDS, row("code-checks", "collapses", margin=0.4)],
-                      {"code-checks": checked(0.36, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
+        lambda: facts(
+            [STANDS, row("code-checks", "collapses", margin=0.4)], {"code-checks": checked(0.36, asce=check(0.12, 0.3, "g", "ASCE 43"))}
+        ),
         {
             "the other says the same": lambda f: having(f, **{"code-checks": checked(0.14, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
             "there is no other": lambda f: having(f, **{"code-checks": checked(0.36, None, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
@@ -378,12 +422,15 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "a wall that the codes tear off": (
         "torn-off",
-        lambda: facts([row("code-checks", "collapses", margin=0.3), row("push-x", "stands", capacity=0.6, margin=1.5)],
-                      {"code-checks": walls(0.05)}),
+        lambda: facts(
+            [row("code-checks", "collapses", margin=0.3), row("push-x", "stands", capacity=0.6, margin=1.5)], {"code-checks": walls(0.05)}
+        ),
         {
             "it bears more by itself than the whole": lambda f: having(f, **{"code-checks": walls(0.7)}),
             "no wall was taken apart": lambda f: having(f, **{"code-checks": checked(0.1)}),
-            "the codes bear more": lambda f: rated(f, row("code-checks", "stands", margin=2.0), row("push-x", "collapses", capacity=0.2, margin=0.5)),
+            "the codes bear more": lambda f: rated(
+                f, row("code-checks", "stands", margin=2.0), row("push-x", "collapses", capacity=0.2, margin=0.5)
+            ),
             "how far the push came is not known": lambda f: rated(f, row("push-x", "stands")),
         },
     ),
@@ -397,7 +444,9 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
     ),
     "a frame that carries less than the shells": (
         "frame-and-shells",
-        lambda: facts([row("frame", "collapses", margin=0.8), row("push-x", "stands", margin=1.6)], {"frame": framed(100e3), "push-x": shells(130e3)}),
+        lambda: facts(
+            [row("frame", "collapses", margin=0.8), row("push-x", "stands", margin=1.6)], {"frame": framed(100e3), "push-x": shells(130e3)}
+        ),
         {
             "they differ by less than 15 %": lambda f: having(f, **{"push-x": shells(114e3)}),
             "the shells are not pushed": lambda f: replace(f, results={"frame": framed(100e3)}),
@@ -412,7 +461,7 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "it differs from statics alone": lambda f: replace(f, rows={r.strategy: r for r in (FALLS, f.rows["probability"])}),
         },
     ),
-}  # fmt: skip
+}
 
 
 def said(f: Facts) -> set[str]:
@@ -429,9 +478,7 @@ def test_a_rule_speaks_where_its_numbers_show_it(name: str) -> None:
     assert all(tuple(p) in pairs for p in one.explains), "of pairs that do not agree"
 
 
-@pytest.mark.parametrize(
-    ("name", "spoil"), [(name, spoil) for name, (_, _, spoils) in SCENARIOS.items() for spoil in spoils]
-)
+@pytest.mark.parametrize(("name", "spoil"), [(name, spoil) for name, (_, _, spoils) in SCENARIOS.items() for spoil in spoils])
 def test_it_is_silent_where_one_of_them_is_missing(name: str, spoil: str) -> None:
     rule, make, spoils = SCENARIOS[name]
     assert rule not in said(spoils[spoil](make()))

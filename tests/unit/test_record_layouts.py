@@ -97,13 +97,7 @@ def layout(seed: int) -> Layout:
             rows, count = [[w] for pair in zip(time, words[0], strict=True) for w in pair], 1
         case _:
             rows = [list(row) for row in zip(map(str, range(1, points + 1)), *words, strict=True)]
-    stated = {
-        "unit": chance(0.5),
-        "step": chance(0.4),
-        "names": chance(0.4),
-        "columns": chance(0.4),
-        "count": chance(0.2),
-    }
+    stated = {"unit": chance(0.5), "step": chance(0.4), "names": chance(0.4), "columns": chance(0.4), "count": chance(0.2)}
     header: list[str] = []
     if chance(0.5):
         header.append(
@@ -196,9 +190,7 @@ def test_none_of_many_layouts_is_read_wrong(tmp_path) -> None:
             wrong.append((seed, made.made, made.told, made.treatment, made.text[:200]))
     assert not wrong, wrong
     assert len(right) >= 60 and len(refused) >= 60, (len(right), len(refused))
-    plain = {
-        seed for seed in range(LAYOUTS) if layout(seed).made[0] in ("one", "timed") and len(layout(seed).made) == 3
-    }
+    plain = {seed for seed in range(LAYOUTS) if layout(seed).made[0] in ("one", "timed") and len(layout(seed).made) == 3}
     over = [r for r in refused if r[0] in plain and "channels; name one" not in r[1]]
     assert not over, over  # what has no defect is read
 
@@ -209,7 +201,7 @@ COLUMN = "".join(f"{v:.2f}\n" for v in N)
 THREE = "".join(f"{v:.2f} {0.5 * v:.2f} {0.2 * v:.2f}\n" for v in N)
 TIMED = "".join(f"{0.01 * k:.2f} {v:.2f} {0.5 * v:.2f}\n" for k, v in enumerate(N))
 REFUSED = {
-    "three columns": (THREE, {}, ":1: the row holds 3 columns.*channel = 1 to 3.*columns = \"series\""),
+    "three columns": (THREE, {}, ':1: the row holds 3 columns.*channel = 1 to 3.*columns = "series"'),
     "three and time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {}, "time step is"),
     "channel of a time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {"channel": 1}, "time step is"),
     "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' holds whole numbers.*put #"),
@@ -226,7 +218,7 @@ REFUSED = {
     "two quantities": ("acceleration and velocity\n" + COLUMN, {}, "acceleration and velocity"),
     "sample numbers": ("".join(f"{k + 1} {v:.2f}\n" for k, v in enumerate(N)), {}, "column of sample numbers"),
     "cut": (THREE.rstrip("\n").rpartition(" ")[0], {"columns": "components"}, "cut off"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", REFUSED)
@@ -250,12 +242,19 @@ def test_columns_says_what_they_are(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("header", "quantity", "unit"),
     [
-        ("velocity in cm/s", "velocity", "cm/s"), ("disp (mm)", "displacement", "mm"), ("Acceleration (g), velocity elsewhere", "acceleration", "g"),
-        ("acc (g); shear wave velocity 300 m/s", "acceleration", "g"), ("in cm/s2, from g", "acceleration", "cm/s^2"),
-        ("cm/s2 and (g)", "acceleration", None), ("Station, G. Smith", "acceleration", None), ("PGA = 0.3 g", "acceleration", None),
-        ("data in mg", "acceleration", "mg"), ("units: % of g", "acceleration", None), ("PGA 312 cm/s2, data in g", "acceleration", "g"),
+        ("velocity in cm/s", "velocity", "cm/s"),
+        ("disp (mm)", "displacement", "mm"),
+        ("Acceleration (g), velocity elsewhere", "acceleration", "g"),
+        ("acc (g); shear wave velocity 300 m/s", "acceleration", "g"),
+        ("in cm/s2, from g", "acceleration", "cm/s^2"),
+        ("cm/s2 and (g)", "acceleration", None),
+        ("Station, G. Smith", "acceleration", None),
+        ("PGA = 0.3 g", "acceleration", None),
+        ("data in mg", "acceleration", "mg"),
+        ("units: % of g", "acceleration", None),
+        ("PGA 312 cm/s2, data in g", "acceleration", "g"),
     ],
-)  # fmt: skip
+)
 def test_what_a_header_says(tmp_path, header, quantity, unit) -> None:
     (tmp_path / "r.txt").write_text(f"{header}\n{COLUMN}")
     record = read_record(tmp_path / "r.txt")
@@ -271,9 +270,7 @@ def test_a_peak_that_no_earthquake_has(tmp_path, size, hint) -> None:
 
 @pytest.mark.parametrize("step", ["1.0000", "0.00001", "2"])
 def test_a_step_that_no_record_has(tmp_path, step) -> None:
-    (tmp_path / "r.at2").write_text(
-        f"PEER\nQ\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 3, DT= {step} SEC\n.1 .2 .3\n"
-    )
+    (tmp_path / "r.at2").write_text(f"PEER\nQ\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 3, DT= {step} SEC\n.1 .2 .3\n")
     with pytest.raises(RecordError, match="time step is"):
         read_record(tmp_path / "r.at2")
 
@@ -289,9 +286,14 @@ def test_a_suffix_against_its_header(tmp_path) -> None:
 
 #: Headers of whole numbers as real formats have them: the count, a date, ten columns of eight characters
 PREFIXES = (
-    "{n}\n", "{n} 20\n", "1935 10 31\n", "300\n", "300\n0\n", "48\n1935\n10\n31\n",
+    "{n}\n",
+    "{n} 20\n",
+    "1935 10 31\n",
+    "300\n",
+    "300\n0\n",
+    "48\n1935\n10\n31\n",
     "".join("".join(f"{v:8d}" for v in range(k, k + 8)) + "\n" for k in (293, 0, 16)),
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize("prefix", PREFIXES)
@@ -306,9 +308,7 @@ def test_numbers_of_a_header_before_real_records(records: Path, tmp_path, prefix
                 (tmp_path / "r.txt").write_text(prefix.format(n=len(values)) + text)
                 with pytest.raises(RecordError):
                     read_record(tmp_path / "r.txt", **told)
-            (tmp_path / "r.txt").write_text(
-                "".join(f"# {line}\n" for line in prefix.format(n=len(values)).splitlines()) + text
-            )
+            (tmp_path / "r.txt").write_text("".join(f"# {line}\n" for line in prefix.format(n=len(values)).splitlines()) + text)
             back = read_record(tmp_path / "r.txt", columns="series").values
             np.testing.assert_allclose(back, values, atol=6e-4)
 

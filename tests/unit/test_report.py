@@ -33,15 +33,11 @@ def test_dimensions_are_span_and_rise_not_the_outer_box() -> None:
     found = {d.name: d.length for d in dimensions(vault.building.blocks())}
     assert found["width of the left buttress"] == pytest.approx(17.0 / 3.0)
     assert found["clear span"] == pytest.approx(2.0 * 9.25 * np.sin(np.radians(60.0)))
-    column = make_deck({"structure": {"kind": "column", "width": 1.2, "top_width": 0.8, "height": 6.0}, "analysis": {"kind": "tilt"}})  # fmt: skip
-    assert {d.name: d.length for d in dimensions(column.building.blocks())} == pytest.approx(
-        {"width": 1.2, "height": 6.0}
-    )
+    column = make_deck({"structure": {"kind": "column", "width": 1.2, "top_width": 0.8, "height": 6.0}, "analysis": {"kind": "tilt"}})
+    assert {d.name: d.length for d in dimensions(column.building.blocks())} == pytest.approx({"width": 1.2, "height": 6.0})
 
 
-def surveyed(
-    span: float, rise: float, thick: float, voussoirs: int, courses: int, drop: float, noise: float, on_skewbacks: bool
-) -> dict:
+def surveyed(span: float, rise: float, thick: float, voussoirs: int, courses: int, drop: float, noise: float, on_skewbacks: bool) -> dict:
     """A segmental arch on two piers of courses, each stone measured for itself."""
     half = 0.5 * span
     radius = (half**2 + rise**2) / (2.0 * rise)
@@ -55,41 +51,35 @@ def surveyed(
             stones.append(np.array([low[k], high[k], [back, high[k][1]], [back, low[k][1]]]))
         level = np.linspace(low[k][1], low[k][1] - drop, courses + 1)
         reach = back if on_skewbacks else high[k][0]
-        stones += [
-            np.array([[low[k][0], a], [reach, a], [reach, b], [low[k][0], b]]) for a, b in itertools.pairwise(level)
-        ]
+        stones += [np.array([[low[k][0], a], [reach, a], [reach, b], [low[k][0], b]]) for a, b in itertools.pairwise(level)]
     rng = np.random.default_rng(3)
     points = [stone + rng.uniform(-noise, noise, stone.shape) for stone in stones]
-    return {
-        "kind": "blocks",
-        "block": [{"points": p.tolist()} for p in points],
-        "contact_tolerance": max(1e-4, 4.0 * noise),
-    }
+    return {"kind": "blocks", "block": [{"points": p.tolist()} for p in points], "contact_tolerance": max(1e-4, 4.0 * noise)}
 
 
 @pytest.mark.parametrize(
     ("span", "rise", "voussoirs", "noise", "on_skewbacks"),
-    [(8.0, 2.90, 24, 0.0, True), (8.0, 2.90, 24, 0.001, True), (8.0, 4.0, 40, 0.0, False), (8.0, 4.0, 40, 0.001, False), (8.0, 1.0, 30, 0.001, True)],
-)  # fmt: skip
-def test_the_rise_of_a_survey_begins_at_the_springings(
-    span: float, rise: float, voussoirs: int, noise: float, on_skewbacks: bool
-) -> None:
+    [
+        (8.0, 2.90, 24, 0.0, True),
+        (8.0, 2.90, 24, 0.001, True),
+        (8.0, 4.0, 40, 0.0, False),
+        (8.0, 4.0, 40, 0.001, False),
+        (8.0, 1.0, 30, 0.001, True),
+    ],
+)
+def test_the_rise_of_a_survey_begins_at_the_springings(span: float, rise: float, voussoirs: int, noise: float, on_skewbacks: bool) -> None:
     """Below the arch stand piers of 5 m: the rise was once measured from the foundation."""
     table = surveyed(span, rise, 0.6, voussoirs, 8, 5.0, noise, on_skewbacks)
-    found = {d.name: d.length for d in dimensions(make_deck({"structure": table, "analysis": {"kind": "tilt"}}).building.blocks())}  # fmt: skip
-    assert (found["clear span"], found["rise"], found["thickness at the crown"]) == pytest.approx(
-        (span, rise, 0.6), abs=4.0 * noise + 1e-9
-    )
+    found = {d.name: d.length for d in dimensions(make_deck({"structure": table, "analysis": {"kind": "tilt"}}).building.blocks())}
+    assert (found["clear span"], found["rise"], found["thickness at the crown"]) == pytest.approx((span, rise, 0.6), abs=4.0 * noise + 1e-9)
 
 
 @pytest.mark.parametrize("shape", ["segmental", "elliptical", "three-centred", "parabolic"])
 def test_each_span_of_a_viaduct_has_its_own_rise(shape: str) -> None:
     span = {"shape": shape, "span": 8.0, "rise": 2.5, "thickness": 0.6, "springing_thickness": 0.8}
     table = {"kind": "bridge", "spans": [span, span], "piers": [{"width": 2.4, "height": 6.0, "courses": 4}]}
-    found = {d.name: d.length for d in dimensions(make_deck({"structure": table, "analysis": {"kind": "tilt"}}).building.blocks())}  # fmt: skip
-    assert [found[f"{what} of span {k}"] for k in (1, 2) for what in ("clear span", "rise")] == pytest.approx(
-        [8.0, 2.5] * 2
-    )
+    found = {d.name: d.length for d in dimensions(make_deck({"structure": table, "analysis": {"kind": "tilt"}}).building.blocks())}
+    assert [found[f"{what} of span {k}"] for k in (1, 2) for what in ("clear span", "rise")] == pytest.approx([8.0, 2.5] * 2)
     assert not any("pier" in name for name in found)
 
 
@@ -113,16 +103,36 @@ def test_the_drawing_is_to_scale_and_needs_no_result(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report") / "out"
-    deck = {"title": "An <arch> \\ \"of\" #stone", "project": "St Martin", "author": "A. Mason", "date": "2026-05-04", "structure": ARCH,
-            "material": {"density": "2100 kg/m^3"}, "analysis": {"kind": "tilt"}}  # fmt: skip
+    deck = {
+        "title": 'An <arch> \\ "of" #stone',
+        "project": "St Martin",
+        "author": "A. Mason",
+        "date": "2026-05-04",
+        "structure": ARCH,
+        "material": {"density": "2100 kg/m^3"},
+        "analysis": {"kind": "tilt"},
+    }
     extrados.run(deck).write(out)
     return out
 
 
 def test_the_page_says_who_what_and_how_to_repeat(folder: Path) -> None:
     page = (folder / "report.html").read_text()
-    for words in ("St Martin", "A. Mason", "2026-05-04", "Contents", "clear span", "3.60 m", ">density<", "2100 kg/m³",
-                  "Limits of validity", "To repeat it", "Figure 2. The building", "Next step.", validity.Tilt.limits[:40]):  # fmt: skip
+    for words in (
+        "St Martin",
+        "A. Mason",
+        "2026-05-04",
+        "Contents",
+        "clear span",
+        "3.60 m",
+        ">density<",
+        "2100 kg/m³",
+        "Limits of validity",
+        "To repeat it",
+        "Figure 2. The building",
+        "Next step.",
+        validity.Tilt.limits[:40],
+    ):
         assert words in page, words
     assert "An &lt;arch&gt;" in page and "<details" not in page, "what is folded vanishes in print"
     assert "analysis" in page and "http://" not in page.replace("http://www.w3.org", "")
@@ -143,9 +153,7 @@ def test_paper_is_accessible_and_its_source_sets_it_anew(folder: Path) -> None:
     root = reader.trailer["/Root"]
     assert root["/MarkInfo"]["/Marked"] and root["/Lang"] == "en" and "/StructTreeRoot" in root
     assert "<pdfuaid:part>1</pdfuaid:part>" in root["/Metadata"].get_data().decode()
-    assert [one["/Title"] for one in reader.outline if isinstance(one, dict)] and reader.metadata["/Title"].startswith(
-        "An <arch>"
-    )
+    assert [one["/Title"] for one in reader.outline if isinstance(one, dict)] and reader.metadata["/Title"].startswith("An <arch>")
     seen, waiting, alternatives = set(), [root["/StructTreeRoot"]], 0
     while waiting:  # every figure of the tree of tags has its alternative text
         one = waiting.pop().get_object()
@@ -184,19 +192,9 @@ def test_the_template_of_an_office_orders_and_chooses(folder: Path, tmp_path: Pa
     template.write_text(OFFICE)
     write_report(folder, printed=True, template=template)
     reader, text = _paper(folder)
-    for words in (
-        "Studio Bianchi",
-        "Diocesi di Verona",
-        "B. Rossi",
-        "117/2026",
-        "Progettista",
-        "St Martin",
-        "A. Mason",
-    ):
+    for words in ("Studio Bianchi", "Diocesi di Verona", "B. Rossi", "117/2026", "Progettista", "St Martin", "A. Mason"):
         assert "".join(words.split()) in "".join(text.split()), words  # older readers part words
-    assert [one["/Title"] for one in reader.outline] == ["1 Limiti di validità", "2 Esito"], (
-        "the order and choice of the office"
-    )
+    assert [one["/Title"] for one in reader.outline] == ["1 Limiti di validità", "2 Esito"], "the order and choice of the office"
     assert "#7a1f1f" in (folder / "report.html").read_text()
     write_report(folder, printed=True)
 
@@ -204,12 +202,20 @@ def test_the_template_of_an_office_orders_and_chooses(folder: Path, tmp_path: Pa
 @pytest.mark.parametrize(
     ("line", "complaint"),
     [
-        ('logo = "../logo.png"', "logo.png"), ('logo = "/etc/passwd"', "inside the template's folder"), ('logo = "logo.svg"', "ends in"),
-        ('logo = "text.png"', "is no PNG"), ('logo = "large.png"', "at most 1 MB"), ('colour = "red); #panic()"', "colour"),
-        ('sections = ["answer", "answer"]', "each section once"), ('sections = ["cover"]', "sections"), ('surprise = 1', "surprise"),
-        ('language = "xx"', "language"), ("office = ", "TOML"), (f'office = "{"x" * 300}"', "office"),
+        ('logo = "../logo.png"', "logo.png"),
+        ('logo = "/etc/passwd"', "inside the template's folder"),
+        ('logo = "logo.svg"', "ends in"),
+        ('logo = "text.png"', "is no PNG"),
+        ('logo = "large.png"', "at most 1 MB"),
+        ('colour = "red); #panic()"', "colour"),
+        ('sections = ["answer", "answer"]', "each section once"),
+        ('sections = ["cover"]', "sections"),
+        ("surprise = 1", "surprise"),
+        ('language = "xx"', "language"),
+        ("office = ", "TOML"),
+        (f'office = "{"x" * 300}"', "office"),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_template_is_refused_in_words(tmp_path: Path, line: str, complaint: str) -> None:
     (tmp_path / "in").mkdir()
     (tmp_path / "logo.png").write_bytes(b"\x89PNG\r\n\x1a\n")
@@ -222,22 +228,18 @@ def test_a_wrong_template_is_refused_in_words(tmp_path: Path, line: str, complai
 
 def test_quantities_are_those_of_engineers() -> None:
     english, italian = Language(), Language("it")
-    values = [
-        (2.8155e6, "N"),
-        (8e6, "Pa"),
-        (0.55, "m"),
-        (2.9, "m"),
-        (-1.7e-9, "g"),
-        (0.21634, "g"),
-        (2348.0, "kg/m^3"),
-        (0.0, "N"),
-    ]
+    values = [(2.8155e6, "N"), (8e6, "Pa"), (0.55, "m"), (2.9, "m"), (-1.7e-9, "g"), (0.21634, "g"), (2348.0, "kg/m^3"), (0.0, "N")]
     assert [english.quantity(*one) for one in values] == [
-        "2820 kN", "8.00 MPa", "550 mm", "2.90 m", "−1.70 × 10^-9 g", "0.216 g", "2350 kg/m³", "0 kN"
-    ]  # fmt: skip
-    assert (
-        italian.quantity(8.25e6, "Pa") == "8,25 MPa" and italian.quantity(2345.0, "kg/m^3", given=True) == "2345 kg/m³"
-    )
+        "2820 kN",
+        "8.00 MPa",
+        "550 mm",
+        "2.90 m",
+        "−1.70 × 10^-9 g",
+        "0.216 g",
+        "2350 kg/m³",
+        "0 kN",
+    ]
+    assert italian.quantity(8.25e6, "Pa") == "8,25 MPa" and italian.quantity(2345.0, "kg/m^3", given=True) == "2345 kg/m³"
     assert english.quantity(9.9996, "m") == "10.0 m" and english.given(0.6) == "0.6" and italian.given(1.35) == "1,35"
 
 
@@ -261,12 +263,9 @@ def test_paper_holds_what_the_page_holds(folder: Path) -> None:
 
 def test_numbers_are_not_broken_on_paper_and_long_keys_are() -> None:
     """A line may end after the marks of a key or a path; not within 0.213 g or 1/2."""
-    soft = typeset._words(
-        "0.213 g by structure.thickness_factor of cases/assess/x.toml, c_v 1.000, d_SLV, [C8.7.1.10] 1/2"
-    )
+    soft = typeset._words("0.213 g by structure.thickness_factor of cases/assess/x.toml, c_v 1.000, d_SLV, [C8.7.1.10] 1/2")
     assert soft == (
-        'text("0.213 g by structure.\u200bthickness_\u200bfactor of cases/\u200bassess/\u200bx.toml, c_v 1.000, d_SLV, '
-        '[C8.7.1.10] 1/2")'
+        'text("0.213 g by structure.\u200bthickness_\u200bfactor of cases/\u200bassess/\u200bx.toml, c_v 1.000, d_SLV, [C8.7.1.10] 1/2")'
     )
 
 
@@ -279,15 +278,11 @@ def test_nothing_in_a_text_is_obeyed(tmp_path: Path) -> None:
     words = 'a "quote" \\ #panic("no") $x$ *b* _c_ <d> @e // f'
     blocks = [Heading(words), Words(words, "answer"), Table(("h",), [(words,)]), Code(words)]
     document = Document(words, [("k", words)], blocks, words)
-    assert typst.compile(typeset.markup(document, tmp_path).encode(), root=str(tmp_path), format="pdf").startswith(
-        b"%PDF"
-    )
+    assert typst.compile(typeset.markup(document, tmp_path).encode(), root=str(tmp_path), format="pdf").startswith(b"%PDF")
     assert "<d>" not in html.page(document, tmp_path)
 
 
-def test_without_the_typesetter_the_page_is_written_and_pdf_is_refused(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_the_typesetter_the_page_is_written_and_pdf_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "typst", None)
     assert write_report(folder)[0].exists()
     with pytest.raises(StoreError, match="pip install typst"):
@@ -306,17 +301,14 @@ def test_a_surveyed_intrados_carries_what_the_curve_carries_that_it_was_measured
     turn = np.linspace(-1.0, 1.0, 17) * np.arctan2(half, radius - rise)
     points = [[half + radius * np.sin(t), max(0.0, radius * np.cos(t) + rise - radius)] for t in turn]
     common = {"thickness": 0.6, "voussoirs": 30}
-    over = {
-        "fill": {"cover": 0.4, "passive": 0.5},
-        "backing": {"height": 1.0},
-        "surfacing": {"thickness": 0.1},
-        "depth": 4.0,
-    }
+    over = {"fill": {"cover": 0.4, "passive": 0.5}, "backing": {"height": 1.0}, "surfacing": {"thickness": 0.1}, "depth": 4.0}
     analysis = {"kind": "moving-load", "train": "LM1", "count": 9}
     runs = [
-        extrados.run({"structure": {"kind": "bridge", "spans": [{**one, **common}], **over}, "joints": {"friction": 0.6}, "analysis": analysis})
+        extrados.run(
+            {"structure": {"kind": "bridge", "spans": [{**one, **common}], **over}, "joints": {"friction": 0.6}, "analysis": analysis}
+        )
         for one in ({"span": 2.0 * half, "rise": rise}, {"shape": "surveyed", "intrados": points})
-    ]  # fmt: skip
+    ]
     drawn, measured = (run["moving-load"] for run in runs)
     assert measured.adequacy_factor == pytest.approx(drawn.adequacy_factor, rel=3e-3)
     sizes = {d["name"]: d["length_m"] for d in runs[1].summary["deck"]["dimensions"]}
@@ -326,25 +318,21 @@ def test_a_surveyed_intrados_carries_what_the_curve_carries_that_it_was_measured
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        ({"intrados": [[0, 0], [2, 1], [1, 1], [4, 0]]}, "x that grows"), ({"intrados": [[0, 0], [1, 1], [3, 1], [4, 0.5]]}, "one level"),
-        ({"span": 4.0}, "leave it out"), ({"shape": "segmental", "span": 4.0, "rise": 1.0}, "belongs to the shape surveyed"), ({"intrados": [[0, 0], [1, 1]]}, "intrados"),
+        ({"intrados": [[0, 0], [2, 1], [1, 1], [4, 0]]}, "x that grows"),
+        ({"intrados": [[0, 0], [1, 1], [3, 1], [4, 0.5]]}, "one level"),
+        ({"span": 4.0}, "leave it out"),
+        ({"shape": "segmental", "span": 4.0, "rise": 1.0}, "belongs to the shape surveyed"),
+        ({"intrados": [[0, 0], [1, 1]]}, "intrados"),
         ({"intrados": [[0, 0], [1], [3, 1], [4, 0]]}, "points"),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_intrados_is_refused_in_words(change: dict, complaint: str) -> None:
-    span = {
-        "shape": "surveyed",
-        "intrados": [[0.0, 0.0], [1.0, 1.0], [3.0, 1.0], [4.0, 0.0]],
-        "thickness": 0.4,
-        **change,
-    }
+    span = {"shape": "surveyed", "intrados": [[0.0, 0.0], [1.0, 1.0], [3.0, 1.0], [4.0, 0.0]], "thickness": 0.4, **change}
     with pytest.raises(DeckError, match=complaint):
         make_deck({"structure": {"kind": "bridge", "spans": [span]}, "analysis": {"kind": "tilt"}})
 
 
-@pytest.mark.parametrize(
-    ("name", "most"), [("limit/church", 15), pytest.param("limit/panel", 8, marks=pytest.mark.verify)]
-)
+@pytest.mark.parametrize(("name", "most"), [("limit/church", 15), pytest.param("limit/panel", 8, marks=pytest.mark.verify)])
 def test_a_report_has_few_pages(tmp_path: Path, name: str, most: int) -> None:
     """A surveyed nave, and a garden wall; the annex holds the rest."""
     pytest.importorskip("typst")

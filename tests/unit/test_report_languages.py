@@ -37,19 +37,10 @@ def fixed() -> Iterator[str]:
                 continue
             for argument in node.args:
                 choices = [argument.body, argument.orelse] if isinstance(argument, ast.IfExp) else [argument]
-                yield from (
-                    one.value for one in choices if isinstance(one, ast.Constant) and one.value not in (None, "")
-                )
+                yield from (one.value for one in choices if isinstance(one, ast.Constant) and one.value not in (None, ""))
     for kind in kinds.ANALYSES:
         yield from (TITLES[kind], *validity_of(kind))
-    yield from (
-        *OUTCOMES.values(),
-        *DIMENSIONS,
-        *FACTORS.values(),
-        *SERVICE.values(),
-        *ENTRIES.values(),
-        *(label for label, _ in GROUPS),
-    )
+    yield from (*OUTCOMES.values(), *DIMENSIONS, *FACTORS.values(), *SERVICE.values(), *ENTRIES.values(), *(label for label, _ in GROUPS))
     yield from (*CHECKED.values(), *(text for text in COLUMNS if "*" not in text))
     yield from (f"The capacity is {one} bound." for one in ("an upper", "a lower"))
     for table in (Material, Joints, Supports, Code, Span, Pier, Abutment, Backing, Fill, Surfacing, Spandrels):
@@ -84,9 +75,7 @@ def test_languages_of_decks_are_those_of_reports() -> None:
 @pytest.mark.parametrize("code", LANGUAGES)
 def test_a_report_speaks_one_language_and_marks_what_is_english(tmp_path: Path, code: str) -> None:
     arch = {"kind": "arch", "radius": 2.0, "thickness": 0.4, "embrace": 180.0, "voussoirs": 12}
-    extrados.run({"title": "X", "language": code, "structure": arch, "analysis": {"kind": "tilt"}}).write(
-        tmp_path / "out"
-    )
+    extrados.run({"title": "X", "language": code, "structure": arch, "analysis": {"kind": "tilt"}}).write(tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_text()
     words = Language(code)
     assert f'<html lang="{code}">' in page and words(validity_of("tilt").limits)[:60].replace("'", "&#39;") in page

@@ -52,9 +52,7 @@ def line(start: tuple[float, float], ground: tuple[float, float]):
 
 
 def of_block(side: int, q: float) -> tuple[float, float, float, float]:
-    return (
-        4.0 / 3.0 * MASS * R**2, 0.0, MASS * GRAVITY * R * np.sin(ALPHA - q), MASS * R * np.cos(ALPHA - q),
-    )  # fmt: skip
+    return (4.0 / 3.0 * MASS * R**2, 0.0, MASS * GRAVITY * R * np.sin(ALPHA - q), MASS * R * np.cos(ALPHA - q))
 
 
 def samples(seed: int, count: int = 60) -> np.ndarray:
@@ -78,10 +76,7 @@ KINDS = {
         [Tie(start=[*TOP_LEFT], ground=[-4.0, 4.0], stiffness=3e5, yield_force=6e3, works_in="both")],
         [Spring(line(TOP_LEFT, (-4, 4)), 3e5, 0.0, 6e3, -6e3)],
     ),
-    "viscous damper": (
-        [Damper(start=[*TOP_LEFT], ground=[-3.0, 1.0], damping=4e3)],
-        [Spring(line(TOP_LEFT, (-3, 1)), c=4e3)],
-    ),
+    "viscous damper": ([Damper(start=[*TOP_LEFT], ground=[-3.0, 1.0], damping=4e3)], [Spring(line(TOP_LEFT, (-3, 1)), c=4e3)]),
     "viscous damper of the power 0.5": (
         [Damper(start=[*TOP_LEFT], ground=[-3.0, 1.0], damping=2e3, power=0.5)],
         [Spring(line(TOP_LEFT, (-3, 1)), c=2e3, n=0.5)],
@@ -90,7 +85,7 @@ KINDS = {
         [Damper(start=[*TOP_LEFT], ground=[-3.0, 1.0], slip_force=5e3, stiffness=1e6)],
         [Spring(line(TOP_LEFT, (-3, 1)), 1e6, 0.0, 5e3, -5e3)],
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -99,15 +94,11 @@ def test_a_restrained_block_rocks_as_scipy_says(kind: str, seed: int) -> None:
     tables, springs = KINDS[kind]
     tables = [one.model_copy(update={"name": "it", "start_stone": "block"}) for one in tables]
     ties = tuple(t for t in tables if isinstance(t, Tie))
-    building = block(
-        ties=ties, dampers=tuple(t for t in tables if isinstance(t, Damper)), initial=Initial(rotation_ratio=0.4)
-    )
+    building = block(ties=ties, dampers=tuple(t for t in tables if isinstance(t, Damper)), initial=Initial(rotation_ratio=0.4))
     rocker = building.rocker()
     shaking = samples(seed)
     times = STEP * np.arange(len(shaking))
-    got = history(
-        rocker.body, Ground(samples=shaking[None], step=STEP), 4.0, 0.002, tolerance=1e-11, start_rotation=0.1
-    )
+    got = history(rocker.body, Ground(samples=shaking[None], step=STEP), 4.0, 0.002, tolerance=1e-11, start_rotation=0.1)
     for s in springs:
         s.mode, s.set = "elastic", 0.0
         u, _ = s.path(1, 0.1)
@@ -116,9 +107,19 @@ def test_a_restrained_block_rocks_as_scipy_says(kind: str, seed: int) -> None:
         elif s.trial(u) < 0.0:
             s.mode = "slack"
     peaks, impacts, outcome = rock(
-        of_block, springs, lambda t: np.interp(t, times, shaking, right=0.0), 4.0, side=1, q=0.1, v=0.0, restitution=C_V,
-        limit=2.0 * ALPHA, rest_rate=1e-3 * P * ALPHA, breaks=times, rtol=1e-10,
-    )  # fmt: skip
+        of_block,
+        springs,
+        lambda t: np.interp(t, times, shaking, right=0.0),
+        4.0,
+        side=1,
+        q=0.1,
+        v=0.0,
+        restitution=C_V,
+        limit=2.0 * ALPHA,
+        rest_rate=1e-3 * P * ALPHA,
+        breaks=times,
+        rtol=1e-10,
+    )
     found = [t for k, t, _ in got.events if k == "impact"]
     n = min(len(found), len(impacts), 6)
     assert n >= 2 or outcome == "collapse"
@@ -144,10 +145,7 @@ def test_a_prestressed_tendon_raises_uplift_by_its_share_of_the_weight() -> None
 
 def test_a_stiff_tendon_has_no_rotation_of_no_return() -> None:
     """Above m g R / b of stiffness weight and tendon push back at every rotation up to collapse; a soft one falls short."""
-    stiff, soft = (
-        block(ties=named(Tie(start=[0.0, 4.0], ground=[0.0, 0.0], stiffness=k))).rocker().critical[0]
-        for k in (2e6, 2e4)
-    )
+    stiff, soft = (block(ties=named(Tie(start=[0.0, 4.0], ground=[0.0, 0.0], stiffness=k))).rocker().critical[0] for k in (2e6, 2e4))
     assert stiff == pytest.approx(2.0 * ALPHA)
     k, dl = 2e4, line(TOP, (0, 0))
     moment = MASS * GRAVITY * R * np.sin(ALPHA - soft) + k * np.prod(dl(1, soft))
@@ -163,8 +161,7 @@ def test_a_run_that_stops_when_safe_ends_as_the_whole_run() -> None:
         body = block(ties=ties, dampers=dampers, supports=supports).rocker().body
         grounds = [Ground(samples=3.0 * samples(seed)[None], step=STEP) for seed in range(60)]
         early, whole = (
-            ensemble([body], grounds, np.zeros(60, int), np.arange(60), 1.0, 40.0, stop_when_safe=soon)
-            for soon in (True, False)
+            ensemble([body], grounds, np.zeros(60, int), np.arange(60), 1.0, 40.0, stop_when_safe=soon) for soon in (True, False)
         )
         assert (early.outcome == whole.outcome).all()
         assert len(set(early.outcome)) > 1
@@ -199,9 +196,19 @@ def test_added_hinges_of_an_arch_rock_as_scipy_says() -> None:
     side = int(next(x for kind, _, x in got.events if kind == "uplift"))
     times = 0.2 * np.arange(5)
     peaks, impacts, _ = rock(
-        coefficients, springs, lambda t: np.interp(t + lift, times, shaking[0], right=0.0), 0.9, side=side, q=0.0, v=1e-12,
-        restitution=0.75, limit=0.1, rest_rate=1e-6, breaks=times - lift, rtol=1e-9,
-    )  # fmt: skip
+        coefficients,
+        springs,
+        lambda t: np.interp(t + lift, times, shaking[0], right=0.0),
+        0.9,
+        side=side,
+        q=0.0,
+        v=1e-12,
+        restitution=0.75,
+        limit=0.1,
+        rest_rate=1e-6,
+        breaks=times - lift,
+        rtol=1e-9,
+    )
     found = [t - lift for kind, t, _ in got.events if kind == "impact"]
     assert found[: len(impacts)] == pytest.approx(impacts, abs=1e-6)
     assert impacts
@@ -243,17 +250,10 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     damper = "[[dampers]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\ndamping = 100.0\n"
     for kind in ("tilt", "dem", "assessment", "rocking-spectrum"):
         ((status, reason),) = told(DECK.replace("rocking", kind))
-        assert (
-            status == "refused"
-            and f"supports.abutting_wall: {kind} cannot take [supports] abutting_wall into account" in reason
-        ), reason
-        ((status, reason),) = told(
-            damper + DECK.replace('[supports]\nabutting_wall = "left"\n', "").replace("rocking", kind)
-        )
+        assert status == "refused" and f"supports.abutting_wall: {kind} cannot take [supports] abutting_wall into account" in reason, reason
+        ((status, reason),) = told(damper + DECK.replace('[supports]\nabutting_wall = "left"\n', "").replace("rocking", kind))
         assert status == "refused" and "[[dampers]]" in reason and "rocking" in reason
-    ((status, reason),) = told(
-        "[[ties]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\nyield_force = 10.0\n" + DECK
-    )
+    ((status, reason),) = told("[[ties]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\nyield_force = 10.0\n" + DECK)
     assert status == "refused" and "requires its stiffness" in reason
 
 
@@ -299,9 +299,14 @@ def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
             struck.append(approach[0])
             place, normal = corners[approach[0]]
             velocity = core_mechanism.inelastic_blow(
-                b.mass, b.inertia, centre[None], [[0, -1]], np.array([[place, place]]),
-                np.array([[normal, [normal[1], -normal[0]]]]), velocity[None],
-            )[0]  # fmt: skip
+                b.mass,
+                b.inertia,
+                centre[None],
+                [[0, -1]],
+                np.array([[place, place]]),
+                np.array([[normal, [normal[1], -normal[0]]]]),
+                velocity[None],
+            )[0]
             assert at(place, velocity) == pytest.approx(0.0, abs=1e-8)
             rates.append(way * velocity[2] / before)
         assert rates[0] == pytest.approx(model.restitution[1 - side], rel=1e-9)
@@ -314,9 +319,7 @@ def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
 def test_a_block_before_a_wall_rocks_away_from_it_only() -> None:
     """Free rocking: at each return the rate is turned and multiplied by the default rebound."""
     building = Building(
-        Block(kind="block", width=0.6, height=6.0),
-        supports=Supports(abutting_wall="left"),
-        initial=Initial(rotation_ratio=0.8),
+        Block(kind="block", width=0.6, height=6.0), supports=Supports(abutting_wall="left"), initial=Initial(rotation_ratio=0.8)
     )
     rocker = building.rocker()
     a = np.arctan2(0.3, 3.0)

@@ -66,8 +66,7 @@ def test_results_read_as_attributes_and_as_a_mapping() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "word"),
-    [({"a_gg": 1.0}, "a_gg"), ({"a_g": float("nan")}, "a_g"), ({"a_g": True}, "a_g"), ({"rows": [{}]}, "from")],
+    ("change", "word"), [({"a_gg": 1.0}, "a_gg"), ({"a_g": float("nan")}, "a_g"), ({"a_g": True}, "a_g"), ({"rows": [{}]}, "from")]
 )
 def test_a_wrong_key_or_value_fails_at_once(change: dict, word: str) -> None:
     with pytest.raises(ValidationError, match=word):
@@ -93,11 +92,31 @@ def test_a_driver_that_gives_another_model_fails(monkeypatch) -> None:
 
 
 #: How keys end that have a unit
-ENDS = {"mm": "_mm",
-    "g": "_g", "deg": "_deg", "N": "_N", "m": "_m", "m/s": "_m_s", "s": "_s", "rad": "_rad", "J": "_J", "Hz": "_Hz",
-    "kg": "_kg", "m^2": "_m2", "m^3": "_m3", "rad/s": "_rad_s", "N/m": "_N_m", "kN/m": "_kN_per_m", "Pa/m": "_Pa_per_m", "Pa": "_Pa",
-    "N*m": "_Nm", "1/s": "_per_s", "1/year": ("_rate", "_rate_interval", "_rate_left_out"), "year": ("years",), "%": "_percent",
-}  # fmt: skip
+ENDS = {
+    "mm": "_mm",
+    "g": "_g",
+    "deg": "_deg",
+    "N": "_N",
+    "m": "_m",
+    "m/s": "_m_s",
+    "s": "_s",
+    "rad": "_rad",
+    "J": "_J",
+    "Hz": "_Hz",
+    "kg": "_kg",
+    "m^2": "_m2",
+    "m^3": "_m3",
+    "rad/s": "_rad_s",
+    "N/m": "_N_m",
+    "kN/m": "_kN_per_m",
+    "Pa/m": "_Pa_per_m",
+    "Pa": "_Pa",
+    "N*m": "_Nm",
+    "1/s": "_per_s",
+    "1/year": ("_rate", "_rate_interval", "_rate_left_out"),
+    "year": ("years",),
+    "%": "_percent",
+}
 
 
 #: Keys that others rely on and that tell their unit otherwise
@@ -119,13 +138,8 @@ def test_verdict_by_comparison() -> None:
     assert judge("", 0.5, 1.0, "g") == Verdict(
         demand=0.5, capacity=1.0, unit="g", ratio=2.0, outcome="stands", bound=None, violated=[], statement=""
     )
-    assert (
-        judge("", 0.5, 1.0, bound="upper").outcome == "open"
-        and judge("", 1.5, 1.0, bound="upper").outcome == "collapses"
-    )
-    assert (
-        judge("", 0.5, 1.0, bound="lower").outcome == "stands" and judge("", 1.5, 1.0, bound="lower").outcome == "open"
-    )
+    assert judge("", 0.5, 1.0, bound="upper").outcome == "open" and judge("", 1.5, 1.0, bound="upper").outcome == "collapses"
+    assert judge("", 0.5, 1.0, bound="lower").outcome == "stands" and judge("", 1.5, 1.0, bound="lower").outcome == "open"
     for demand, outcome in ((0.5, None), (1.5, None), (0.5, "stands"), (1.5, "collapses")):
         doubted = judge("Said.", demand, 1.0, "g", outcome, violated=["Friction is too low."])
         assert doubted.outcome == "open" and doubted.statement == "Said. Friction is too low."
@@ -135,11 +149,7 @@ def test_verdict_by_comparison() -> None:
 
 def test_verdicts_of_one_deck() -> None:
     run = extrados.run(
-        {
-            "structure": ARCH,
-            "motion": PULSE,
-            "analysis": [{"kind": "tilt"}, {"kind": "rocking", "hand_over": False}, {"kind": "thrust"}],
-        }
+        {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "tilt"}, {"kind": "rocking", "hand_over": False}, {"kind": "thrust"}]}
     )
     tilt, rocking, thrust = (run.analysis(name)["verdict"] for name in ("tilt", "rocking", "thrust"))
     assert tilt["outcome"] == "collapses" and tilt["demand"] == pytest.approx(0.5) and tilt["unit"] == "g"
@@ -159,21 +169,26 @@ def test_a_pulse_against_failure_curves() -> None:
     assert between([1.0, 2.0], [10.0, None], 1.5) is None and between([1.0, 2.0], [1.0, 2.0], 2.5) is None
     curve = {"durations_s": [0.2, 0.4], "amplitudes_g": [1.0, 0.5]}
     domain = FailureDomain(
-        pulse="step", mode_I=curve, mode_II=curve, pocket_begins_g=[None, None], uplift_acceleration_g=0.3,
-        restitution=0.9, natural_time_s=1.0, safe_pockets=0, sliding_from_g=[None, 0.9], hinges_elsewhere_from_g=[0.95, None],
+        pulse="step",
+        mode_I=curve,
+        mode_II=curve,
+        pocket_begins_g=[None, None],
+        uplift_acceleration_g=0.3,
+        restitution=0.9,
+        natural_time_s=1.0,
+        safe_pockets=0,
+        sliding_from_g=[None, 0.9],
+        hinges_elsewhere_from_g=[0.95, None],
         conditions={"not_checked": "", "violated": []},
-    )  # fmt: skip
+    )
     slides = domain.judged(Asked(pulse="step", duration_s=0.4, amplitude_g=0.92))
-    assert slides.outcome == "open" and slides.violated == [
-        "Blocks slide from 0.9 g on at this duration. Use dem, or check the friction."
-    ]
+    assert slides.outcome == "open" and slides.violated == ["Blocks slide from 0.9 g on at this duration. Use dem, or check the friction."]
     elsewhere = domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.96))
     assert elsewhere.outcome == "open" and len(elsewhere.violated) == 2
     rules = domain.model_copy(
         update={
             "amplitudes_by_rule": [
-                RuleCurve(rule=rule, restitution=0.5, amplitudes_g=a)
-                for rule, a in (("thesis", [1.0, 0.5]), ("inelastic", [2.0, 1.0]))
+                RuleCurve(rule=rule, restitution=0.5, amplitudes_g=a) for rule, a in (("thesis", [1.0, 0.5]), ("inelastic", [2.0, 1.0]))
             ]
         }
     )
@@ -186,7 +201,7 @@ def test_a_pulse_against_failure_curves() -> None:
     assert domain.judged(Asked(pulse="sine", duration_s=0.3, amplitude_g=0.8)).outcome == "not-applicable"
     blocks = DemDomain(
         pulse="step", amplitudes_g=[0.5, 1.0], shortest_durations_s=[0.4, 0.2], curves=[], energy_residual_ratio=0.0, steps=1
-    )  # fmt: skip
+    )
     assert blocks.judged(Asked(pulse="step", duration_s=0.25, amplitude_g=0.75)).outcome == "stands"
     assert blocks.judged(Asked(pulse="step", duration_s=0.35, amplitude_g=0.75)).outcome == "collapses"
 
@@ -212,15 +227,8 @@ def test_assumptions_tell_who_set_them() -> None:
     assert "joints.friction" not in sweep["assumptions"]
     assert spoken({}) == ""
     rocking = extrados.run({"structure": ARCH, "motion": PULSE, "analysis": {"kind": "rocking"}}).analysis("rocking")
-    assert (
-        rocking["assumptions"]["joints.friction"]["from"] == "default"
-        and " Friction 0.7 (default), " in rocking["answer"]
-    )
-    typed_joints = {
-        **deck,
-        "joints": {"types": [{"joints": ["ground"], "friction": 0.4}]},
-        "analysis": {"kind": "tilt"},
-    }
+    assert rocking["assumptions"]["joints.friction"]["from"] == "default" and " Friction 0.7 (default), " in rocking["answer"]
+    typed_joints = {**deck, "joints": {"types": [{"joints": ["ground"], "friction": 0.4}]}, "analysis": {"kind": "tilt"}}
     assert "friction 0.7 (default, some differ)" in extrados.run(typed_joints).analysis("tilt")["answer"].lower()
 
 
@@ -236,9 +244,13 @@ def test_stored_results_of_another_version_are_told(tmp_path) -> None:
 
 def test_series_of_arrays_keep_their_order(tmp_path) -> None:
     values = RockingSpectrum(
-        family=["x"], overturned=[0], longest_overturning_period_s=[None], size_m=[1.0], peak_ground_acceleration_g=0.1,
+        family=["x"],
+        overturned=[0],
+        longest_overturning_period_s=[None],
+        size_m=[1.0],
+        peak_ground_acceleration_g=0.1,
         conditions=[{"not_checked": "", "violated": []}],
-    )  # fmt: skip
+    )
     result = Result("rocking-spectrum", results=values)
     result.arrays = {f"part_{k}": Array(np.full(2, k), (f"n_{k}",), series="part") for k in range(12)}
     with store.NewFolder(tmp_path / "o") as folder:
@@ -271,12 +283,7 @@ def test_schema_refuses_what_the_models_refuse() -> None:
     validator = jsonschema.Draft202012Validator(explain.json_schema())
     jsonschema.Draft202012Validator.check_schema(validator.schema)
     validator.validate(run.summary)
-    for change in (
-        {"results": {}},
-        {"verdict": None},
-        {"results": {**run["tilt"].as_json(), "x": 1}},
-        {"kind": "tlit"},
-    ):
+    for change in ({"results": {}}, {"verdict": None}, {"results": {**run["tilt"].as_json(), "x": 1}}, {"kind": "tlit"}):
         broken = {**run.summary, "analyses": [{**run.summary["analyses"][0], **change}]}
         assert not validator.is_valid(broken), change
     refused = {**run.summary["analyses"][0], "status": "refused", "reason": "r", "verdict": None, "results": {}}

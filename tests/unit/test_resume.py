@@ -257,9 +257,7 @@ def arrays_of(out: Path) -> dict[str, bytes]:
     with h5py.File(out / "results.h5") as file:
         file.visititems(
             lambda name, item: (
-                found.update({name: np.asarray(item).tobytes()})
-                if isinstance(item, h5py.Dataset) and item.dtype.kind != "O"
-                else None
+                found.update({name: np.asarray(item).tobytes()}) if isinstance(item, h5py.Dataset) and item.dtype.kind != "O" else None
             )
         )
     return found
@@ -285,7 +283,15 @@ def run(deck: Path, out: Path, **context) -> None:
 
 
 #: One of each way to keep members, in the quick suite; all of them in `make verify`
-QUICK = ("dem-domain", "dem, one run", "sla in stages", "sweep, its changes and optimum", "failure-domain at amplitudes", "generated motions", "survey")  # fmt: skip
+QUICK = (
+    "dem-domain",
+    "dem, one run",
+    "sla in stages",
+    "sweep, its changes and optimum",
+    "failure-domain at amplitudes",
+    "generated motions",
+    "survey",
+)
 
 
 @pytest.mark.parametrize("kind", [k if k in QUICK else pytest.param(k, marks=pytest.mark.verify) for k in DECKS])
@@ -384,15 +390,11 @@ def test_constant_loads_are_not_brought_on_again(kept: int, tmp_path: Path, monk
         ("kind = 'vault'\npreset = 'dejong-a'", 0.35),
     ],
 )
-def test_joints_that_slide_go_on_with_the_same_bits(
-    structure: str, friction: float, tmp_path: Path, monkeypatch
-) -> None:
+def test_joints_that_slide_go_on_with_the_same_bits(structure: str, friction: float, tmp_path: Path, monkeypatch) -> None:
     """Interrupted each time their state is kept: what sticks, what slides and the forces of friction are kept with it."""
     monkeypatch.setattr("extrados.analyses.sla.events.KEPT", 40)
     monkeypatch.setattr("extrados.analyses.sla.events.GRID", 40)
-    deck = make_deck(
-        tomllib.loads(f"[structure]\n{structure}\n[joints]\nfriction = {friction}\n[analysis]\nkind = 'sla'\n")
-    )
+    deck = make_deck(tomllib.loads(f"[structure]\n{structure}\n[joints]\nfriction = {friction}\n[analysis]\nkind = 'sla'\n"))
     real = Checkpoint.keep
 
     def keep(self, *args):
@@ -496,9 +498,7 @@ def test_two_runs_do_not_share_their_batches(tmp_path) -> None:
     assert subprocess.run(words, capture_output=True).returncode == 0 and not folder_of(out).exists()
 
 
-def test_ctrl_c_as_the_peak_is_looked_at_again_is_an_interruption(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_ctrl_c_as_the_peak_is_looked_at_again_is_an_interruption(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """The state at the peak is computed a second time at the end: a run that is stopped there is not a whole one without it."""
 
     def stopped(*_: object, **__: object) -> None:

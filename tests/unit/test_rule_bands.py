@@ -7,9 +7,7 @@ import extrados
 from extrados.analyses.rocking.doubts import DIFFER
 
 #: The smaller arch of Fig. 5-15, of 17 voussoirs: c_v .96, .60 and .82 by the three rules
-ARCH = {
-    "kind": "arch", "radius": 1.0, "thickness": 0.18, "embrace": 170.0, "voussoirs": 17, "thickness_factor": 0.8,
-}  # fmt: skip
+ARCH = {"kind": "arch", "radius": 1.0, "thickness": 0.18, "embrace": 170.0, "voussoirs": 17, "thickness_factor": 0.8}
 BLOCK = {"kind": "block", "width": 0.5, "height": 2.0}
 GENERATED = {"kind": "generated", "mmi": 8, "duration": 8.0}
 LEVELS = {"kind": "fragility", "count": 12, "seed": 1, "levels": [0.9, 0.3, 0.5], "intensity": "pga", "bootstrap": 0}

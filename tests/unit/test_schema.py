@@ -79,10 +79,7 @@ def test_every_starter_is_valid(validator, kind: str) -> None:
         ("structur", {}),
         ("structure", {"kind": "vault", "preset": "dejong-c"}),
         ("structure", {"kind": "vault"}),
-        (
-            "structure",
-            {"kind": "panel", "width": 1, "height": 1, "thickness": 1, "openings": [{"x": [0, 1, 2], "y": 0}]},
-        ),
+        ("structure", {"kind": "panel", "width": 1, "height": 1, "thickness": 1, "openings": [{"x": [0, 1, 2], "y": 0}]}),
     ],
 )
 def test_what_the_reader_refuses_the_schema_rejects(validator, place: str, value: Any) -> None:

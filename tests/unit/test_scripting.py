@@ -52,15 +52,13 @@ def test_every_kind_has_an_object_with_its_keys() -> None:
 
 
 def test_an_object_is_what_a_deck_says() -> None:
-    table = tomllib.loads(
-        '[structure]\nkind = "arch"\nradius = 10\nthickness = "150 cm"\nembrace = 157.5\nvoussoirs = 7'
-    )
+    table = tomllib.loads('[structure]\nkind = "arch"\nradius = 10\nthickness = "150 cm"\nembrace = 157.5\nvoussoirs = 7')
     assert make_deck({**table, "analysis": {"kind": "tilt"}}).structure == ARCH
     assert isinstance(ARCH, extrados.Arch) and not isinstance(PULSE, extrados.Arch)
     assert DECK.motion.amplitude == 9.80665
-    assert extrados.run({"structure": ARCH, "analysis": extrados.Tilt()})[
-        "tilt"
-    ].collapse_acceleration_g == pytest.approx(extrados.run(DECK)["tilt"].collapse_acceleration_g)
+    assert extrados.run({"structure": ARCH, "analysis": extrados.Tilt()})["tilt"].collapse_acceleration_g == pytest.approx(
+        extrados.run(DECK)["tilt"].collapse_acceleration_g
+    )
 
 
 @pytest.mark.parametrize(
@@ -82,7 +80,7 @@ def test_an_object_is_what_a_deck_says() -> None:
         ),
         (lambda: extrados.sweep(DECK, over={"analysis.sla.events": [1]}), "no analysis 'sla'; there are tilt, rocking"),
     ],
-)  # fmt: skip
+)
 def test_errors_from_python_are_those_of_decks(wrong, words: str) -> None:
     with pytest.raises(extrados.DeckError, match=words):
         wrong()
@@ -124,13 +122,14 @@ def test_a_sweep_is_a_frame_and_a_dataset_with_units() -> None:
 
 def test_columns_keep_their_names_whatever_else_is_varied() -> None:
     """Also beside another key of the same last word."""
-    bridge = {"kind": "bridge", "spans": [{"span": 8.0, "rise": 2.5, "thickness": 0.5, "voussoirs": 12}] * 2,
-              "piers": [{"width": 1.6, "height": 5.0}]}  # fmt: skip
+    bridge = {
+        "kind": "bridge",
+        "spans": [{"span": 8.0, "rise": 2.5, "thickness": 0.5, "voussoirs": 12}] * 2,
+        "piers": [{"width": 1.6, "height": 5.0}],
+    }
     deck = {"structure": bridge, "analysis": {"kind": "thrust"}}
     first, second = "structure.spans.0.thickness", "structure.spans.1.thickness"
-    alone, beside = (
-        extrados.sweep(deck, over={key: [0.6] for key in keys}, progress=False) for keys in ([first], [first, second])
-    )
+    alone, beside = (extrados.sweep(deck, over={key: [0.6] for key in keys}, progress=False) for keys in ([first], [first, second]))
     assert alone.columns[0] == first and beside.columns[:2] == [first, second]
     assert set(alone.columns) == set(beside.columns) - {second}
 
@@ -139,9 +138,7 @@ def test_a_sweep_shows_its_first_members_in_a_notebook() -> None:
     swept = extrados.sweep(DECK, over={"structure.thickness": np.linspace(1.2, 1.8, 14)}, progress=False)
     page = swept._repr_html_()
     assert page.count("<tr>") == 13 and "2 more members" in page
-    assert (
-        "structure.thickness [m]" in page and "tilt.verdict.outcome" in page and "rocking.peak_rotation_rad" not in page
-    )
+    assert "structure.thickness [m]" in page and "tilt.verdict.outcome" in page and "rocking.peak_rotation_rad" not in page
 
 
 def test_an_analysis_without_results_raises_its_reason() -> None:
@@ -172,9 +169,21 @@ def test_type_checkers_know_the_keys_of_tables(tmp_path: Path) -> None:
     ]
     (tmp_path / "calls.py").write_text("import extrados\n" + "\n".join(lines) + "\n")
     checked = subprocess.run(
-        [sys.executable, "-m", "mypy", "--config-file=", "--follow-imports=skip", "--ignore-missing-imports", "calls.py", "extrados/__init__.pyi"],
-        cwd=tmp_path, capture_output=True, text=True, env={**os.environ, "MYPYPATH": str(tmp_path)},
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "mypy",
+            "--config-file=",
+            "--follow-imports=skip",
+            "--ignore-missing-imports",
+            "calls.py",
+            "extrados/__init__.pyi",
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "MYPYPATH": str(tmp_path)},
+    )
     wrong = {int(line.split(":")[1]) for line in checked.stdout.splitlines() if ": error: " in line}
     assert wrong == {3, 4, 5, 6, 7}, checked.stdout + checked.stderr
     assert 'Unexpected keyword argument "raduis"' in checked.stdout
@@ -191,9 +200,7 @@ def test_rows_that_belong_together_and_what_is_refused() -> None:
     table = pandas.DataFrame({"structure.radius": [10.0, 1.0], "structure.thickness": [1.5, 3.0]})
     told: list[float] = []
     swept = extrados.sweep(DECK, over=table, progress=lambda done, total, text: told.append(done))
-    assert (
-        swept.rows[0]["tilt.status"] == "ok" and swept.rows[1]["tilt.status"] != "ok" and swept.rows[1]["tilt.reason"]
-    )
+    assert swept.rows[0]["tilt.status"] == "ok" and swept.rows[1]["tilt.status"] != "ok" and swept.rows[1]["tilt.reason"]
     assert swept.shape is None and swept.dataset()["structure.radius"].dims == ("member",) and told[-1] == 2
     assert np.isnan(swept.column("tilt.collapse_acceleration_g")[1]) and "2 of 2 members" in repr(swept)
     with pytest.raises(KeyError, match=r"there are structure\.radius, structure\.thickness"):
@@ -283,14 +290,10 @@ def test_what_may_be_raised_can_be_caught() -> None:
     """By its name: also where no scheduler answers, or none can be asked."""
     arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
     with pytest.raises(extrados.Refused, match="scheduler"):
-        extrados.sweep(
-            {"structure": arch, "analysis": {"kind": "tilt"}}, over={"structure.thickness": [1.5]}, workers="nowhere"
-        )
+        extrados.sweep({"structure": arch, "analysis": {"kind": "tilt"}}, over={"structure.thickness": [1.5]}, workers="nowhere")
     assert {"DeckError", "Refused", "StoreError"} <= set(dir(extrados))
 
 
 def test_the_version_is_that_of_the_command() -> None:
-    command = subprocess.run(
-        [sys.executable, "-m", "extrados", "version"], capture_output=True, text=True, timeout=120, check=True
-    )
+    command = subprocess.run([sys.executable, "-m", "extrados", "version"], capture_output=True, text=True, timeout=120, check=True)
     assert command.stdout.split()[1] == extrados.__version__

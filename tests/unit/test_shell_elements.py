@@ -28,9 +28,16 @@ def displacements(xyz, connect, thickness, young, nu, held, load):
     nodes = len(xyz)
     frames, flat = np.tile(np.eye(3), (nodes, 1, 1)), np.zeros(nodes, dtype=bool)
     shells = core.Shells(
-        f"{'T' if connect.shape[1] == 3 else 'Q'}{connect.shape[1]}", connect, thickness, young, nu,
-        frames=frames, flat=flat, layers=2, through="gauss",
-    )  # fmt: skip
+        f"{'T' if connect.shape[1] == 3 else 'Q'}{connect.shape[1]}",
+        connect,
+        thickness,
+        young,
+        nu,
+        frames=frames,
+        flat=flat,
+        layers=2,
+        through="gauss",
+    )
     with core.Model(xyz, core.Freedoms.make(nodes, sorted(set(held)), of_node=6), [shells]) as model:
         model.loads(np.zeros((nodes, 6)), load)
         return model.displacement(1.0)
@@ -84,9 +91,8 @@ def hemisphere(n, shape):
 @pytest.mark.parametrize("shape", ["Q4", "T3"])
 @pytest.mark.parametrize(
     "problem, most",
-    [(scordelis_lo, {"Q4": 0.03, "T3": 0.13}), (pinched_cylinder, {"Q4": 0.06, "T3": 0.14}),
-     (hemisphere, {"Q4": 0.035, "T3": 0.05})],
-)  # fmt: skip
+    [(scordelis_lo, {"Q4": 0.03, "T3": 0.13}), (pinched_cylinder, {"Q4": 0.06, "T3": 0.14}), (hemisphere, {"Q4": 0.035, "T3": 0.05})],
+)
 def test_obstacle_course(problem, most, shape):
     """Eight elements along a side are as near as these elements are in print, sixteen come nearer."""
     coarse, fine = problem(8, shape), problem(16, shape)
@@ -104,12 +110,7 @@ def plate(n, shape, thickness, skew=0.2):
     xyz, quads, u, v = surface(n, place)
     connect = quads if shape == "Q4" else halves(quads)
     edge = (u == 0) | (u == 1) | (v == 0) | (v == 1)
-    held = (
-        at(np.ones(len(xyz), dtype=bool), 0, 1, 5)
-        + at(edge, 2)
-        + at((u == 0) | (u == 1), 3)
-        + at((v == 0) | (v == 1), 4)
-    )
+    held = at(np.ones(len(xyz), dtype=bool), 0, 1, 5) + at(edge, 2) + at((u == 0) | (u == 1), 3) + at((v == 0) | (v == 1), 4)
     share = nodal_areas(xyz, connect)
     centre = xyz[connect].mean(axis=1)
     q = np.sin(np.pi * centre[:, 0]) * np.sin(np.pi * centre[:, 1])

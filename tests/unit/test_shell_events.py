@@ -52,9 +52,7 @@ def test_a_shell_loaded_in_its_plane_is_the_plane_model(cracking):
     frames, flat = node_frames(xyz, [quads])
     assert flat.all()
     held = [(n, d) for n in bottom for d in (0, 2)] + [(n, d) for n in range(len(xyz)) for d in (1, 3, 4, 5)]
-    shells = core.Shells(
-        "Q4", quads, WIDTH, YOUNG, 0.25, band, LAW, frames=frames, flat=flat, layers=1, through="gauss"
-    )
+    shells = core.Shells("Q4", quads, WIDTH, YOUNG, 0.25, band, LAW, frames=frames, flat=flat, layers=1, through="gauss")
     with core.Model(xyz, core.Freedoms.make(len(xyz), held, of_node=6), [shells], behaviour) as model:
         model.loads(in_space(xy, constant), in_space(xy, reference))
         found, moved = model.run(events, watch), model.displacement(1.0)
@@ -82,10 +80,13 @@ def couplet(n=4, side=0.4):
 
 
 MORTAR = {
-    "normal_stiffness": 8e10, "shear_stiffness": 3.6e10, "friction": 0.7,
-    "tension": core.Softening(0.1e6, 10.0, "exponential", 0.2), "cohesion": core.Softening(0.15e6, 60.0, "exponential", 0.2),
+    "normal_stiffness": 8e10,
+    "shear_stiffness": 3.6e10,
+    "friction": 0.7,
+    "tension": core.Softening(0.1e6, 10.0, "exponential", 0.2),
+    "cohesion": core.Softening(0.15e6, 60.0, "exponential", 0.2),
     "compression": core.Softening(2e6, 3000.0, "linear", 0.2),
-}  # fmt: skip
+}
 
 
 def test_a_joint_of_shells_loaded_in_its_plane_is_that_of_the_plane_model():
@@ -132,9 +133,8 @@ def strip(layers, through, push, nu=0.0):
     xyz = np.array([[0, 0, 0], [width, 0, 0], [width, 0, length], [0, 0, length]], dtype=float)
     frames, flat = node_frames(xyz, [np.array([[0, 1, 2, 3]])])
     shells = core.Shells(
-        "Q4", np.array([[0, 1, 2, 3]]), thickness, YOUNG, nu, length, LAW, frames=frames, flat=flat, layers=layers,
-        through=through,
-    )  # fmt: skip
+        "Q4", np.array([[0, 1, 2, 3]]), thickness, YOUNG, nu, length, LAW, frames=frames, flat=flat, layers=layers, through=through
+    )
     held = [(n, d) for n in (0, 1) for d in range(6)] + [(n, d) for n in (2, 3) for d in (0, 4, 5)]
     # The normal is -y: w = length / 2 times the rotation
     ties = [[(2, 2, 1.0), (3, 2, 1.0)], [(n, d, f) for n in (2, 3) for d, f in ((1, -length / 2), (3, 1.0))]]
@@ -241,17 +241,13 @@ def test_transverse_shear_softens_with_its_crack():
     xyz = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1], [2, 0.3, 0], [2, 0.3, 1]], dtype=float)
     quads = np.array([[0, 1, 2, 3], [1, 4, 5, 2]])
     frames, flat = node_frames(xyz, [quads])
-    held = [(n, d) for n in (0, 3) for d in range(6)] + [
-        (n, 5) for n in np.flatnonzero(flat).tolist() if n not in (0, 3)
-    ]
+    held = [(n, d) for n in (0, 3) for d in range(6)] + [(n, 5) for n in np.flatnonzero(flat).tolist() if n not in (0, 3)]
     load = np.zeros((6, 6))
     load[[4, 5], 0], load[[4, 5], 1], load[5, 2] = 400.0, 150.0, 90.0
     runs = []
     for algorithm in ("update", "refactor"):
         for cracking in ("orthotropic", "rotating", "isotropic"):
-            shells = core.Shells(
-                "Q4", quads, WIDTH, YOUNG, 0.25, 0.5, LAW, frames=frames, flat=flat, layers=3, through="lobatto"
-            )
+            shells = core.Shells("Q4", quads, WIDTH, YOUNG, 0.25, 0.5, LAW, frames=frames, flat=flat, layers=3, through="lobatto")
             freedoms = core.Freedoms.make(6, held, of_node=6)
             with core.Model(xyz, freedoms, [shells], core.Behaviour(cracking), algorithm=algorithm) as model:
                 model.loads(np.zeros((6, 6)), load)
@@ -271,9 +267,7 @@ def test_transverse_shear_moduli_are_those_of_the_rule(cracking, retention):
     xyz = size * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
     quads = np.array([[0, 1, 2, 3]])
     frames, flat = node_frames(xyz, [quads])
-    shells = core.Shells(
-        "Q4", quads, thickness, YOUNG, nu, 0.5, LAW, frames=frames, flat=flat, layers=3, through="lobatto"
-    )
+    shells = core.Shells("Q4", quads, thickness, YOUNG, nu, 0.5, LAW, frames=frames, flat=flat, layers=3, through="lobatto")
     whole, c, s = 0.5 * YOUNG / (1.0 + nu), np.cos(0.5), np.sin(0.5)
     for way, moved in (("x", (1, 2)), ("y", (2, 3))):
         held = [(n, d) for n in range(4) for d in range(6) if not (d == 2 and n in moved)]

@@ -32,11 +32,7 @@ def corner():
 
     def quads(columns):
         return np.array(
-            [
-                [columns[i] + k, columns[i + 1] + k, columns[i + 1] + k + 1, columns[i] + k + 1]
-                for i in range(N)
-                for k in range(N)
-            ]
+            [[columns[i] + k, columns[i + 1] + k, columns[i + 1] + k + 1, columns[i] + k + 1] for i in range(N) for k in range(N)]
         )
 
     along = [(N + 1) * i for i in range(N + 1)]
@@ -53,18 +49,17 @@ def written(folder, form):
     if form == "msh":
         data = [np.array([1] * len(one) + [2] * len(two)), np.full(len(lines), 7)]
         mesh = meshio.Mesh(
-            xyz, [("quad", np.concatenate([one, two])), ("line", lines)],
+            xyz,
+            [("quad", np.concatenate([one, two])), ("line", lines)],
             cell_data={"gmsh:physical": data, "gmsh:geometrical": data},
             field_data={"front": np.array([1, 2]), "side": np.array([2, 2]), "ground": np.array([7, 1])},
-        )  # fmt: skip
+        )
         meshio.write(path, mesh, file_format="gmsh22", binary=False)
     elif form == "inp":
         path.write_text(abaqus(xyz, one, two, ground))
     else:
         group = [np.array([1] * len(one) + [2] * len(two)), np.full(len(lines), 7)]
-        meshio.write(
-            path, meshio.Mesh(xyz, [("quad", np.concatenate([one, two])), ("line", lines)], cell_data={"group": group})
-        )
+        meshio.write(path, meshio.Mesh(xyz, [("quad", np.concatenate([one, two])), ("line", lines)], cell_data={"group": group}))
     return path
 
 
@@ -84,9 +79,7 @@ def abaqus(xyz, one, two, ground):
 def read(path, groups, **keys):
     structure = MeshFile(kind="mesh", file=str(path), thickness=0.3, groups=groups, **keys)
     light = Material(density=1000.0, young=1e9)
-    return Building(structure, Material(density=2000.0), materials={"light": light}, folder=path.parent).shell(
-        ShellOptions(layers=3)
-    )
+    return Building(structure, Material(density=2000.0), materials={"light": light}, folder=path.parent).shell(ShellOptions(layers=3))
 
 
 @pytest.mark.parametrize("form", ["msh", "inp", "vtu"])
@@ -171,10 +164,7 @@ def test_a_thicker_variant_is_thicker_in_all_groups(tmp_path):
         {more}
     """
     found = []
-    for name, default, front, more in (
-        ("told", 0.6, 0.4, ""),
-        ("variant", 0.3, 0.2, 'variants = [{ name = "thick", thickness = 2.0 }]'),
-    ):
+    for name, default, front, more in (("told", 0.6, 0.4, ""), ("variant", 0.3, 0.2, 'variants = [{ name = "thick", thickness = 2.0 }]')):
         path = tmp_path / f"{name}.toml"
         path.write_text(textwrap.dedent(deck).format(default=default, front=front, more=more))
         result = extrados.run(path).results[0]
@@ -197,17 +187,12 @@ def test_a_membrane_is_a_floor(tmp_path):
     meshio.write(
         path,
         meshio.Mesh(
-            np.concatenate([xyz, inner]), [("quad", np.concatenate([one, two, roof])), ("line", lines)],
+            np.concatenate([xyz, inner]),
+            [("quad", np.concatenate([one, two, roof])), ("line", lines)],
             cell_data={"group": [*group, np.full(len(lines), 7)]},
         ),
-    )  # fmt: skip
-    mesh = read(
-        path,
-        [
-            {"name": "3", "membrane": True, "thickness": 0.05, "pressure": [0.0, 0.0, -1e3]},
-            {"name": "7", "support": "fixed"},
-        ],
     )
+    mesh = read(path, [{"name": "3", "membrane": True, "thickness": 0.05, "pressure": [0.0, 0.0, -1e3]}, {"name": "7", "support": "fixed"}])
     # What weighs on the corner that no wall holds goes to those that walls do
     area = float(nodal_areas(mesh.xyz, mesh.parts[-1].connect).sum())
     inner = 0.25 * area * (1e3 + 0.05 * 2000.0 * GRAVITY)
@@ -227,7 +212,7 @@ def test_a_membrane_is_a_floor(tmp_path):
         ([{"name": "front", "material": "steel"}, {"name": "ground", "support": "fixed"}], r"no \[materials.steel\]"),
         ([{"name": "front", "membrane": True}, {"name": "ground", "support": "fixed"}], "a membrane is level"),
     ],
-)  # fmt: skip
+)
 def test_groups_that_do_not_fit_are_told(tmp_path, groups, words):
     with pytest.raises(BadGeometry, match=words) as told:
         read(written(tmp_path, "msh"), groups)
@@ -242,7 +227,7 @@ def test_files_that_do_not_fit_are_told(tmp_path):
         ([("line", np.array([[0, 1]]))], "holds no shells"),
         ([("quad", np.array([[0, 1, 1, 0]])), ("line", np.array([[0, 1]]))], "names a node twice"),
         ([("quad", one), ("line", np.array([[44, 43]]))], "no node of a shell"),
-    ):  # fmt: skip
+    ):
         path = tmp_path / "bad.vtu"
         group = [np.full(len(data), 7) if kind == "line" else np.full(len(data), 1) for kind, data in cells]
         meshio.write(path, meshio.Mesh(xyz, cells, cell_data={"group": group}))
@@ -255,9 +240,7 @@ def test_files_that_do_not_fit_are_told(tmp_path):
     with pytest.raises(BadGeometry, match="groups are of shells"):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).mesh()
     with pytest.raises(BadGeometry, match=r"leave mesh\.size out"):
-        Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).shell(
-            ShellOptions(size=0.5)
-        )
+        Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).shell(ShellOptions(size=0.5))
 
 
 WORD = {2: "line", 3: "triangle", 4: "quad", 8: "quad8"}
@@ -272,13 +255,28 @@ WRONG = {
     "no area": ("quadrilateral of nodes 1, 2, 3, 4, .* has no area", {}, [], [[0, 1, 2, 3]]),
     "a triangle without area": ("triangle of nodes 1, 2, 3, .* has no area", {}, [], [[0, 1, 2]]),
     "crossed sides": ("folds over itself", {}, [[5, 0, 0], [6, 0, 0], [5.2, 0, 1], [6, 0, 2]], [[45, 46, 47, 48]]),
-    "a corner inward": ("nodes 7, 12, 13, 8, .* at a corner; expected its corners in order, all convex .2 such", {12: [0.2, 0, 0.6]}, [], []),
-    "an element twice": ("two elements lie on each other at the edge of nodes 1, 6, .* expected each place covered once", {}, [], [[1, 6, 5, 0]]),
+    "a corner inward": (
+        "nodes 7, 12, 13, 8, .* at a corner; expected its corners in order, all convex .2 such",
+        {12: [0.2, 0, 0.6]},
+        [],
+        [],
+    ),
+    "an element twice": (
+        "two elements lie on each other at the edge of nodes 1, 6, .* expected each place covered once",
+        {},
+        [],
+        [[1, 6, 5, 0]],
+    ),
     "a triangle on a quadrilateral": ("two elements lie on each other", {}, [], [[0, 5, 6]]),
-    "an island": ("4 nodes around x 5.5, y 0, z 1 m are not supported", {}, [[5, 0, 0], [6, 0, 0], [6, 0, 2], [5, 0, 2]], [[45, 46, 47, 48]]),
+    "an island": (
+        "4 nodes around x 5.5, y 0, z 1 m are not supported",
+        {},
+        [[5, 0, 0], [6, 0, 0], [6, 0, 2], [5, 0, 2]],
+        [[45, 46, 47, 48]],
+    ),
     "solids": ("cells of kind 'tetra'; expected triangle and quad", {}, [], [TETRAHEDRON]),
     "curved sides": ("cells of kind 'quad8'; expected triangle and quad", {}, [], [[0, 1, 2, 3, 4, 5, 6, 7]]),
-}  # fmt: skip
+}
 
 
 def corner_with(folder, elsewhere, nodes, cells):
@@ -319,9 +317,7 @@ def test_what_is_not_joined_is_told(tmp_path):
     assert whole.warnings == []
     orphan = read(corner_with(tmp_path, {}, [[9, 9, 9]], []), support)
     assert orphan.warnings == [] and len(orphan.xyz) == len(whole.xyz)
-    (told,) = read(
-        corner_with(tmp_path, {}, [[2, 0, 0.25], [2.25, 0, 0.25]], [[45, 46, 20], [45, 21, 46]]), support
-    ).warnings
+    (told,) = read(corner_with(tmp_path, {}, [[2, 0, 0.25], [2.25, 0, 0.25]], [[45, 46, 20], [45, 21, 46]]), support).warnings
     assert "node 46, at x 2, y 0, z 0.25 m, lies on the edge of an element" in told
 
     xyz, one, two, _, lines = corner()
@@ -332,10 +328,9 @@ def test_what_is_not_joined_is_told(tmp_path):
     meshio.write(
         path,
         meshio.Mesh(
-            np.concatenate([xyz, xyz[: N + 1]]), [("quad", np.concatenate([one, apart])), ("line", lines)],
-            cell_data={"group": group},
+            np.concatenate([xyz, xyz[: N + 1]]), [("quad", np.concatenate([one, apart])), ("line", lines)], cell_data={"group": group}
         ),
-    )  # fmt: skip
+    )
     (told,) = read(path, support).warnings
     assert "are two nodes at one place (5 such): nothing joins the elements there" in told
 

@@ -127,11 +127,13 @@ def test_a_flange_behind_a_joint(tmp_path):
         ("beds = [{ z = HEIGHT }]", 'beds = [{ walls = ["b"] }]', "structure", "there is no wall 'b'"),
         ("ripple = 0.1", 'without_equilibrium = "force-release"', "without_equilibrium", "can follow"),
         (
-            "friction = 0.4", 'friction = 0.4\ntypes = [{ joints = ["x"], friction = 0.2 }]', "joints.types",
+            "friction = 0.4",
+            'friction = 0.4\ntypes = [{ joints = ["x"], friction = 0.2 }]',
+            "joints.types",
             "names no joint 'x'; there are bed 1",
         ),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_joint_is_refused_with_its_line(tmp_path, old, new, line, words):
     text = textwrap.dedent(BED).replace(old, new)
     for name, value in {"HEIGHT": 0.0, "TENSION": 2e4, "ENERGY": 10, "LAYERS": 3}.items():
@@ -151,9 +153,7 @@ def test_a_wall_that_passes_through_another_has_no_joint_with_it(tmp_path):
 
 def test_joints_without_a_bond_along_them_are_told(tmp_path):
     text = BED.replace('cohesion = "30 kPa"', "").replace("shear_energy = 10", "")
-    _, _, warnings = run(
-        tmp_path, text, "events = 3".replace("events", "#"), HEIGHT=0.0, TENSION=2e4, ENERGY=10, LAYERS=3
-    )
+    _, _, warnings = run(tmp_path, text, "events = 3".replace("events", "#"), HEIGHT=0.0, TENSION=2e4, ENERGY=10, LAYERS=3)
     assert any("joints have no cohesion" in warning for warning in warnings)
 
 

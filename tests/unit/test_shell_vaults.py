@@ -14,10 +14,7 @@ LAW = core.Softening(5e3, 5.0, "linear", 0.2)
 
 def dome(around=12, up=24, oculus=4.0):
     """A quarter of a hemisphere on rollers, symmetric: model's parts, nodal weight, elevation of the elements [deg]."""
-    a, b = (
-        x.ravel()
-        for x in np.meshgrid(np.linspace(0, 90, around + 1), np.linspace(0, 90 - oculus, up + 1), indexing="ij")
-    )
+    a, b = (x.ravel() for x in np.meshgrid(np.linspace(0, 90, around + 1), np.linspace(0, 90 - oculus, up + 1), indexing="ij"))
     t, e = np.radians(a), np.radians(b)
     xyz = RADIUS * np.column_stack([np.cos(e) * np.cos(t), np.cos(e) * np.sin(t), np.sin(e)])
     i, j = (x.ravel() for x in np.meshgrid(np.arange(around), np.arange(up), indexing="ij"))
@@ -33,9 +30,18 @@ def dome(around=12, up=24, oculus=4.0):
 def model_of(xyz, quads, held, law, band):
     nodes = len(xyz)
     shells = core.Shells(
-        "Q4", quads, THICKNESS, 5e9, 0.0, band, law, frames=np.tile(np.eye(3), (nodes, 1, 1)),
-        flat=np.zeros(nodes, dtype=bool), layers=3, through="lobatto",
-    )  # fmt: skip
+        "Q4",
+        quads,
+        THICKNESS,
+        5e9,
+        0.0,
+        band,
+        law,
+        frames=np.tile(np.eye(3), (nodes, 1, 1)),
+        flat=np.zeros(nodes, dtype=bool),
+        layers=3,
+        through="lobatto",
+    )
     return core.Model(xyz, core.Freedoms.make(nodes, sorted(held), of_node=6), [shells], core.Behaviour("orthotropic"))
 
 
@@ -93,9 +99,18 @@ def test_a_barrel_vault_on_spreading_springings_opens_in_three_hinge_lines():
     load = spread(2 * n, quads, nodal_areas(xyz, quads), np.tile([0, 0, -WEIGHT * thick], (len(quads), 1)))
     _frames, _ = node_frames(xyz, [quads])
     shells = core.Shells(
-        "Q4", quads, thick, 5e9, 0.0, 0.4, core.Softening(20e3, 20.0, "linear", 0.2), frames=np.tile(np.eye(3), (2 * n, 1, 1)), flat=np.zeros(2 * n, dtype=bool),
-        layers=7, through="lobatto",
-    )  # fmt: skip
+        "Q4",
+        quads,
+        thick,
+        5e9,
+        0.0,
+        0.4,
+        core.Softening(20e3, 20.0, "linear", 0.2),
+        frames=np.tile(np.eye(3), (2 * n, 1, 1)),
+        flat=np.zeros(2 * n, dtype=bool),
+        layers=7,
+        through="lobatto",
+    )
     with core.Model(xyz, freedoms, [shells], core.Behaviour("orthotropic")) as model:
         watch = [core.Monitor.of(n // 2, 2)]
         model.loads(np.zeros_like(load), load)
@@ -124,10 +139,7 @@ def lune(n, out):
     polar = np.linspace(np.radians(2.0), half, n + 1)
     m = n + 1
     xyz = np.concatenate(
-        [
-            radius * np.column_stack([np.sin(polar) * np.cos(a), np.sin(polar) * np.sin(a), np.cos(polar)])
-            for a in (0.0, width)
-        ]
+        [radius * np.column_stack([np.sin(polar) * np.cos(a), np.sin(polar) * np.sin(a), np.cos(polar)]) for a in (0.0, width)]
     )
     k = np.arange(n)
     quads = np.column_stack([k + 1, k + 1 + m, k + m, k])
@@ -144,9 +156,17 @@ def lune(n, out):
     freedoms = core.Freedoms(np.where(number < 0, -1, (number - 1) % count), freedoms.factor, 1)
     load = spread(2 * m, quads, nodal_areas(xyz, quads), np.tile([0, 0, -density * GRAVITY * thick], (n, 1)))
     shells = core.Shells(
-        "Q4", quads, thick, 5e9, 0.0, radius * (half - polar[0]) / n, core.Softening(1e3, 0.02, "linear", 0.4),
-        frames=np.tile(np.eye(3), (2 * m, 1, 1)), flat=np.zeros(2 * m, dtype=bool), layers=5,
-    )  # fmt: skip
+        "Q4",
+        quads,
+        thick,
+        5e9,
+        0.0,
+        radius * (half - polar[0]) / n,
+        core.Softening(1e3, 0.02, "linear", 0.4),
+        frames=np.tile(np.eye(3), (2 * m, 1, 1)),
+        flat=np.zeros(2 * m, dtype=bool),
+        layers=5,
+    )
     with core.Model(xyz, freedoms, [shells], core.Behaviour("orthotropic")) as model:
         watch = [core.Monitor.of(0, 2)]
         model.loads(np.zeros_like(load), load)

@@ -24,16 +24,20 @@ def prism(bars: list[dict], **analysis) -> dict:
     """1 m x 0.1 m x 0.1 m, pulled at its end."""
     return {
         "structure": {"kind": "panel", "width": 1.0, "height": 0.1, "thickness": 0.1, "bars": bars},
-        "material": {
-            "young": 30e9, "poisson": 0.0, "density": 2400, "tensile_strength": 2e6, "fracture_energy": 60.0,
-        },
+        "material": {"young": 30e9, "poisson": 0.0, "density": 2400, "tensile_strength": 2e6, "fracture_energy": 60.0},
         "materials": {"steel": {"young": 200e9, "poisson": 0.3, "density": 7850}},
         "supports": {"held": [{"edge": "left", "fix": "x"}, {"x": [0, 0], "y": [0.05, 0.05], "fix": "y"}]},
         "analysis": {
-            "kind": "sla", "mesh": {"size": 0.05}, "constant": [], "target_displacement": 5e-3, "events": 300, "ripple": 0.2,
-            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "right"}]}], **analysis,
+            "kind": "sla",
+            "mesh": {"size": 0.05},
+            "constant": [],
+            "target_displacement": 5e-3,
+            "events": 300,
+            "ripple": 0.2,
+            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "right"}]}],
+            **analysis,
         },
-    }  # fmt: skip
+    }
 
 
 def bar(start: float, end: float, height: float = 0.05, **more) -> dict:
@@ -78,9 +82,7 @@ def test_an_embedded_bar_moves_with_the_wall() -> None:
 
 def test_a_bar_yields_and_breaks() -> None:
     """What is left of the concrete's teeth carries a few per cent beside it."""
-    found = run_deck(
-        prism([bar(0, 1, bonded=True, yield_strength=YIELD, ultimate_strain=0.02)], ripple=0.1, events=3000)
-    )
+    found = run_deck(prism([bar(0, 1, bonded=True, yield_strength=YIELD, ultimate_strain=0.02)], ripple=0.1, events=3000))
     load, moved = found["event_load"], found["event_displacement"]
     assert load.max() == pytest.approx(AREA * YIELD, rel=0.035)
     yields = load > 0.9 * AREA * YIELD
@@ -90,12 +92,7 @@ def test_a_bar_yields_and_breaks() -> None:
 
 
 def capacity(kind: str, structure: dict, tie: dict, **more):
-    deck = {
-        "structure": structure,
-        "joints": {"friction": "no-sliding"},
-        "ties": [tie],
-        "analysis": {"kind": kind, **more},
-    }
+    deck = {"structure": structure, "joints": {"friction": "no-sliding"}, "ties": [tie], "analysis": {"kind": kind, **more}}
     return run_analyses(Context(make_deck(deck)))[0]
 
 
@@ -129,14 +126,10 @@ def test_bars_that_make_no_sense_are_told() -> None:
 def test_forces_of_bars_are_those_of_their_strains() -> None:
     """From event to event, by teeth and slackening counted from the log, as the core reports them at kept states; the
     force of a tie in the mechanism is that of limit analysis, a slack one has none."""
-    rods = [
-        bar(0, 1, yield_strength=YIELD, ultimate_strain=0.02), bar(0, 1, bonded=True, yield_strength=YIELD), bar(0, 0.5),
-    ]  # fmt: skip
+    rods = [bar(0, 1, yield_strength=YIELD, ultimate_strain=0.02), bar(0, 1, bonded=True, yield_strength=YIELD), bar(0, 0.5)]
     deck = prism(rods, states=[1, 5, 20, 60], ripple=0.05)
     del deck["material"]["tensile_strength"], deck["material"]["fracture_energy"]
-    context = Context(
-        make_deck(deck | {"ties": [{"start": [0.9, 0.02], "end": [0.1, 0.02], "works_in": "compression"}]})
-    )
+    context = Context(make_deck(deck | {"ties": [{"start": [0.9, 0.02], "end": [0.1, 0.02], "works_in": "compression"}]}))
     options = context.deck.analyses[0]
     model = build(context.building.mesh(options.mesh), options)
     curve = run_curves(model, options, 1, lambda *_: None)[0]
@@ -159,9 +152,7 @@ def test_forces_of_bars_are_those_of_their_strains() -> None:
     assert force.force_at_greatest_load_N == pytest.approx(limit.force_N, rel=1e-6) and force.state == "yielded"
     table = found.tables["bar_forces"]
     assert table.units["tie at the haunches"] == "N"
-    assert (
-        table.columns["tie at the haunches"][found.results["greatest_load_event"] - 1] == force.force_at_greatest_load_N
-    )
+    assert table.columns["tie at the haunches"][found.results["greatest_load_event"] - 1] == force.force_at_greatest_load_N
     assert 1.0 < found.results["greatest_load_displacement_m"] < 0.1 * 21.1 and not found.warnings
 
 

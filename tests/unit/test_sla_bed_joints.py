@@ -3,20 +3,7 @@
 import numpy as np
 import pytest
 
-from extrados.core.sla import (
-    Bars,
-    Bedding,
-    Behaviour,
-    Events,
-    Freedoms,
-    Hill,
-    Model,
-    Monitor,
-    Plane,
-    Softening,
-    Stop,
-    teeth,
-)
+from extrados.core.sla import Bars, Bedding, Behaviour, Events, Freedoms, Hill, Model, Monitor, Plane, Softening, Stop, teeth
 from extrados.model.properties import Material
 
 YOUNG, STRENGTH, ENERGY, THICKNESS = 5e9, 0.2e6, 40.0, 0.1
@@ -58,9 +45,7 @@ def test_admitted_range_against_the_criterion() -> None:
     rng = np.random.default_rng(18)
     ends = 0
     for _ in range(60):
-        bedding = Bedding(
-            rng.uniform(-np.pi, np.pi), np.exp(rng.uniform(-1.5, 1.5)), 1.3, max(1.0, rng.uniform(0.5, 2.5))
-        )
+        bedding = Bedding(rng.uniform(-np.pi, np.pi), np.exp(rng.uniform(-1.5, 1.5)), 1.3, max(1.0, rng.uniform(0.5, 2.5)))
         a, b = (s + s.T for s in rng.normal(0.0, 0.1e6, (2, 2, 2)))
         with single(bedding, a, b) as model:
             report = model.report(0.0)
@@ -194,12 +179,19 @@ def test_stored_damage_holds_the_strength_of_each_crack() -> None:
         ({"tensile_strength_parallel": 1e6}, "needs tensile_strength"),
         ({"shear_strength": 1e5}, "shear_strength needs"),
         ({"bed_angle": 10.0}, "bed_angle needs"),
-        ({"tensile_strength": 1e5, "fracture_energy": 10.0, "tensile_strength_parallel": 4e5, "shear_strength": 2.1e5},
-         "at most the root"),
-        ({"tensile_strength": 1e5, "fracture_energy": 10.0, "tensile_strength_parallel": 4e5,
-          "compressive_strength": 1e6, "lateral_reduction": True}, "lateral_reduction"),
+        ({"tensile_strength": 1e5, "fracture_energy": 10.0, "tensile_strength_parallel": 4e5, "shear_strength": 2.1e5}, "at most the root"),
+        (
+            {
+                "tensile_strength": 1e5,
+                "fracture_energy": 10.0,
+                "tensile_strength_parallel": 4e5,
+                "compressive_strength": 1e6,
+                "lateral_reduction": True,
+            },
+            "lateral_reduction",
+        ),
     ],
-)  # fmt: skip
+)
 def test_strengths_that_do_not_fit_are_refused(values: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Material(**values)
@@ -238,9 +230,7 @@ def test_admitted_range_against_hills_criterion() -> None:
     rng = np.random.default_rng(19)
     ends = 0
     for _ in range(60):
-        hill = Hill(
-            rng.uniform(-np.pi, np.pi), np.exp(rng.uniform(-1, 1)), rng.uniform(-1.5, 1.5), rng.uniform(0.5, 4.0)
-        )
+        hill = Hill(rng.uniform(-np.pi, np.pi), np.exp(rng.uniform(-1, 1)), rng.uniform(-1.5, 1.5), rng.uniform(0.5, 4.0))
         a, b = (s + s.T for s in rng.normal(0.0, 2.5e6, (2, 2, 2)))
         with crushing(hill, a, b) as model:
             report = model.report(0.0)

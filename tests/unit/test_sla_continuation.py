@@ -19,19 +19,22 @@ def pier(strength: float, energy: float, size: float, crushing: bool = False, he
     """A pier of 1 m in double bending under 0.6 MPa; strength [MPa], energy [N/m], size of the elements [m]."""
     crush = {"compressive_strength": 3e6, "crushing_energy": 5000.0, "crushing": "exponential"} if crushing else {}
     return {
-        "structure": {
-            "kind": "panel", "width": 1.0, "height": height, "thickness": 0.25, "ties": [{"edge": "top", "direction": "y"}],
-        },
-        "material": {
-            "young": 1.7e9, "poisson": 0.0, "tensile_strength": 1e6 * strength, "fracture_energy": energy, **crush,
-        },
+        "structure": {"kind": "panel", "width": 1.0, "height": height, "thickness": 0.25, "ties": [{"edge": "top", "direction": "y"}]},
+        "material": {"young": 1.7e9, "poisson": 0.0, "tensile_strength": 1e6 * strength, "fracture_energy": energy, **crush},
         "supports": {"held": [{"edge": "bottom"}]},
-        "analysis": [{
-            "kind": "sla", "constant": [{"kind": "pressure", "edge": "top", "value": 6e5}],
-            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}],
-            "target_displacement": 6e-3, "ripple": 0.1, "events": 20000, "mesh": {"size": size}, **options,
-        }],
-    }  # fmt: skip
+        "analysis": [
+            {
+                "kind": "sla",
+                "constant": [{"kind": "pressure", "edge": "top", "value": 6e5}],
+                "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}],
+                "target_displacement": 6e-3,
+                "ripple": 0.1,
+                "events": 20000,
+                "mesh": {"size": size},
+                **options,
+            }
+        ],
+    }
 
 
 def array(result, name: str) -> np.ndarray:
@@ -51,9 +54,7 @@ def check_steps(result) -> None:
 
 
 @pytest.mark.parametrize("size", [0.125, 0.1, 0.2 / 3.0])
-@pytest.mark.parametrize(
-    ("strength", "energy", "expected"), [(0.1, 50.0, 66.9e3), (0.03, 10.0, 58.7e3), (0.01, 3.0, 57.3e3)]
-)
+@pytest.mark.parametrize(("strength", "energy", "expected"), [(0.1, 50.0, 66.9e3), (0.03, 10.0, 58.7e3), (0.01, 3.0, 57.3e3)])
 def test_pier_meets_an_independent_rotating_solution(strength, energy, expected, size) -> None:
     """A rotating total-strain solution in displacement control by another program, on elements of 0.1 m."""
     result = run_deck(pier(strength, energy, size))
@@ -69,7 +70,7 @@ def test_pier_meets_an_independent_rotating_solution(strength, energy, expected,
 @pytest.mark.parametrize(
     ("height", "loads", "loss"),
     [(2.0, [33.1e3, 59.9e3, 57.9e3, 55.2e3], [16.1e-3, 16.6e-3]), (1.35, [61.8e3, 83.8e3, 83.0e3, 64.7e3], [10.8e-3, 11.2e-3])],
-)  # fmt: skip
+)
 def test_crushing_wall_is_followed_to_the_loss_of_axial_capacity(height, loads, loss) -> None:
     """Prototypes of three methods, run to convergence; they differ by 2 % in the load, by 3 % in the displacement of the loss."""
     options = {"probes": [1e-3, 3e-3, 6e-3, 10e-3], "target_displacement": 0.01 * height}
@@ -100,24 +101,34 @@ def test_a_section_without_tension_in_uniform_bending() -> None:
     n, b, t, young, height = 150e3, 1.0, 0.25, 1.7e9, 0.5
     data = {
         "structure": {
-            "kind": "panel", "width": b, "height": height + 0.1, "thickness": t,
+            "kind": "panel",
+            "width": b,
+            "height": height + 0.1,
+            "thickness": t,
             "regions": [{"y": [height, height + 0.1], "linear": True, "material": "cap"}],
         },
         "material": {"young": young, "poisson": 0.0, "tensile_strength": 2e3, "fracture_energy": 0.2},
         "materials": {"cap": {"young": 1000.0 * young, "poisson": 0.0}},
         "supports": {"held": [{"edge": "bottom"}]},
-        "analysis": [{
-            "kind": "sla", "constant": [{"kind": "pressure", "edge": "top", "value": n / (b * t)}],
-            "reference": [
-                {"kind": "point", "x": 0, "y": height + 0.1, "fy": "1 kN"},
-                {"kind": "point", "x": b, "y": height + 0.1, "fy": "-1 kN"},
-            ],
-            "control": [
-                {"x": 0, "y": height, "direction": "y", "weight": 1.0}, {"x": b, "y": height, "direction": "y", "weight": -1.0},
-            ],
-            "ripple": 0.1, "target_displacement": 5e-3, "events": 5000, "mesh": {"size": 0.1, "selective": True},
-        }],
-    }  # fmt: skip
+        "analysis": [
+            {
+                "kind": "sla",
+                "constant": [{"kind": "pressure", "edge": "top", "value": n / (b * t)}],
+                "reference": [
+                    {"kind": "point", "x": 0, "y": height + 0.1, "fy": "1 kN"},
+                    {"kind": "point", "x": b, "y": height + 0.1, "fy": "-1 kN"},
+                ],
+                "control": [
+                    {"x": 0, "y": height, "direction": "y", "weight": 1.0},
+                    {"x": b, "y": height, "direction": "y", "weight": -1.0},
+                ],
+                "ripple": 0.1,
+                "target_displacement": 5e-3,
+                "events": 5000,
+                "mesh": {"size": 0.1, "selective": True},
+            }
+        ],
+    }
     result = run_deck(data)
     step = array(result, "event_step") > 0
     moment = array(result, "event_load")[step] * b
@@ -150,23 +161,15 @@ def test_load_reversal() -> None:
     data = pier(0.1, 50.0, 0.1)
     analysis = data["analysis"][0]
     del analysis["reference"], analysis["target_displacement"]
-    analysis["stages"] = [
-        {"name": "push", **move(1.0, 6e-3)},
-        {"name": "back", **move(-1.0, 6e-3)},
-        {"name": "again", **move(1.0, 6e-3)},
-    ]
+    analysis["stages"] = [{"name": "push", **move(1.0, 6e-3)}, {"name": "back", **move(-1.0, 6e-3)}, {"name": "again", **move(1.0, 6e-3)}]
     result = run_deck(data)
     push, back, again = result.results["stages"]
     assert [s["stop"] for s in (push, back, again)] == ["target displacement"] * 3
     assert back["start_load_N"] == pytest.approx(-push["end_load_N"], rel=1e-3)
     assert again["start_load_N"] == pytest.approx(-back["end_load_N"], rel=1e-3)
-    assert back["end_load_N"] == pytest.approx(
-        push["end_load_N"], rel=0.02
-    )  # the pier is symmetric, its other diagonal cracks
+    assert back["end_load_N"] == pytest.approx(push["end_load_N"], rel=0.02)  # the pier is symmetric, its other diagonal cracks
     assert back["dissipated_energy_J"] > push["dissipated_energy_J"]
-    assert again["dissipated_energy_J"] == pytest.approx(
-        back["dissipated_energy_J"], rel=0.05
-    )  # nothing new is cracked
+    assert again["dissipated_energy_J"] == pytest.approx(back["dissipated_energy_J"], rel=0.05)  # nothing new is cracked
     assert max(s["step_balance_ratio"] for s in (push, back, again)) < BALANCE
     # Cracks unload to the origin: without displacement the pier carries no shear
     d, v = array(result, "stage_2_event_displacement"), array(result, "stage_2_event_load")
@@ -189,15 +192,22 @@ def test_shells_are_followed_by_the_same_iterations() -> None:
     walls = [
         {"name": name, "start": corners[k], "end": corners[(k + 1) % 4], "thickness": 0.25, **({"openings": opening} if k % 2 == 0 else {})}
         for k, name in enumerate("abcd")
-    ]  # fmt: skip
+    ]
     data = {
         "structure": {"kind": "building", "storeys": [3.0], "walls": walls},
         "material": {"density": 1900.0, "young": 3e9, "tensile_strength": 1e5, "fracture_energy": 40.0},
-        "analysis": [{
-            "kind": "pushover", "mesh": {"size": 0.5, "layers": 3}, "ripple": 0.2, "events": 6000, "crack_closure": True,
-            "target_displacement": 1.4e-3, "without_equilibrium": "continue",
-        }],
-    }  # fmt: skip
+        "analysis": [
+            {
+                "kind": "pushover",
+                "mesh": {"size": 0.5, "layers": 3},
+                "ripple": 0.2,
+                "events": 6000,
+                "crack_closure": True,
+                "target_displacement": 1.4e-3,
+                "without_equilibrium": "continue",
+            }
+        ],
+    }
     result = run_deck(data)
     r = result.results
     assert r["equilibrium_steps"] > 3 and r["unbalanced_steps"] == 0

@@ -4,20 +4,7 @@ import numpy as np
 import pytest
 
 from extrados.core.errors import CoreError
-from extrados.core.sla import (
-    BadElement,
-    Bars,
-    Behaviour,
-    Freedoms,
-    FreeNode,
-    Model,
-    Monitor,
-    Plane,
-    Softening,
-    Springs,
-    Stop,
-    body_force,
-)  # fmt: skip
+from extrados.core.sla import BadElement, Bars, Behaviour, Freedoms, FreeNode, Model, Monitor, Plane, Softening, Springs, Stop, body_force
 from extrados.views.mesh.mesh import add_middles
 
 YOUNG, NU = 7.3e9, 0.23
@@ -44,10 +31,9 @@ def edge_forces(xy, connect, base, traction) -> np.ndarray:
     """Consistent nodal forces of a traction(x, y, normal) -> (n, 2) on all boundary edges, by Gauss."""
     n = {"T3": 3, "Q4": 4}[base]
     quadratic = connect.shape[1] > n
-    edges = np.concatenate([
-        np.column_stack([connect[:, i], connect[:, (i + 1) % n], connect[:, n + i] if quadratic else connect[:, i]])
-        for i in range(n)
-    ])  # fmt: skip
+    edges = np.concatenate(
+        [np.column_stack([connect[:, i], connect[:, (i + 1) % n], connect[:, n + i] if quadratic else connect[:, i]]) for i in range(n)]
+    )
     _, first, count = np.unique(np.sort(edges[:, :2], axis=1), axis=0, return_index=True, return_counts=True)
     edges = edges[first[count == 1]]
     a, b = xy[edges[:, 0]], xy[edges[:, 1]]
@@ -74,9 +60,16 @@ def solve(kind, xy, connect, force, held, thickness, points=None, selective=Fals
 
 @pytest.mark.parametrize(
     ("kind", "points", "selective"),
-    [("T3", None, False), ("T6", None, False), ("Q4", None, False), ("Q4", None, True), ("Q4", (3, 2), False),
-     ("Q8", (2, 2), False), ("Q8", (3, 3), False)],
-)  # fmt: skip
+    [
+        ("T3", None, False),
+        ("T6", None, False),
+        ("Q4", None, False),
+        ("Q4", None, True),
+        ("Q4", (3, 2), False),
+        ("Q8", (2, 2), False),
+        ("Q8", (3, 3), False),
+    ],
+)
 def test_patch(kind, points, selective) -> None:
     """A constant stress under its own boundary forces is found exactly on a distorted mesh."""
     thickness, stress = 0.17, np.array([[1.3e6, 0.41e6], [0.41e6, -0.77e6]])
@@ -85,9 +78,7 @@ def test_patch(kind, points, selective) -> None:
     xy, connect, base = mesh(kind, 4, 3, 1.9, 1.1, jitter)
     force = thickness * edge_forces(xy, connect, base, lambda place, normal: normal @ stress)
     corner = [int(np.hypot(*(xy - at).T).argmin()) for at in ([0, -0.55], [0, 0.55])]
-    _, report = solve(
-        kind, xy, connect, force, [(corner[0], 0), (corner[0], 1), (corner[1], 0)], thickness, points, selective
-    )
+    _, report = solve(kind, xy, connect, force, [(corner[0], 0), (corner[0], 1), (corner[1], 0)], thickness, points, selective)
     found = np.stack([report["stress_n"], report["stress_s"], report["stress_ns"]], axis=1)
     assert np.abs(found - [1.3e6, -0.77e6, 0.41e6]).max() < 1e-12 * 1.3e6 * 100
 
@@ -104,9 +95,7 @@ def cantilever_exact(xy, length, depth, force, inertia):
     return np.column_stack([u, v])
 
 
-@pytest.mark.parametrize(
-    ("kind", "order_u", "order_energy"), [("T3", 1.9, 1.85), ("Q4", 1.95, 1.9), ("T6", 2.85, 3.7), ("Q8", 2.85, 3.7)]
-)
+@pytest.mark.parametrize(("kind", "order_u", "order_energy"), [("T3", 1.9, 1.85), ("Q4", 1.95, 1.9), ("T6", 2.85, 3.7), ("Q8", 2.85, 3.7)])
 def test_orders_of_convergence(kind, order_u, order_energy) -> None:
     """Timoshenko's cantilever: displacements in the mean square and the energy on two meshes."""
     length, depth, load = 1.4, 0.6, 9.1e4
@@ -148,15 +137,11 @@ def test_hanging_wall_is_exact_for_quadratic_elements() -> None:
         force = body_force(kind, (2, 2), xy, connect, np.tile([0.0, -weight * thickness], (len(connect), 1)))
         assert force.sum(axis=0)[1] == pytest.approx(-weight * thickness * width * height, rel=1e-12)
         top = 0.5 * height
-        force += thickness * edge_forces(
-            xy, connect, base, lambda p, n: np.column_stack([0 * p[:, 0], weight * height * (n[:, 1] > 0.5)])
-        )
+        force += thickness * edge_forces(xy, connect, base, lambda p, n: np.column_stack([0 * p[:, 0], weight * height * (n[:, 1] > 0.5)]))
         at = [int(np.hypot(*(xy - place).T).argmin()) for place in ([0, top], [0, -top])]
         u, _ = solve(kind, xy, connect, force, [(at[0], 0), (at[0], 1), (at[1], 0)], thickness)
         y = xy[:, 1] + top
-        exact = np.column_stack(
-            [-NU * weight / YOUNG * xy[:, 0] * y, weight / (2 * YOUNG) * (y**2 - height**2 + NU * xy[:, 0] ** 2)]
-        )
+        exact = np.column_stack([-NU * weight / YOUNG * xy[:, 0] * y, weight / (2 * YOUNG) * (y**2 - height**2 + NU * xy[:, 0] ** 2)])
         # the exact field has u_x = 0 along x = 0, as the two held nodes
         assert np.abs(u - exact).max() < 1e-9 * np.abs(exact).max()
 
@@ -168,9 +153,7 @@ def chain(lengths, softening, band, area=0.013, floor=1e-13, tension=True):
     """Bars in series along x, the first one softening; unit force at the end."""
     x = np.concatenate([[0.0], np.cumsum(lengths)])
     xy = np.column_stack([x, np.zeros(len(x))])
-    groups = [
-        Bars(np.array([[0, 1]]), area, YOUNG, band, softening if tension else None, None if tension else softening)
-    ]
+    groups = [Bars(np.array([[0, 1]]), area, YOUNG, band, softening if tension else None, None if tension else softening)]
     if len(lengths) > 1:
         groups.append(Bars(np.array([[i, i + 1] for i in range(1, len(lengths))]), area, YOUNG))
     held = [(0, 0)] + [(i, 1) for i in range(len(x))]
@@ -204,10 +187,7 @@ def test_two_bars_in_series_snap_back_at_the_critical_length() -> None:
 def test_spring_and_bar_share_a_load() -> None:
     xy = np.array([[0.0, 0.0], [1.7, 0.0]])
     area, stiffness = 0.0031, 4.9e6
-    groups = [
-        Bars(np.array([[0, 1]]), area, YOUNG),
-        Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([stiffness])),
-    ]
+    groups = [Bars(np.array([[0, 1]]), area, YOUNG), Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([stiffness]))]
     with Model(xy, Freedoms.make(2, [(0, 0), (0, 1), (1, 1)]), groups) as model:
         model.loads(np.zeros((2, 2)), np.array([[0.0, 0.0], [830.0, 0.0]]))
         u = model.displacement(1.0)
@@ -225,8 +205,7 @@ def square(softening=None, behaviour=None, nu=0.0, **options):
 
 
 @pytest.mark.parametrize(
-    "behaviour",
-    [Behaviour(), Behaviour(cracking="isotropic"), Behaviour(cracking="rotating"), Behaviour(retention=0.2)],
+    "behaviour", [Behaviour(), Behaviour(cracking="isotropic"), Behaviour(cracking="rotating"), Behaviour(retention=0.2)]
 )
 def test_square_in_tension_dissipates_gf(behaviour) -> None:
     """Two triangles of one band: with nu = 0 both lose Gf times the crack area, whatever the cracking model."""
@@ -270,10 +249,7 @@ def test_a_free_node_is_named() -> None:
 def test_an_indefinite_matrix_is_seen() -> None:
     """A spring of negative stiffness: never solved."""
     xy = np.array([[0.0, 0.0], [1.7, 0.0]])
-    groups = [
-        Bars(np.array([[0, 1]]), 0.01, YOUNG),
-        Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([-0.02 * YOUNG])),
-    ]
+    groups = [Bars(np.array([[0, 1]]), 0.01, YOUNG), Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([-0.02 * YOUNG]))]
     with pytest.raises(FreeNode):
         Model(xy, Freedoms.make(2, [(0, 0), (0, 1), (1, 1)]), groups)
 
@@ -281,10 +257,7 @@ def test_an_indefinite_matrix_is_seen() -> None:
 def test_inverted_element_is_named() -> None:
     xy = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     with pytest.raises(BadElement, match="element 2"):
-        Model(
-            xy, Freedoms.make(4, [(0, 0), (0, 1), (1, 1)]),
-            [Plane("T3", np.array([[0, 1, 2], [0, 3, 2]]), 0.1, YOUNG, NU)],
-        )  # fmt: skip
+        Model(xy, Freedoms.make(4, [(0, 0), (0, 1), (1, 1)]), [Plane("T3", np.array([[0, 1, 2], [0, 3, 2]]), 0.1, YOUNG, NU)])
 
 
 def test_memory_is_estimated_before_it_is_taken() -> None:
@@ -308,9 +281,7 @@ def test_the_crack_band_is_the_width_across_the_crack(kind, angle) -> None:
     xy = np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2], [0.0, 0.2]])
     corners = [0, 1, 2, 3] if kind == "Q4" else [0, 1, 3]
     reach = np.array([[0.2 / 2**0.5, 0.2 * 2**0.5]])
-    group = Plane(
-        kind, np.array([corners]), 0.07, YOUNG, 0.0, 0.2, Softening(STRENGTH, ENERGY, ripple=0.2), reach=reach
-    )
+    group = Plane(kind, np.array([corners]), 0.07, YOUNG, 0.0, 0.2, Softening(STRENGTH, ENERGY, ripple=0.2), reach=reach)
     both = np.array([[i, d] for i in range(4) for d in range(2)])
     ground = np.column_stack([both[:, 0], np.full(8, -1)])
     springs = Springs(ground, np.column_stack([both[:, 1], both[:, 1]]), np.full(8, 1e3))
@@ -375,10 +346,7 @@ def test_a_bar_of_one_sense_lets_go_where_its_force_turns(bears: str, sense: flo
     """Beside a spring, stressed by a constant load that the other takes back: from there on the spring is alone, and as
     the load turns again the bar bears anew."""
     xy, area, stiffness, first = np.array([[0.0, 0.0], [1.7, 0.0]]), 0.0031, 4.9e6, 620.0
-    groups = [
-        Bars(np.array([[0, 1]]), area, YOUNG, bears=bears),
-        Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([stiffness])),
-    ]
+    groups = [Bars(np.array([[0, 1]]), area, YOUNG, bears=bears), Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([stiffness]))]
     constant, reference = np.zeros((2, 2)), np.zeros((2, 2))
     constant[1, 0], reference[1, 0] = sense * first, -sense
     with Model(xy, Freedoms.make(2, [(0, 0), (0, 1), (1, 1)]), groups, Behaviour(closure=True)) as model:

@@ -22,21 +22,27 @@ def wall(size: float = 0.15, **analysis) -> dict:
     """A wall with an opening under its weight, a pressure and a push at the top."""
     return {
         "structure": {
-            "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2,
+            "kind": "panel",
+            "width": 3.0,
+            "height": 3.0,
+            "thickness": 0.2,
             "openings": [{"x": [1.05, 1.95], "y": [0.9, 2.1]}],
             "regions": [{"y": [2.85, 3.0], "linear": True}],
         },
-        "material": {
-            "young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 0.2e6, "fracture_energy": 50.0,
-        },
+        "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 0.2e6, "fracture_energy": 50.0},
         "supports": {"held": [{"edge": "bottom"}]},
-        "analysis": [{
-            "kind": "sla", "mesh": {"size": size}, "ripple": 0.2, "events": 300,
-            "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
-            "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}],
-            **analysis,
-        }],
-    }  # fmt: skip
+        "analysis": [
+            {
+                "kind": "sla",
+                "mesh": {"size": size},
+                "ripple": 0.2,
+                "events": 300,
+                "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
+                "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}],
+                **analysis,
+            }
+        ],
+    }
 
 
 #: Cracks that stay open, and no equilibrium iterations where equilibrium is lost
@@ -70,11 +76,14 @@ def beam(prestress: float, cracking: str) -> dict:
 @pytest.mark.parametrize(
     ("prestress", "cracking", "peak", "cycle", "lost"),
     [
-        (0, "isotropic", 4.821, 32, None), (0, "orthotropic", 4.809, 33, None),
-        (-1, "isotropic", 6.366, 44, None), (-1, "orthotropic", 6.415, 44, None),
-        (1, "isotropic", 3.244, 21, 162), (1, "orthotropic", 3.271, 31, 161),
+        (0, "isotropic", 4.821, 32, None),
+        (0, "orthotropic", 4.809, 33, None),
+        (-1, "isotropic", 6.366, 44, None),
+        (-1, "orthotropic", 6.415, 44, None),
+        (1, "isotropic", 3.244, 21, 162),
+        (1, "orthotropic", 3.271, 31, 161),
     ],
-)  # fmt: skip
+)
 def test_beam_of_the_thesis(prestress, cracking, peak, cycle, lost) -> None:
     """Thesis 4.3.1; peaks and cycles by an independent script on the same assumed outline."""
     r = run_deck(beam(prestress, cracking)).results
@@ -170,11 +179,16 @@ CRUSHING = {"compressive_strength": 1e6, "crushing_energy": 2e3}
         (CRUSHING | {"confinement": 4.0}, {"mesh": {"size": 0.1}}),
         (CRUSHING | {"compressive_strength_parallel": 0.9 * CRUSHING["compressive_strength"]}, {"mesh": {"size": 0.15}}),
         ({"tensile_strength_parallel": 0.4e6, "shear_strength": 0.15e6, "bed_angle": 10.0}, {"mesh": {"size": 0.1}}),
-        ({}, {"mesh": {"size": 0.1}, "reference": [
-            {"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}, {"y": 1.5, "ratio": 0.6}]}]}),
+        (
+            {},
+            {
+                "mesh": {"size": 0.1},
+                "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}, {"y": 1.5, "ratio": 0.6}]}],
+            },
+        ),
         ({}, {"mesh": {"size": 0.1}, "control": [{"x": 3.0, "y": 3.0}, {"x": 3.0, "y": 1.5, "direction": "y"}]}),
     ],
-)  # fmt: skip
+)
 @pytest.mark.parametrize("events", [60, pytest.param(400, marks=pytest.mark.verify)])
 def test_what_is_left_out_holds_no_event(material, analysis, events) -> None:
     """A changed factor and the regions that an event concerns give the events of a new factor and of all points."""
@@ -243,10 +257,7 @@ def test_ties_between_regions_and_groups_go_to_the_first_point(order: str) -> No
 
     n, law = 900, Softening(1.7e6, 130.0)
     xy = np.column_stack([np.arange(n + 1.0), np.zeros(n + 1)])
-    number = {
-        "as they stand": np.arange(n), "backwards": np.arange(n)[::-1],
-        "shuffled": np.random.default_rng(5).permutation(n),
-    }[order]  # fmt: skip
+    number = {"as they stand": np.arange(n), "backwards": np.arange(n)[::-1], "shuffled": np.random.default_rng(5).permutation(n)}[order]
     bars = [Bars(np.column_stack([at, at + 1]), 0.02, 5.3e9, 0.25, law) for at in (number[::2], number[1::2])]
     force = np.zeros((n + 1, 2))
     force[-1, 0] = 1.0
@@ -313,9 +324,7 @@ def test_the_residual_is_measured_in_short_runs_too() -> None:
 def test_going_on_from_a_stored_event() -> None:
     _, (whole,) = curves(wall(events=260, cracking="orthotropic"))
     event = 140
-    damage = damage_before(
-        whole.damage_start, whole.damage_end, whole.events.point[: event - 1], whole.events.code[: event - 1]
-    )
+    damage = damage_before(whole.damage_start, whole.damage_end, whole.events.point[: event - 1], whole.events.code[: event - 1])
     deck = make_deck(wall(events=120, cracking="orthotropic"))
     model = build(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     (rest,) = run_curves(model, deck.analyses[0], 1, lambda *_: None, damage)
@@ -354,10 +363,7 @@ def test_constant_loads_with_damage() -> None:
 
 def test_constant_loads_beyond_strength_are_refused() -> None:
     data = wall(constant_damage=False)
-    data["analysis"][0]["constant"] = [
-        {"kind": "line", "edge": "left", "py": "5 MN/m"},
-        {"kind": "line", "edge": "right", "py": "-5 MN/m"},
-    ]
+    data["analysis"][0]["constant"] = [{"kind": "line", "edge": "left", "py": "5 MN/m"}, {"kind": "line", "edge": "right", "py": "-5 MN/m"}]
     result = run_deck(data)
     assert (result.status, "constant loads alone exceed the strength" in result.reason) == ("refused", True)
     data = wall()
@@ -370,11 +376,7 @@ def test_prescribed_displacement_with_ratios() -> None:
     """Roof and floor moved together, the floor by 0.8: the load that comes out is their common reaction."""
     data = wall(events=5, constant=[])
     data["analysis"][0]["reference"] = [
-        {
-            "kind": "displacement",
-            "direction": "x",
-            "parts": [{"edge": "top"}, {"edge": "left", "y": [1.5, 1.5], "ratio": 0.8}],
-        }
+        {"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}, {"edge": "left", "y": [1.5, 1.5], "ratio": 0.8}]}
     ]
     result = run_deck(data)
     u = result["state_displacement"][-1]
@@ -427,11 +429,15 @@ def u_first(result) -> float:
     return float(result["event_displacement"][0])
 
 
-@pytest.mark.parametrize(("stop", "reason"), [
-    ({"target_displacement": "0.2 mm"}, "target displacement"), ({"events": 40}, "number of events"),
-    ({"stop_fraction": 0.97, "events": 4000}, "load fell below the fraction of its peak"),
-    ({"mechanism_ratio": 10, "events": 9000, **EVENTS_ALONE}, "mechanism"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("stop", "reason"),
+    [
+        ({"target_displacement": "0.2 mm"}, "target displacement"),
+        ({"events": 40}, "number of events"),
+        ({"stop_fraction": 0.97, "events": 4000}, "load fell below the fraction of its peak"),
+        ({"mechanism_ratio": 10, "events": 9000, **EVENTS_ALONE}, "mechanism"),
+    ],
+)
 def test_stops_are_named(stop, reason) -> None:
     assert run_deck(wall(**stop)).results["stop"] == reason
 
@@ -446,19 +452,22 @@ def bad(path: str, value) -> dict:
     return data
 
 
-@pytest.mark.parametrize(("path", "value", "says"), [
-    ("supports.held", [{"x": 0.0, "y": 0.0}], "is a mechanism: node"),
-    ("material.fracture_energy", 0.004, "snaps back, the largest is"),
-    ("analysis.0.reference", [{"kind": "line", "x": [0.07, 0.08], "y": [0.01, 0.02], "px": 1.0}], "a mesh line is missing"),
-    ("structure.openings", [{"x": [-1, 4], "y": [-1, 4]}], "leaves|no elements|nothing"),
-    ("structure.ties", [{"edge": "bottom", "direction": "x"}], "is held and tied in x"),
-    ("analysis.0.reference", [{"kind": "point", "edge": "bottom", "fx": "1 kN"}], "acts on held nodes only"),
-    ("analysis.0.reference", [{"kind": "point", "edge": "top", "fx": 0.0}], "reference load is zero"),
-    ("analysis.0.mesh.size", "0.5 mm", "use larger elements"),
-    ("material.density", 0.0, "give the material a density"),
-    ("analysis.0.constant", [{"kind": "pressure", "edge": "top", "x": [2, 4], "value": 1e5}], "reaches out of the wall"),
-    ("analysis.0.section_x", [3.2], r"section_x\[0\] is 3.2 m, the wall reaches from 0 to 3 m"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("path", "value", "says"),
+    [
+        ("supports.held", [{"x": 0.0, "y": 0.0}], "is a mechanism: node"),
+        ("material.fracture_energy", 0.004, "snaps back, the largest is"),
+        ("analysis.0.reference", [{"kind": "line", "x": [0.07, 0.08], "y": [0.01, 0.02], "px": 1.0}], "a mesh line is missing"),
+        ("structure.openings", [{"x": [-1, 4], "y": [-1, 4]}], "leaves|no elements|nothing"),
+        ("structure.ties", [{"edge": "bottom", "direction": "x"}], "is held and tied in x"),
+        ("analysis.0.reference", [{"kind": "point", "edge": "bottom", "fx": "1 kN"}], "acts on held nodes only"),
+        ("analysis.0.reference", [{"kind": "point", "edge": "top", "fx": 0.0}], "reference load is zero"),
+        ("analysis.0.mesh.size", "0.5 mm", "use larger elements"),
+        ("material.density", 0.0, "give the material a density"),
+        ("analysis.0.constant", [{"kind": "pressure", "edge": "top", "x": [2, 4], "value": 1e5}], "reaches out of the wall"),
+        ("analysis.0.section_x", [3.2], r"section_x\[0\] is 3.2 m, the wall reaches from 0 to 3 m"),
+    ],
+)
 def test_refusals(path, value, says) -> None:
     import re
 
@@ -467,24 +476,27 @@ def test_refusals(path, value, says) -> None:
     assert re.search(says, result.reason)
 
 
-@pytest.mark.parametrize(("path", "value", "says"), [
-    ("structure.regions", [{"x": [0, 1], "material": "steel"}], "unknown material 'steel'"),
-    ("analysis.0.mesh.pattern", "random", 'expected "T3" or "T6"'),
-    ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "lies outside the wall"),
-    ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "needs a width and a height"),
-    ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
-    ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
-    ("analysis.0.reference", [], "at least 1, found 0"),
-    ("material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
-    ("material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
-    ("supports.held", [{"fix": "x"}], "the place is missing"),
-    ("supports.held", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
-    ("supports.held", [{"x": [2, 1], "y": 0}], "the range runs backward"),
-    ("analysis.0.directions", ["+", "+"], "each sense may stand once"),
-    ("analysis.0.control", [{"edge": "top", "weight": 0}], "a weight of 0 follows nothing"),
-    ("analysis.0.seeds", [3, 3], "a seed stands twice"),
-    ("analysis.0.states", [0], "greater than or equal to 1"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("path", "value", "says"),
+    [
+        ("structure.regions", [{"x": [0, 1], "material": "steel"}], "unknown material 'steel'"),
+        ("analysis.0.mesh.pattern", "random", 'expected "T3" or "T6"'),
+        ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "lies outside the wall"),
+        ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "needs a width and a height"),
+        ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
+        ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
+        ("analysis.0.reference", [], "at least 1, found 0"),
+        ("material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
+        ("material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
+        ("supports.held", [{"fix": "x"}], "the place is missing"),
+        ("supports.held", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
+        ("supports.held", [{"x": [2, 1], "y": 0}], "the range runs backward"),
+        ("analysis.0.directions", ["+", "+"], "each sense may stand once"),
+        ("analysis.0.control", [{"edge": "top", "weight": 0}], "a weight of 0 follows nothing"),
+        ("analysis.0.seeds", [3, 3], "a seed stands twice"),
+        ("analysis.0.states", [0], "greater than or equal to 1"),
+    ],
+)
 def test_deck_complaints(path, value, says) -> None:
     with pytest.raises(DeckError) as error:
         make_deck(bad(path, value))

@@ -15,18 +15,33 @@ KN, KS, MU, C, GII = 82e9, 36e9, 0.75, 0.35e6, 125.0  # J4D: Pa/m, Pa/m, -, Pa, 
 
 
 def one_joint(
-    pressure: float, *, proportional: float = 0.0, law: str = "exponential", ripple: float = 0.1, friction: float = MU,
-    cohesion: float = C, slip: float = 4e-3, events: int = 2000, tension: float = 0.0,
-):  # fmt: skip
+    pressure: float,
+    *,
+    proportional: float = 0.0,
+    law: str = "exponential",
+    ripple: float = 0.1,
+    friction: float = MU,
+    cohesion: float = C,
+    slip: float = 4e-3,
+    events: int = 2000,
+    tension: float = 0.0,
+):
     """Shear of 1 m x 1 m of joint whose upper side moves as one: constant `pressure` [Pa], and `proportional` Pa of
     pressure for each Pa of shear; a `tension` that softens, or none that limits."""
     xy = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
     free = Freedoms.make(4, [(n, d) for n in (0, 1) for d in (0, 1)], [[(2, d, 1.0), (3, d, 1.0)] for d in (0, 1)])
     joint = Joints(
-        np.array([[0, 1, 2, 3]]), np.array([[0.0, 1.0]]), np.array([[0.5, 0.5]]), KN, KS, friction,
-        cohesion=Softening(cohesion, GII, law, ripple) if cohesion else None, dry=not cohesion, small=1.0,
+        np.array([[0, 1, 2, 3]]),
+        np.array([[0.0, 1.0]]),
+        np.array([[0.5, 0.5]]),
+        KN,
+        KS,
+        friction,
+        cohesion=Softening(cohesion, GII, law, ripple) if cohesion else None,
+        dry=not cohesion,
+        small=1.0,
         tension=Softening(tension, 18.0, law, ripple) if tension else None,
-    )  # fmt: skip
+    )
     constant, reference = np.zeros((4, 2)), np.zeros((4, 2))
     constant[2, 1], reference[2] = -pressure, [1.0, -proportional]
     with Model(xy, free, [joint], Behaviour(floor=1e-9, closure=True)) as model:
@@ -110,7 +125,7 @@ STRUCTURES = {
     "column": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4},
     "vault": {"kind": "vault", "preset": "dejong-a"},
     "brickwork": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 3, "courses": 4},
-}  # fmt: skip
+}
 
 
 def capacity(structure: dict, friction: float | str, kind: str, **options):
@@ -144,9 +159,7 @@ def test_the_load_of_limit_analysis_with_friction(kind: str, friction: float, be
     load = np.asarray(found["event_load"])
     upto = slice(0, int(np.argmax(load > 0.998 * load[: found.results["peak_event"]].max())))
     assert upto.stop >= 1
-    external, stored, lost, dissipated = (
-        np.asarray(found[f"event_{n}"])[upto] for n in ("external", "stored", "lost", "dissipated")
-    )
+    external, stored, lost, dissipated = (np.asarray(found[f"event_{n}"])[upto] for n in ("external", "stored", "lost", "dissipated"))
     assert np.abs(external - stored - lost).max() < 1e-6 * external.max()
     assert (np.diff(lost) > -1e-5 * external.max()).all()
     assert dissipated[-1] == pytest.approx(lost[-1], abs=1e-5 * external.max())
@@ -188,24 +201,31 @@ def test_no_point_is_sheared_beyond_its_friction() -> None:
 
 def test_a_load_that_falls_for_the_next_tooth_turns_nothing_back() -> None:
     """What the fall undid slides on as the load grows: no point sticks only to slide again at that load."""
-    wall = {
-        "kind": "panel", "width": 0.44, "height": 0.25, "thickness": 0.1, "unit_length": 0.22, "unit_height": 0.0625,
-    }  # fmt: skip
+    wall = {"kind": "panel", "width": 0.44, "height": 0.25, "thickness": 0.1, "unit_length": 0.22, "unit_height": 0.0625}
     joints = {
-        "normal_stiffness": KN, "shear_stiffness": KS, "tension": 2.5e5, "fracture_energy": 18.0, "friction": MU,
-        "cohesion": C, "shear_energy": GII,
-    }  # fmt: skip
+        "normal_stiffness": KN,
+        "shear_stiffness": KS,
+        "tension": 2.5e5,
+        "fracture_energy": 18.0,
+        "friction": MU,
+        "cohesion": C,
+        "shear_energy": GII,
+    }
     push = {"hold": [{"edge": "top", "fix": "y"}], "target_displacement": 4e-4}
     push |= {"reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}]}
     press = {"reference": [{"kind": "pressure", "edge": "top", "value": "0.3 MPa"}], "target_multiplier": 1.0}
     data = {
-        "structure": wall, "joints": joints, "supports": {"held": [{"edge": "bottom"}]},
+        "structure": wall,
+        "joints": joints,
+        "supports": {"held": [{"edge": "bottom"}]},
         "material": {"density": 0.0, "young": 16.7e9, "poisson": 0.15},
         "analysis": {
-            "kind": "sla", "events": 600, "mesh": {"joints": "interfaces", "size": 0.11},
+            "kind": "sla",
+            "events": 600,
+            "mesh": {"joints": "interfaces", "size": 0.11},
             "stages": [{"name": "press", **press}, {"name": "push", **push}],
         },
-    }  # fmt: skip
+    }
     found = run_analyses(Context(make_deck(data)))[0]
     load, point, code = (np.asarray(found[f"event_{name}"]) for name in ("load", "point", "code"))
     assert (np.diff(load) < 0.0).sum() > 20 and (code == EVENT["wear"]).sum() > 50
@@ -251,24 +271,25 @@ def test_friction_that_falls_to_what_is_asked(monkeypatch) -> None:
 @pytest.mark.parametrize(("friction", "events"), [("no-sliding", 150), (0.7, 150)])
 def test_regions_of_units_and_joints_wait_until_one_slips(friction, events) -> None:
     """What is left out holds no event: those of a new factor and of all points, also as the first joints slide."""
-    joints = {
-        "tension": 1e5, "fracture_energy": 20.0, "friction": friction, "normal_stiffness": 8e10, "shear_stiffness": 3.6e10,
-    }  # fmt: skip
+    joints = {"tension": 1e5, "fracture_energy": 20.0, "friction": friction, "normal_stiffness": 8e10, "shear_stiffness": 3.6e10}
     if friction != "no-sliding":
         joints |= {"cohesion": 1.5e5, "shear_energy": 100.0}
     found = []
     for algorithm in ("update", "refactor"):
         data = {
-            "structure": {
-                "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "unit_length": 0.5, "unit_height": 0.25,
-            },
-            "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0}, "joints": joints,
+            "structure": {"kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "unit_length": 0.5, "unit_height": 0.25},
+            "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0},
+            "joints": joints,
             "analysis": {
-                "kind": "sla", "ripple": 0.2, "mesh": {"size": 0.15, "joints": "interfaces"}, "events": events,
+                "kind": "sla",
+                "ripple": 0.2,
+                "mesh": {"size": 0.15, "joints": "interfaces"},
+                "events": events,
                 "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
-                "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}], "algorithm": algorithm,
+                "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}],
+                "algorithm": algorithm,
             },
-        }  # fmt: skip
+        }
         found.append(run_analyses(Context(make_deck(data)))[0])
     update, refactor = found
     assert len(update["event_load"]) == events and (update["event_code"] >= EVENT["wear"]).any() == (friction == 0.7)
@@ -295,10 +316,11 @@ def test_no_sliding_keeps_what_hinges() -> None:
 def test_bad_joints_are_refused() -> None:
     arch = STRUCTURES["arch"]
     for joints, word in (
-        ({"cohesion": 1e5}, "no shear_energy"), ({"tension": 1e5}, "no fracture_energy"),
+        ({"cohesion": 1e5}, "no shear_energy"),
+        ({"tension": 1e5}, "no fracture_energy"),
         ({"compressive_strength": 1e6}, "go together"),
         ({"cohesion": 1e6, "shear_energy": 1e-3, "normal_stiffness": 1e9}, "snap back"),
-    ):  # fmt: skip
+    ):
         data = {"structure": arch, "joints": joints, "analysis": {"kind": "sla"}}
         assert word in run_analyses(Context(make_deck(data)))[0].reason
 
@@ -309,21 +331,51 @@ def test_a_joint_that_first_slides_in_a_later_stage_keeps_the_energy(before: flo
     and at the end all energies are those of the push at once."""
 
     def push(*ends: float) -> dict:
-        last = run_analyses(Context(make_deck({
-            "structure": {"kind": "blocks", "depth": 1.0, "block": [
-                {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
-                {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]}]},
-            "material": {"density": 0.0, "young": 20e9, "poisson": 0.0},
-            "joints": {"friction": 0.5, "normal_stiffness": 1e10, "shear_stiffness": 5e9, "types": [
-                {"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}]},
-            "analysis": [{
-                "kind": "sla", "mesh": {"size": 0.25}, "events": 400,
-                "constant": [{"kind": "pressure", "edge": "top", "value": 1e5}],
-                "stages": [{"name": f"to {end}", "target_displacement": abs(end), "reference": [
-                    {"kind": "displacement", "direction": "x", "parts": [{"edge": "top", "ratio": float(np.sign(end))}]}]}
-                    for end in ends],
-            }],
-        })))[0].results["stages"]  # fmt: skip
+        last = run_analyses(
+            Context(
+                make_deck(
+                    {
+                        "structure": {
+                            "kind": "blocks",
+                            "depth": 1.0,
+                            "block": [
+                                {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
+                                {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]},
+                            ],
+                        },
+                        "material": {"density": 0.0, "young": 20e9, "poisson": 0.0},
+                        "joints": {
+                            "friction": 0.5,
+                            "normal_stiffness": 1e10,
+                            "shear_stiffness": 5e9,
+                            "types": [{"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}],
+                        },
+                        "analysis": [
+                            {
+                                "kind": "sla",
+                                "mesh": {"size": 0.25},
+                                "events": 400,
+                                "constant": [{"kind": "pressure", "edge": "top", "value": 1e5}],
+                                "stages": [
+                                    {
+                                        "name": f"to {end}",
+                                        "target_displacement": abs(end),
+                                        "reference": [
+                                            {
+                                                "kind": "displacement",
+                                                "direction": "x",
+                                                "parts": [{"edge": "top", "ratio": float(np.sign(end))}],
+                                            }
+                                        ],
+                                    }
+                                    for end in ends
+                                ],
+                            }
+                        ],
+                    }
+                )
+            )
+        )[0].results["stages"]
         assert all(stage["energy_residual_ratio"] < 1e-12 for stage in last)
         return last[-1]
 

@@ -15,9 +15,16 @@ def column(stages: list[dict], **analysis) -> dict:
     return {
         "structure": {"kind": "panel", "width": 0.2, "height": 1.0, "thickness": 0.1},
         "material": {"young": YOUNG, "poisson": 0.0, "density": 0.0},
-        "analysis": [{"kind": "sla", "mesh": {"size": 0.25}, "control": [{**MIDDLE, "direction": "y"}],
-                      **({"stages": stages} if stages else {}), **analysis}],
-    }  # fmt: skip
+        "analysis": [
+            {
+                "kind": "sla",
+                "mesh": {"size": 0.25},
+                "control": [{**MIDDLE, "direction": "y"}],
+                **({"stages": stages} if stages else {}),
+                **analysis,
+            }
+        ],
+    }
 
 
 def middle_force(size: float) -> list[dict]:
@@ -26,11 +33,7 @@ def middle_force(size: float) -> list[dict]:
 
 def test_a_support_holds_where_it_is_and_lets_its_force_go() -> None:
     """A bar: pressed from its free top, then held there and loaded in the middle, then let go. By hand."""
-    press = {
-        "name": "press",
-        "reference": [{"kind": "pressure", "edge": "top", "value": 1e5}],
-        "target_multiplier": 1.0,
-    }
+    press = {"name": "press", "reference": [{"kind": "pressure", "edge": "top", "value": 1e5}], "target_multiplier": 1.0}
     load = {"name": "load", "hold": [{**TOP, "fix": "y"}], "reference": middle_force(-8e3), "target_multiplier": 1.0}
     go = {"name": "go", "free": [{**TOP, "fix": "y"}]}
     found = run_deck(column([press, load, go])).results["stages"]
@@ -51,9 +54,12 @@ def test_a_support_holds_where_it_is_and_lets_its_force_go() -> None:
 
 def test_a_support_settles_and_stays() -> None:
     """The base of a bar that is held at both ends goes down: the force is that of the stretch, and stays for the next."""
-    hold = {"hold": [{**TOP, "fix": "y"}], "reference": [
-        {"kind": "displacement", "direction": "y", "parts": [{"edge": "bottom", "ratio": -1.0}]}],
-        "target_displacement": 1e-4, "control": [{"edge": "bottom", "direction": "y", "weight": -1.0}]}  # fmt: skip
+    hold = {
+        "hold": [{**TOP, "fix": "y"}],
+        "reference": [{"kind": "displacement", "direction": "y", "parts": [{"edge": "bottom", "ratio": -1.0}]}],
+        "target_displacement": 1e-4,
+        "control": [{"edge": "bottom", "direction": "y", "weight": -1.0}],
+    }
     found = run_deck(column([hold, {"reference": middle_force(-8e3), "target_multiplier": 1.0}])).results["stages"]
     assert found[0]["stop"] == "target displacement"
     assert found[0]["last_displacement_m"] == pytest.approx(1e-4, rel=1e-12)
@@ -64,17 +70,16 @@ def test_a_support_settles_and_stays() -> None:
 def wall(stages: list[dict], **analysis) -> dict:
     return {
         "structure": {"kind": "panel", "width": 1.0, "height": 1.0, "thickness": 0.1},
-        "material": {
-            "young": 4e9, "poisson": 0.15, "density": 0.0, "tensile_strength": 0.25e6, "fracture_energy": 18.0,
-        },
-        "analysis": [{"kind": "sla", "mesh": {"size": 0.125}, "ripple": 0.2, "events": 400, **({"stages": stages} if stages else {}), **analysis}],
-    }  # fmt: skip
+        "material": {"young": 4e9, "poisson": 0.15, "density": 0.0, "tensile_strength": 0.25e6, "fracture_energy": 18.0},
+        "analysis": [
+            {"kind": "sla", "mesh": {"size": 0.125}, "ripple": 0.2, "events": 400, **({"stages": stages} if stages else {}), **analysis}
+        ],
+    }
 
 
 def move(to: float, **more) -> dict:
     parts = [{"edge": "top", "ratio": float(np.sign(to))}]
-    return {"reference": [{"kind": "displacement", "direction": "x", "parts": parts}],
-            "target_displacement": abs(to), **more}  # fmt: skip
+    return {"reference": [{"kind": "displacement", "direction": "x", "parts": parts}], "target_displacement": abs(to), **more}
 
 
 PRESS = {"name": "press", "reference": [{"kind": "pressure", "edge": "top", "value": 3e5}], "target_multiplier": 1.0}
@@ -87,10 +92,7 @@ def test_a_support_that_moves_is_a_tie_that_is_pulled(algorithm) -> None:
     staged = run_deck(wall([move(3e-4, name="push")], algorithm=algorithm, crack_closure=False))
     tied = wall([PRESS], algorithm=algorithm, crack_closure=False)
     del tied["analysis"][0]["stages"]
-    tied["analysis"][0] |= {
-        "constant": [],
-        "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}],
-    }
+    tied["analysis"][0] |= {"constant": [], "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}]}
     other = run_deck(tied)
     n = len(staged["event_load"]) - 1  # the last is the target itself
     assert n > 100
@@ -106,12 +108,7 @@ def test_a_support_that_moves_is_a_tie_that_is_pulled(algorithm) -> None:
 def test_cyclic_loads_keep_the_energy() -> None:
     """Pressed, held, pushed, pushed back and forth again, with cracks that close: the work of the loads and of the
     supports is what is stored and dissipated, through all stages; nothing is lost where one ends."""
-    stages = [
-        PRESS,
-        move(3e-4, name="push", hold=[{**TOP, "fix": "y"}]),
-        move(-3e-4, name="back"),
-        move(3e-4, name="again"),
-    ]
+    stages = [PRESS, move(3e-4, name="push", hold=[{**TOP, "fix": "y"}]), move(-3e-4, name="back"), move(3e-4, name="again")]
     result = run_deck(wall(stages, without_equilibrium="load-unload", events=3000))
     found = result.results["stages"]
     assert [stage["stop"] for stage in found] == ["target load", *["target displacement"] * 3]
@@ -133,16 +130,31 @@ def test_cyclic_loads_keep_the_energy() -> None:
 def test_joints_that_slide_keep_their_friction_from_stage_to_stage() -> None:
     """A block on a joint: pushed until it slides, pushed back until it slides the other way; friction has no cohesion."""
     data = {
-        "structure": {"kind": "blocks", "depth": 1.0, "block": [
-            {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
-            {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]}]},
+        "structure": {
+            "kind": "blocks",
+            "depth": 1.0,
+            "block": [
+                {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
+                {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]},
+            ],
+        },
         "material": {"density": 0.0, "young": 20e9, "poisson": 0.0},
-        "joints": {"friction": 0.5, "normal_stiffness": 1e10, "shear_stiffness": 5e9,
-                   "types": [{"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}]},
-        "analysis": [{"kind": "sla", "mesh": {"size": 0.25}, "constant": [
-            {"kind": "pressure", "edge": "top", "value": 1e5}], "events": 400,
-            "stages": [move(2e-4, name="push"), move(-2e-4, name="back")]}],
-    }  # fmt: skip
+        "joints": {
+            "friction": 0.5,
+            "normal_stiffness": 1e10,
+            "shear_stiffness": 5e9,
+            "types": [{"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}],
+        },
+        "analysis": [
+            {
+                "kind": "sla",
+                "mesh": {"size": 0.25},
+                "constant": [{"kind": "pressure", "edge": "top", "value": 1e5}],
+                "events": 400,
+                "stages": [move(2e-4, name="push"), move(-2e-4, name="back")],
+            }
+        ],
+    }
     found = run_deck(data).results["stages"]
     assert found[0]["end_load_N"] == pytest.approx(0.5 * 1e5, rel=0.03)
     assert found[1]["start_load_N"] == pytest.approx(-found[0]["end_load_N"], rel=1e-6)
@@ -193,9 +205,7 @@ def test_force_release(algorithm) -> None:
     is dissipated than the teeth take. The peak is near that of load-unload."""
     stages = [PRESS, move(6e-4, name="push", hold=[{**TOP, "fix": "y"}])]
     found = {
-        variant: run_deck(
-            wall(stages, events=3000, without_equilibrium=variant, algorithm=algorithm, crack_closure=False)
-        )
+        variant: run_deck(wall(stages, events=3000, without_equilibrium=variant, algorithm=algorithm, crack_closure=False))
         for variant in ("load-unload", "force-release")
     }
     back, on = (r.results["stages"][1] for r in found.values())

@@ -36,7 +36,7 @@ STRUCTURES = {
     "column": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4, "top_width": 0.8},
     "brickwork": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 3, "courses": 4},
     "blocks": {"kind": "blocks", "block": BLOCKS},
-}  # fmt: skip
+}
 
 
 def context(structure: dict, folder=None, joints: dict | None = None, **analysis) -> Context:
@@ -82,10 +82,9 @@ def check_mesh(mesh: Mesh, assembly, thickness: float) -> None:
             on_ground = a in ground and b in ground
             assert on_ground or (a, b) in there
             assert not on_ground or GROUND in (assembly.a[j], assembly.b[j])
-    length = np.array([
-        np.hypot(*np.diff(mesh.xy[rows.connect[rows.joint == j][:, :2]], axis=1)[:, 0].T).sum()
-        for j in range(len(assembly.a))
-    ])  # fmt: skip
+    length = np.array(
+        [np.hypot(*np.diff(mesh.xy[rows.connect[rows.joint == j][:, :2]], axis=1)[:, 0].T).sum() for j in range(len(assembly.a))]
+    )
     assert np.abs(length - assembly.length).max() < 12.0 * thickness  # at sharp corners more than at right ones
 
     area = sum(element_areas(mesh.xy, g.kind, g.connect).sum() for g in mesh.groups)
@@ -190,9 +189,7 @@ def test_stones_become_a_mechanism_where_limit_analysis_says(kind: str) -> None:
 
 def test_rows_of_elements_converge_from_below() -> None:
     """There hinges form at the outermost integration point of a row, a little inside the end of the joint."""
-    peaks = [
-        sla(STRUCTURES["arch"], mesh={"size": 1.5 / n, "joints": "rows"}).results["peak_acceleration_g"] for n in (4, 6, 8, 12)
-    ]  # fmt: skip
+    peaks = [sla(STRUCTURES["arch"], mesh={"size": 1.5 / n, "joints": "rows"}).results["peak_acceleration_g"] for n in (4, 6, 8, 12)]
     exact = tilt(STRUCTURES["arch"])
     lacking = 1.0 - np.array(peaks) / exact
     assert (lacking > 0.0).all() and (np.diff(lacking) < 0.0).all()
@@ -226,10 +223,12 @@ def test_the_row_carries_the_stiffness_of_the_joint() -> None:
     """A block pressed down by its weight sinks by the mean pressure over the stiffness, in series with the ground."""
     structure = {"kind": "block", "width": 2.0, "height": 1.0}
     data = {
-        "structure": structure, "material": {"young": 1e13}, "joints": {"normal_stiffness": 2e8},
+        "structure": structure,
+        "material": {"young": 1e13},
+        "joints": {"normal_stiffness": 2e8},
         "supports": {"stiffness": 6e8},
         "analysis": {"kind": "sla", "control": [{"edge": "top", "direction": "y"}]},
-    }  # fmt: skip
+    }
     found = run_analyses(Context(make_deck(data)))[0]
     pressure = 2000.0 * 9.80665 * 1.0
     assert found.results["displacement_of_constant_loads_m"] == pytest.approx(-pressure / 1.5e8, rel=1e-3)
@@ -303,9 +302,7 @@ def test_only_rows_assume_that_nothing_slides() -> None:
         table = make_deck(data)
         told = assumptions_of(table.analyses[0], table.building, table.building)["joints.friction"]
         assert (told.value, told.origin) == expected
-    wall = make_deck(
-        {"structure": {"kind": "panel", "width": 1.0, "height": 1.0, "thickness": 0.1}, "analysis": [{"kind": "sla"}]}
-    )
+    wall = make_deck({"structure": {"kind": "panel", "width": 1.0, "height": 1.0, "thickness": 0.1}, "analysis": [{"kind": "sla"}]})
     assert "joints.friction" not in assumptions_of(wall.analyses[0], wall.building, wall.building)
 
 

@@ -19,13 +19,23 @@ def test_ripple_of_the_thesis_beam() -> None:
     """16 teeth for p = 0.1 and h = 20 mm (thesis 4.3.1); moduli, peaks and strains by an independent script."""
     modulus, strength = teeth(Softening(STRENGTH, ENERGY, ripple=0.1, exact=False), YOUNG, 0.02)
     expected = [
-        (32000.00, 3.2859, 1.0269e-4), (26156.92, 3.2519, 1.2432e-4), (21330.75, 3.2107, 1.5052e-4),
-        (17344.51, 3.1607, 1.8223e-4), (14052.03, 3.1003, 2.2063e-4), (11332.56, 3.0272, 2.6712e-4),
-        (9086.38, 2.9386, 3.2340e-4), (7231.12, 2.8313, 3.9155e-4), (5698.74, 2.7015, 4.7405e-4),
-        (4433.06, 2.5443, 5.7394e-4), (3387.64, 2.3540, 6.9487e-4), (2524.17, 2.1236, 8.4129e-4),
-        (1810.98, 1.8446, 1.0186e-3), (1221.91, 1.5068, 1.2332e-3), (735.36, 1.0979, 1.4930e-3),
+        (32000.00, 3.2859, 1.0269e-4),
+        (26156.92, 3.2519, 1.2432e-4),
+        (21330.75, 3.2107, 1.5052e-4),
+        (17344.51, 3.1607, 1.8223e-4),
+        (14052.03, 3.1003, 2.2063e-4),
+        (11332.56, 3.0272, 2.6712e-4),
+        (9086.38, 2.9386, 3.2340e-4),
+        (7231.12, 2.8313, 3.9155e-4),
+        (5698.74, 2.7015, 4.7405e-4),
+        (4433.06, 2.5443, 5.7394e-4),
+        (3387.64, 2.3540, 6.9487e-4),
+        (2524.17, 2.1236, 8.4129e-4),
+        (1810.98, 1.8446, 1.0186e-3),
+        (1221.91, 1.5068, 1.2332e-3),
+        (735.36, 1.0979, 1.4930e-3),
         (333.48, 0.6028, 1.8076e-3),
-    ]  # fmt: skip
+    ]
     assert len(modulus) == 16
     np.testing.assert_allclose(modulus / 1e6, [row[0] for row in expected], atol=0.006)
     np.testing.assert_allclose(strength / 1e6, [row[1] for row in expected], atol=6e-5)
@@ -35,11 +45,14 @@ def test_ripple_of_the_thesis_beam() -> None:
 @pytest.mark.parametrize(
     ("young", "strength", "energy", "band", "ripple", "count", "ratio"),
     [
-        (32e9, 3e6, 60.0, 0.02, 0.2, 8, 0.9722), (32e9, 3e6, 60.0, 0.02, 0.05, 33, 0.9985),
-        (6.9e9, 0.2e6, 50.0, 0.424, 0.2, 10, 1.0000), (6.9e9, 0.2e6, 50.0, 0.212, 0.2, 11, 0.9625),
-        (32e9, 3e6, 60.0, 0.005, 0.1, 23, 1.0000), (32e9, 3e6, 60.0, 0.003, 0.1, 25, 0.9940),
+        (32e9, 3e6, 60.0, 0.02, 0.2, 8, 0.9722),
+        (32e9, 3e6, 60.0, 0.02, 0.05, 33, 0.9985),
+        (6.9e9, 0.2e6, 50.0, 0.424, 0.2, 10, 1.0000),
+        (6.9e9, 0.2e6, 50.0, 0.212, 0.2, 11, 0.9625),
+        (32e9, 3e6, 60.0, 0.005, 0.1, 23, 1.0000),
+        (32e9, 3e6, 60.0, 0.003, 0.1, 25, 0.9940),
     ],
-)  # fmt: skip
+)
 def test_ripple_counts_and_energy(young, strength, energy, band, ripple, count, ratio) -> None:
     modulus, peaks = teeth(Softening(strength, energy, ripple=ripple, exact=False), young, band)
     assert len(modulus) == count
@@ -48,13 +61,21 @@ def test_ripple_counts_and_energy(young, strength, energy, band, ripple, count, 
 
 #: law, h [m], p, teeth, last peak over ft, its strain over ft/E (an independent script)
 EXACT = [
-    ("linear", 0.02, 0.2, 8, 0.200, 24.3), ("linear", 0.02, 0.1, 16, 0.100, 23.2), ("linear", 0.02, 0.05, 32, 0.050, 22.5),
-    ("linear", 0.1, 0.2, 5, 0.366, 3.7), ("linear", 0.1, 0.1, 10, 0.188, 4.0), ("linear", 0.1, 0.05, 19, 0.050, 4.4),
-    ("exponential", 0.02, 0.2, 8, 0.287, 25.8), ("exponential", 0.02, 0.1, 15, 0.125, 38.7),
-    ("exponential", 0.1, 0.2, 5, 0.291, 4.9), ("exponential", 0.1, 0.05, 18, 0.066, 7.8),
-    ("hordijk", 0.02, 0.2, 7, 0.249, 40.8), ("hordijk", 0.02, 0.05, 29, 0.087, 43.7),
-    ("hordijk", 0.1, 0.2, 4, 0.249, 8.2), ("hordijk", 0.1, 0.1, 9, 0.153, 8.1),
-]  # fmt: skip
+    ("linear", 0.02, 0.2, 8, 0.200, 24.3),
+    ("linear", 0.02, 0.1, 16, 0.100, 23.2),
+    ("linear", 0.02, 0.05, 32, 0.050, 22.5),
+    ("linear", 0.1, 0.2, 5, 0.366, 3.7),
+    ("linear", 0.1, 0.1, 10, 0.188, 4.0),
+    ("linear", 0.1, 0.05, 19, 0.050, 4.4),
+    ("exponential", 0.02, 0.2, 8, 0.287, 25.8),
+    ("exponential", 0.02, 0.1, 15, 0.125, 38.7),
+    ("exponential", 0.1, 0.2, 5, 0.291, 4.9),
+    ("exponential", 0.1, 0.05, 18, 0.066, 7.8),
+    ("hordijk", 0.02, 0.2, 7, 0.249, 40.8),
+    ("hordijk", 0.02, 0.05, 29, 0.087, 43.7),
+    ("hordijk", 0.1, 0.2, 4, 0.249, 8.2),
+    ("hordijk", 0.1, 0.1, 9, 0.153, 8.1),
+]
 
 
 @pytest.mark.parametrize(("law", "band", "ripple", "count", "last", "strain"), EXACT)
@@ -73,14 +94,10 @@ def test_energy_exact_teeth(law, band, ripple, count, last, strain) -> None:
 
 
 def test_overshoot_is_optional() -> None:
-    over, without = (
-        teeth(Softening(STRENGTH, ENERGY, exact=exact, overshoot=False), YOUNG, 0.02)[1] for exact in (True, False)
-    )
+    over, without = (teeth(Softening(STRENGTH, ENERGY, exact=exact, overshoot=False), YOUNG, 0.02)[1] for exact in (True, False))
     assert over[0] == pytest.approx(STRENGTH, rel=1e-12)
     assert without[0] == pytest.approx(STRENGTH, rel=1e-12)
-    assert teeth(Softening(STRENGTH, ENERGY, exact=False), YOUNG, 0.02)[1][0] == pytest.approx(
-        1.0953 * STRENGTH, rel=1e-4
-    )
+    assert teeth(Softening(STRENGTH, ENERGY, exact=False), YOUNG, 0.02)[1][0] == pytest.approx(1.0953 * STRENGTH, rel=1e-4)
 
 
 @pytest.mark.parametrize("law", ["linear", "exponential", "hordijk"])

@@ -29,9 +29,7 @@ def write_mesh(path, clockwise: bool = False, extra=()):
 
 def from_file(file: str, folder, **structure):
     data = wall(events=30, constant=[])
-    data["structure"] = {
-        "kind": "mesh", "file": file, "scale": 0.001, "thickness": 0.2, **structure,
-    }  # fmt: skip
+    data["structure"] = {"kind": "mesh", "file": file, "scale": 0.001, "thickness": 0.2, **structure}
     return run_analyses(Context(make_deck(data, folder)))[0]
 
 
@@ -40,12 +38,7 @@ def test_mesh_files_agree_with_the_built_in_mesh(tmp_path, name, clockwise) -> N
     write_mesh(tmp_path / name, clockwise)
     found = from_file(name, tmp_path)
     data = wall(events=30, constant=[])
-    data["structure"] |= {
-        "width": 1.2,
-        "height": 0.9,
-        "openings": [],
-        "regions": [],
-    }
+    data["structure"] |= {"width": 1.2, "height": 0.9, "openings": [], "regions": []}
     data["analysis"][0]["mesh"] = {"lines_y": [0.225, 0.45, 0.675], "size": 0.2}
     built = run_deck(data)
     assert found.results["elements"] == built.results["elements"] == 24
@@ -56,9 +49,7 @@ def test_bad_mesh_files(tmp_path) -> None:
     write_mesh(tmp_path / "twice.vtu", extra=[("quad", np.array([[0, 5, 6, 1]]))])
     assert "stand twice" in from_file("twice.vtu", tmp_path).reason
     write_mesh(tmp_path / "bow.vtu", extra=[("quad", np.array([[0, 6, 5, 1]]))])
-    assert (
-        "without area" in from_file("bow.vtu", tmp_path).reason or "inverted" in from_file("bow.vtu", tmp_path).reason
-    )
+    assert "without area" in from_file("bow.vtu", tmp_path).reason or "inverted" in from_file("bow.vtu", tmp_path).reason
     write_mesh(tmp_path / "mixed.vtu", extra=[("triangle", np.array([[0, 5, 6]]))])
     assert "expected exactly one of" in from_file("mixed.vtu", tmp_path).reason
     (tmp_path / "noise.msh").write_text("no mesh at all")
@@ -75,9 +66,7 @@ def test_outline_from_a_drawing(tmp_path) -> None:
     space.add_lwpolyline([(1100, 700), (1900, 700), (1900, 1500), (1100, 1500)], close=True)
     drawing.saveas(tmp_path / "gable.dxf")
     data = wall(events=40)
-    data["structure"] = {
-        "kind": "panel", "outline": "gable.dxf", "thickness": 0.2,
-    }  # fmt: skip
+    data["structure"] = {"kind": "panel", "outline": "gable.dxf", "thickness": 0.2}
     data["analysis"][0] |= {
         "mesh": {"size": 0.15, "element": "T3", "pattern": "random"},
         "constant": [{"kind": "gravity"}],
@@ -181,11 +170,10 @@ def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
         other["material"] |= change
         found = run_deck(other)
         assert (found.status, words in found.reason) == ("refused", True), found.reason
-    for words, change in {
-        "other tensile laws": {"ripple": 0.1}, "other ways of cracking": {"shear_retention": 0.1}
-    }.items():  # fmt: skip
-        found = run_deck(wall(events=5, resume_from=str(out)) | {"analysis": [
-            wall(events=5, resume_from=str(out))["analysis"][0] | change]})  # fmt: skip
+    for words, change in {"other tensile laws": {"ripple": 0.1}, "other ways of cracking": {"shear_retention": 0.1}}.items():
+        found = run_deck(
+            wall(events=5, resume_from=str(out)) | {"analysis": [wall(events=5, resume_from=str(out))["analysis"][0] | change]}
+        )
         assert (found.status, words in found.reason) == ("refused", True), found.reason
 
 

@@ -40,9 +40,18 @@ kind = "rocking"
 """
 #: What stands for something of the reader's, by what the test has; none: a page that waits, a file or machine that is not here
 MEANT = {
-    "FOLDER": "decks", "DIR": "results/my", "A": "results/my", "B": "results/my", "KIND": "rocking", "FILE": "extrados:el-centro-1940",
-    "DECK": "my.toml", "ADDRESS": "", "results/a": "results/my", "results/b": "results/my", "PATH": "my.toml",
-}  # fmt: skip
+    "FOLDER": "decks",
+    "DIR": "results/my",
+    "A": "results/my",
+    "B": "results/my",
+    "KIND": "rocking",
+    "FILE": "extrados:el-centro-1940",
+    "DECK": "my.toml",
+    "ADDRESS": "",
+    "results/a": "results/my",
+    "results/b": "results/my",
+    "PATH": "my.toml",
+}
 AWAY = ("explore", "--scheduler", "--install-completion", "my-vault.toml", "--to compas", "--together")
 
 
@@ -139,15 +148,11 @@ def test_the_readme_shows_what_its_deck_prints(folder: Path) -> None:
 
 
 #: Commands of the pages that `test_pages_run_from_top_to_bottom` runs
-RUN_WITH_THEIR_PAGE = {
-    line for name in WHOLE if name != "guide" for line in commands(text_of(ROOT / "docs" / f"{name}.md"))
-}
+RUN_WITH_THEIR_PAGE = {line for name in WHOLE if name != "guide" for line in commands(text_of(ROOT / "docs" / f"{name}.md"))}
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize(
-    "line", [line for line in ALL if line not in RUN_WITH_THEIR_PAGE and not any(word in line for word in AWAY)]
-)
+@pytest.mark.parametrize("line", [line for line in ALL if line not in RUN_WITH_THEIR_PAGE and not any(word in line for word in AWAY)])
 def test_commands_of_the_docs_run(line: str, folder: Path) -> None:
     words = meant(line)
     if len(words) == 1 and words[0] in ("run", "check", "report", "compare", "assess"):

@@ -9,13 +9,7 @@ from scipy.integrate import solve_ivp
 import extrados
 from extrados.core.ground import Ground
 from extrados.core.rocking import ensemble, history
-from extrados.core.soft_base import (
-    SoftBase,
-    base_contact,
-    base_held,
-    soft_base_history,
-    soft_base_start,
-)
+from extrados.core.soft_base import SoftBase, base_contact, base_held, soft_base_history, soft_base_start
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.properties import Initial, Supports
 from extrados.model.structures.block import Block
@@ -58,9 +52,7 @@ def base_force(base: SoftBase, q: float, z: float, v: float, u: float) -> tuple[
         forces = share * pressure(np.array([left, right]))
         return float(forces.sum()), float(forces @ [left, right])
     cuts = [left, right]
-    for level, rise in (
-        (z, sine), (base.stiffness * z + base.damping * u, base.stiffness * sine + base.damping * cosine * v),
-    ):  # fmt: skip
+    for level, rise in ((z, sine), (base.stiffness * z + base.damping * u, base.stiffness * sine + base.damping * cosine * v)):
         if rise and left < -level / rise < right:
             cuts.append(-level / rise)
     cuts = np.sort(cuts)
@@ -79,16 +71,12 @@ def oracle(base: SoftBase, ground: Ground, end: float, times: np.ndarray, start)
     def rates(t, y):
         q, z, v, u = y
         edge = base.toe_right if q > 0.0 else -base.toe_left
-        place = np.array(
-            [[edge * np.sin(q) + base.height * np.cos(q), 0.0], [-base.height * np.sin(q), -1.0], [1.0, 0.0]]
-        )
+        place = np.array([[edge * np.sin(q) + base.height * np.cos(q), 0.0], [-base.height * np.sin(q), -1.0], [1.0, 0.0]])
         spin = np.array([(edge * np.cos(q) - base.height * np.sin(q)) * v * v, -base.height * np.cos(q) * v * v, 0.0])
         mass = np.diag([base.mass, base.mass, base.inertia])
         force, moment = base_force(base, q, z, v, u)
         k = t / ground.step
-        a = np.array(
-            [np.interp(k, np.arange(ground.samples.shape[1]), row, left=0.0, right=0.0) for row in ground.samples]
-        )
+        a = np.array([np.interp(k, np.arange(ground.samples.shape[1]), row, left=0.0, right=0.0) for row in ground.samples])
         load = base.mass * np.array([-a[0], -a[1] - GRAVITY, 0.0]) - mass @ spin
         pushed = np.array([-np.cos(q) * moment, -force])
         return [v, u, *np.linalg.solve(place.T @ mass @ place, place.T @ load + pushed)]
@@ -108,10 +96,12 @@ def oracle(base: SoftBase, ground: Ground, end: float, times: np.ndarray, start)
     [
         (WINKLER, 0.3, 4),
         (SPRINGS, 1.5, 5),
-        *(pytest.param(*case, marks=pytest.mark.verify)
-          for case in ((WINKLER, 0.0, 3), (WINKLER, 1.5, 5), (SPRINGS, 0.0, 3), (SPRINGS, 0.3, 4))),
+        *(
+            pytest.param(*case, marks=pytest.mark.verify)
+            for case in ((WINKLER, 0.0, 3), (WINKLER, 1.5, 5), (SPRINGS, 0.0, 3), (SPRINGS, 0.3, 4))
+        ),
     ],
-)  # fmt: skip
+)
 def test_rocks_as_an_integration_of_its_own(edges: bool, damping: float, seed: int) -> None:
     base = replace(block(1.0, 3.0, 2e7, damping, edges=edges), toe_left=0.4, toe_right=0.6)
     ground = shaking(seed, 2.6)
@@ -140,12 +130,7 @@ def test_full_contact_is_a_damped_oscillator() -> None:
     base = block(1.0, 2.0, 5e7, 0.2, linear=True)
     a = 0.05 * GRAVITY
     r = soft_base_history(
-        base,
-        Ground(samples=np.full((1, 3), -a), step=1.0),
-        1.0,
-        0.002,
-        tolerance=1e-12,
-        start=(0.0, sunk(base), 0.0, 0.0),
+        base, Ground(samples=np.full((1, 3), -a), step=1.0), 1.0, 0.002, tolerance=1e-12, start=(0.0, sunk(base), 0.0, 0.0)
     )
     around = 1.0 / 12.0  # second moment of the base over its depth
     inertia = base.inertia + base.mass * base.height**2
@@ -162,9 +147,7 @@ def test_full_contact_is_a_damped_oscillator() -> None:
 
 def test_statics_of_a_winkler_base() -> None:
     """Yim and Chopra 1984: after uplift M = W b (1 - 2/3 sqrt(theta_u/theta)), theta_u = W / (2 k b^2)."""
-    building = Building(
-        Block(kind="block", width=1.2, height=3.0, depth=0.7), supports=Supports(stiffness=4e7, foundation="winkler")
-    )
+    building = Building(Block(kind="block", width=1.2, height=3.0, depth=0.7), supports=Supports(stiffness=4e7, foundation="winkler"))
     model = soft_base_model(building, linear=True)
     b, k, weight = 0.6, 4e7 * 0.7, model.weight
     lift = weight / (2.0 * k * b**2)
@@ -178,17 +161,13 @@ def test_statics_of_a_winkler_base() -> None:
     best = (b * np.sqrt(lift) / (3.0 * 1.5)) ** (2.0 / 3.0)
     assert model.capacity(1) == pytest.approx(b / 1.5 * (1.0 - 2.0 / 3.0 * np.sqrt(lift / best)) - best, rel=1e-9)
     inertia = float(model.block.inertia[0]) + model.core.mass * 1.5**2
-    assert model.periods[0] == pytest.approx(
-        2.0 * np.pi * np.sqrt(inertia / (2.0 / 3.0 * k * b**3 - weight * 1.5)), rel=1e-9
-    )
+    assert model.periods[0] == pytest.approx(2.0 * np.pi * np.sqrt(inertia / (2.0 / 3.0 * k * b**3 - weight * 1.5)), rel=1e-9)
     assert model.periods[1] == pytest.approx(2.0 * np.pi * np.sqrt(model.core.mass / (2.0 * k * b)), rel=1e-9)
 
 
 def test_statics_of_two_springs() -> None:
     """One spring carries the weight from sin q = W/(2 b K) on, K of each: the block then turns about it."""
-    building = Building(
-        Block(kind="block", width=1.2, height=3.0), supports=Supports(stiffness=4e7, foundation="two-spring")
-    )
+    building = Building(Block(kind="block", width=1.2, height=3.0), supports=Supports(stiffness=4e7, foundation="two-spring"))
     model = soft_base_model(building)
     lift = np.arcsin(model.weight / (1.2 * 4e7 * 0.6))
     assert model.lifted(1) == pytest.approx(lift, rel=1e-9)
@@ -205,11 +184,7 @@ def test_unlike_edges_sink_unlike() -> None:
     assert model.rest < 0.0
     assert model.restoring(model.rest) == pytest.approx(0.0, abs=1e-6)
     still = soft_base_history(
-        model.core,
-        Ground(samples=np.zeros((1, 2)), step=0.5),
-        2.0,
-        0.1,
-        start=(model.rest, model.sinking(model.rest), 0, 0),
+        model.core, Ground(samples=np.zeros((1, 2)), step=0.5), 2.0, 0.1, start=(model.rest, model.sinking(model.rest), 0, 0)
     )
     assert still.rotation == pytest.approx(model.rest, abs=1e-10)
     assert still.outcome == "no-hinging"
@@ -226,9 +201,7 @@ def test_it_sinks_until_the_base_carries_its_weight(edges: bool, linear: bool) -
         sine, cosine = (q, 1.0) if linear else (np.sin(q), np.cos(q))
         assert moment == pytest.approx(cosine * found.moment - sine * base.height * base.mass * GRAVITY, abs=1e-9)
         near = 1e-6  # the moment is the slope of the energy
-        assert np.diff(base_held(base, [q - near, q + near])[1])[0] / (2 * near) == pytest.approx(
-            moment, rel=1e-5, abs=0.1
-        )
+        assert np.diff(base_held(base, [q - near, q + near])[1])[0] / (2 * near) == pytest.approx(moment, rel=1e-5, abs=0.1)
         assert energy < 0.0 or q
 
 
@@ -387,9 +360,11 @@ def test_what_it_leaves_out_is_refused(tables: dict, word: str, kind: str) -> No
 def test_the_turn_at_the_start_counts(ratio: float) -> None:
     """Of a block that is let go it is the greatest, to the last bit and not of the first step's end."""
     tables = {
-        "structure": BLOCK, "supports": {"stiffness": "50 MPa/m", "damping_ratio": 0.3}, "initial": {"rotation_ratio": ratio},
+        "structure": BLOCK,
+        "supports": {"stiffness": "50 MPa/m", "damping_ratio": 0.3},
+        "initial": {"rotation_ratio": ratio},
         "motion": {"kind": "sine-pulse", "amplitude": "0.001 g", "period": 0.2},
-    }  # fmt: skip
+    }
     alone = extrados.run({**tables, "analysis": {"kind": "rocking", "end_time": 2.0}})["rocking"]
     many = extrados.run({**tables, "analysis": {"kind": "fragility", "count": 1}})["fragility"]
     assert alone.peak_rotation_ratio == pytest.approx(0.5, rel=1e-12)
@@ -403,10 +378,21 @@ def test_fragility_and_curves_on_a_base_that_gives_way() -> None:
     """It falls under weaker motions than on rigid ground; its stiffness is uncertain; half cycles make the modes."""
     soft = {"stiffness": 6e7, "damping_ratio": 0.3}
     levels = {"kind": "fragility", "count": 16, "seed": 1, "levels": [0.6, 0.9, 1.3], "bootstrap": 0}
-    domain = {"kind": "failure-domain", "pulse": "sine", "durations": [1.0, 2.5], "amplitudes": 8, "accuracy": 0.01,
-              "at_amplitudes": ["0.5 g"]}  # fmt: skip
-    curves = {"kind": "failure-curves", "durations": [1.0, 1.5], "amplitudes": 8, "accuracy": 0.01,
-              "variants": [{"width": 1.2}, {"width": 1.4}]}  # fmt: skip
+    domain = {
+        "kind": "failure-domain",
+        "pulse": "sine",
+        "durations": [1.0, 2.5],
+        "amplitudes": 8,
+        "accuracy": 0.01,
+        "at_amplitudes": ["0.5 g"],
+    }
+    curves = {
+        "kind": "failure-curves",
+        "durations": [1.0, 1.5],
+        "amplitudes": 8,
+        "accuracy": 0.01,
+        "variants": [{"width": 1.2}, {"width": 1.4}],
+    }
     harmonic = {"kind": "harmonic-map", "frequencies": [0.7], "amplitudes": 4, "cycles": 3}
     run = extrados.run(
         {
@@ -435,9 +421,7 @@ def test_fragility_and_curves_on_a_base_that_gives_way() -> None:
     assert run.array("fragility-4", "history_rotation_2").max() < 2.5
 
 
-@pytest.mark.parametrize(
-    ("name", "word"), [("restitution", "stiffness"), ("density", "one rigid block"), ("damping_ratio", "stiffness")]
-)
+@pytest.mark.parametrize(("name", "word"), [("restitution", "stiffness"), ("density", "one rigid block"), ("damping_ratio", "stiffness")])
 def test_what_is_not_uncertain_of_it(name: str, word: str) -> None:
     """What impacts lose follows from the base; without dashpots nothing of them is uncertain."""
     analysis = {"kind": "fragility", "count": 4, "uncertain": {name: 0.1}}
@@ -456,15 +440,10 @@ def test_keys_of_the_base_are_asked_for_together() -> None:
 
 
 def test_start_and_linear_form_through_the_building() -> None:
-    building = Building(
-        Block(kind="block", width=1.0, height=3.0),
-        supports=Supports(stiffness=2e8),
-        initial=Initial(rotation_ratio=0.2),
-    )
+    building = Building(Block(kind="block", width=1.0, height=3.0), supports=Supports(stiffness=2e8), initial=Initial(rotation_ratio=0.2))
     assert soft_base_model(building, linear=True).core.linear
     run = extrados.run(
-        deck(BLOCK, initial={"rotation_ratio": -0.2})
-        | {"analysis": [{"kind": "rocking", "form": "linear", "end_time": 2.0}]}
+        deck(BLOCK, initial={"rotation_ratio": -0.2}) | {"analysis": [{"kind": "rocking", "form": "linear", "end_time": 2.0}]}
     )
     found = run["rocking"]
     assert run.array("rocking", "rotation")[0] == pytest.approx(-0.2 * found.critical_rotation_left_rad)

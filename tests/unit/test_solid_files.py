@@ -50,11 +50,7 @@ def test_blocks_that_share_corners_are_parted(sort: str) -> None:
 
 def tilt(folder, text: str, **keys: object) -> Result:
     (folder / "w.obj").write_text(text)
-    deck = {
-        "structure": {"kind": "blocks", "file": "w.obj", **keys},
-        "joints": {"friction": 0.65},
-        "material": {"density": 2000.0},
-    }
+    deck = {"structure": {"kind": "blocks", "file": "w.obj", **keys}, "joints": {"friction": 0.65}, "material": {"density": 2000.0}}
     deck["analysis"] = {"kind": "tilt", "direction": 90.0, "rose": 4, "friction_rule": "associated", "face_law": False}
     (result,) = run_analyses(Context(make_deck(deck, folder), threads=1))
     return result
@@ -96,8 +92,6 @@ def test_a_file_with_y_upward(tmp_path) -> None:
 
 def test_up_is_refused_of_plane_drawings() -> None:
     square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
-    deck = make_deck(
-        {"structure": {"kind": "blocks", "up": "y", "block": [{"points": square}]}, "analysis": {"kind": "tilt"}}
-    )
+    deck = make_deck({"structure": {"kind": "blocks", "up": "y", "block": [{"points": square}]}, "analysis": {"kind": "tilt"}})
     (found,) = run_analyses(Context(deck, threads=1))
     assert found.status == "refused" and "up belongs to" in found.reason

@@ -40,9 +40,7 @@ def run(structure: dict[str, Any], friction: Any = 0.7, **keys: Any) -> Result:
 
 
 def limit_of(structure: dict[str, Any], friction: Any = 0.7) -> SolidLimit:
-    building = make_deck(
-        {"structure": structure, "joints": {"friction": friction}, "analysis": {"kind": "tilt"}}
-    ).building
+    building = make_deck({"structure": structure, "joints": {"friction": friction}, "analysis": {"kind": "tilt"}}).building
     solids = building.solids()
     return SolidLimit(solids, building.friction(solids))
 
@@ -53,10 +51,14 @@ def pushed(limit: SolidLimit, direction: float = 0.0) -> Programme:
     return found
 
 
-@pytest.mark.parametrize(("name", "friction"), [
-    pytest.param(name, friction, marks=[pytest.mark.verify] if name == "wall with a door" and friction == 0.65 else [])
-    for name in PLANE for friction in (0.3, 0.65, "no-sliding")
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "friction"),
+    [
+        pytest.param(name, friction, marks=[pytest.mark.verify] if name == "wall with a door" and friction == 0.65 else [])
+        for name in PLANE
+        for friction in (0.3, 0.65, "no-sliding")
+    ],
+)
 def test_plane_structures_in_space_are_the_plane_ones(name: str, friction: Any) -> None:
     plane = run(PLANE[name], friction)
     if isinstance(plane.results, SelfWeight):
@@ -64,9 +66,7 @@ def test_plane_structures_in_space_are_the_plane_ones(name: str, friction: Any) 
         return
     space = run(PLANE[name], friction, direction=0.0, rose=4)
     assert space.results["collapse_acceleration_g"] == pytest.approx(plane.results["collapse_acceleration_g"], abs=1e-7)
-    assert space.results["collapse_acceleration_opposite_g"] == pytest.approx(
-        plane.results["collapse_acceleration_opposite_g"], abs=1e-7
-    )
+    assert space.results["collapse_acceleration_opposite_g"] == pytest.approx(plane.results["collapse_acceleration_opposite_g"], abs=1e-7)
     assert space.results["duality_gap"] < 1e-8
     assert space.results["weight_N"] == pytest.approx(plane.results["weight_N"], rel=1e-12)
 
@@ -115,14 +115,7 @@ def test_a_polygonal_column_turns_over_the_edge_that_its_resultant_meets(sides: 
 
 
 def test_a_free_wall_falls_out_of_its_plane_at_thickness_over_height() -> None:
-    wall = {
-        "kind": "wall",
-        "unit_length": 0.4,
-        "unit_height": 0.2,
-        "thickness": 0.2,
-        "height": 2.4,
-        "legs": [{"length": 2.4}],
-    }
+    wall = {"kind": "wall", "unit_length": 0.4, "unit_height": 0.2, "thickness": 0.2, "height": 2.4, "legs": [{"length": 2.4}]}
     assert pushed(limit_of(wall), 90.0).gamma == pytest.approx(0.2 / 2.4, abs=1e-7)
     corner = {**wall, "legs": [{"length": 2.4}, {"length": 2.0}]}
     held = pushed(limit_of(corner), 0.0)
@@ -135,10 +128,7 @@ def test_a_free_wall_falls_out_of_its_plane_at_thickness_over_height() -> None:
 
 def test_dowels_bear_their_shear() -> None:
     drums = {"kind": "column", "width": 1.0, "height": 1.0, "drums": 2, "section": "round", "sides": 20}
-    tables = {
-        "joints": {"friction": 0.2, "types": [{"joints": ["ground"], "friction": 5.0}]},
-        "analysis": {"kind": "tilt"},
-    }
+    tables = {"joints": {"friction": 0.2, "types": [{"joints": ["ground"], "friction": 5.0}]}, "analysis": {"kind": "tilt"}}
     found = {}
     for dowels in (None, 500.0, "unbroken"):
         structure = {**drums, "dowels": dowels} if dowels else drums
@@ -166,10 +156,13 @@ def resultants(solids: SolidAssembly, found: Programme) -> np.ndarray:
     return total
 
 
-@pytest.mark.parametrize(("structure", "direction"), [
-    ({"kind": "dome", "radius": 5, "thickness": 0.4, "rings": 5, "lunes": 10, "bond": "running"}, 20.0),
-    ({"kind": "cross-vault", "radius": 3, "thickness": 0.4, "embrace": 140, "voussoirs": 8, "stone_length": 1.0}, 70.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("structure", "direction"),
+    [
+        ({"kind": "dome", "radius": 5, "thickness": 0.4, "rings": 5, "lunes": 10, "bond": "running"}, 20.0),
+        ({"kind": "cross-vault", "radius": 3, "thickness": 0.4, "embrace": 140, "voussoirs": 8, "stone_length": 1.0}, 70.0),
+    ],
+)
 def test_both_certificates_by_hand(structure: dict[str, Any], direction: float) -> None:
     """Forces balance weight and push and lie in their cones; the motion opens contacts mu times as fast as they slide, and
     its virtual work gives the same push."""
@@ -206,11 +199,15 @@ def test_what_cannot_stand_is_proven() -> None:
 
 def test_a_block_out_over_its_base_falls() -> None:
     text = "\n".join(
-        f"o {name}\n" + "\n".join(f"v {x} {y} {z}" for z in (z0, z1) for x, y in ((x0, 0), (x1, 0), (x1, 1), (x0, 1)))
-        + "\n" + "\n".join("f " + " ".join(str(8 * k + i) for i in face) for face in (
-            (4, 3, 2, 1), (5, 6, 7, 8), (1, 2, 6, 5), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8)))
+        f"o {name}\n"
+        + "\n".join(f"v {x} {y} {z}" for z in (z0, z1) for x, y in ((x0, 0), (x1, 0), (x1, 1), (x0, 1)))
+        + "\n"
+        + "\n".join(
+            "f " + " ".join(str(8 * k + i) for i in face)
+            for face in ((4, 3, 2, 1), (5, 6, 7, 8), (1, 2, 6, 5), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8))
+        )
         for k, (name, x0, x1, z0, z1) in enumerate((("base", 0, 1, 0, 1), ("slab", 0.52, 1.52, 1, 1.3)))
-    )  # fmt: skip
+    )
     from extrados.model.geometry.solids.assembly import assemble
     from extrados.model.geometry.solids.meshes import read_obj, stones_of
 
@@ -242,13 +239,7 @@ def test_tilt_tells_refuses_and_draws(tmp_path) -> None:
     assert len(rose) == 8 and rose.min() == pytest.approx(r.least_acceleration_g, abs=1e-7)
     assert rose[::2] == pytest.approx(np.full(4, rose[0]), abs=1e-6)  # eight lunes: four directions are alike
     found.write(tmp_path / "out")
-    for name in (
-        "figures/tilt-mechanism.png",
-        "figures/tilt-rose.png",
-        "mechanism.glb",
-        "mechanism.pvd",
-        "mechanism/frame_0000.vtu",
-    ):
+    for name in ("figures/tilt-mechanism.png", "figures/tilt-rose.png", "mechanism.glb", "mechanism.pvd", "mechanism/frame_0000.vtu"):
         assert (tmp_path / "out" / name).stat().st_size > 100
     dome = {"kind": "dome", "radius": 5, "thickness": 0.5, "rings": 5, "lunes": 8}
     assert "cannot take fracture into account" in run(dome, fracture=True).reason

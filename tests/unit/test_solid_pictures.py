@@ -21,11 +21,7 @@ COLOURS = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 def faces(*bodies: Polyhedron) -> scene.Faces:
     start = np.cumsum([0, *(len(b.vertices) for b in bodies)])
     loops = [np.array(f) + k for b, k in zip(bodies, start[:-1].tolist(), strict=True) for f in b.faces]
-    return scene.Faces(
-        np.concatenate([b.vertices for b in bodies]),
-        loops,
-        np.repeat(range(len(bodies)), [len(b.faces) for b in bodies]),
-    )
+    return scene.Faces(np.concatenate([b.vertices for b in bodies]), loops, np.repeat(range(len(bodies)), [len(b.faces) for b in bodies]))
 
 
 def areas(image: np.ndarray, frame: tuple[float, float, float, float]) -> list[float]:
@@ -108,9 +104,7 @@ def test_vtu_series_is_read_by_others(tmp_path: Path) -> None:
     assert len(last.points) == 24 and sum(len(c.data) for c in last.cells) == 18
     rest = np.concatenate([b.vertices for b in BODIES])
     turn = rotations(np.array([[0.0, 0.4, 0.0]]))[0]
-    assert last.points[:16] == pytest.approx(
-        CENTRES[0] + [0.1, 0.2, 0.3] + (rest[:16] - CENTRES[0]) @ turn.T, abs=1e-12
-    )
+    assert last.points[:16] == pytest.approx(CENTRES[0] + [0.1, 0.2, 0.3] + (rest[:16] - CENTRES[0]) @ turn.T, abs=1e-12)
     assert last.point_data["displacement"][16:] == pytest.approx(np.zeros((8, 3)), abs=1e-15)
     assert (tmp_path / "mechanism.pvd").read_text().count("<DataSet") == 2
 

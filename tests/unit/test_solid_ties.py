@@ -73,24 +73,18 @@ def test_a_chain_over_a_block() -> None:
 def test_a_load_on_top(sways: bool) -> None:
     """A load on the middle of the top adds to the righting moment, and to the overturning one if it sways."""
     found = tilt(
-        {"kind": "column", "section": "round", "sides": 4, "width": 1.0, "height": 2.0, "drums": 1}, direction=0.0, rose=4,
-        load=[{"x": 0.0, "y": 0.0, "force": "20 kN", "sways": sways}],
-    ).results  # fmt: skip
-    bare = tilt(
         {"kind": "column", "section": "round", "sides": 4, "width": 1.0, "height": 2.0, "drums": 1},
         direction=0.0,
         rose=4,
+        load=[{"x": 0.0, "y": 0.0, "force": "20 kN", "sways": sways}],
     ).results
+    bare = tilt({"kind": "column", "section": "round", "sides": 4, "width": 1.0, "height": 2.0, "drums": 1}, direction=0.0, rose=4).results
     weight, load = bare.weight_N, 20e3
     overturns = weight * 1.0 + (load * 2.0 if sways else 0.0)
-    assert found.collapse_acceleration_g == pytest.approx(
-        bare.collapse_acceleration_g * (weight + load) / overturns, abs=1e-8
-    )
+    assert found.collapse_acceleration_g == pytest.approx(bare.collapse_acceleration_g * (weight + load) / overturns, abs=1e-8)
 
 
-def outside(
-    solids: SolidAssembly, mu: float, direction: float, pulls: list[tuple[int, np.ndarray, np.ndarray]], most: float
-) -> float:
+def outside(solids: SolidAssembly, mu: float, direction: float, pulls: list[tuple[int, np.ndarray, np.ndarray]], most: float) -> float:
     """Greatest acceleration [g] with one tension of 0 to `most` [N], whose forces of one are `pulls` (block, place, force):
     the programme of the forces, assembled corner by corner, in N and m about the origin."""
     columns, rows, values, cones, right = [], [], [], [], []
@@ -126,11 +120,7 @@ def outside(
     tie = sparse.csr_array(([-1.0, 1.0], ([0, 1], [count, count])), shape=(2, size))
     matrix = sparse.vstack([equilibrium, cone, tie]).tocsc()
     right = np.concatenate([-balance / scale, np.zeros(count), [0.0, most / scale]])
-    cones = [
-        clarabel.ZeroConeT(len(balance)),
-        *[clarabel.SecondOrderConeT(3)] * (count // 3),
-        clarabel.NonnegativeConeT(2),
-    ]
+    cones = [clarabel.ZeroConeT(len(balance)), *[clarabel.SecondOrderConeT(3)] * (count // 3), clarabel.NonnegativeConeT(2)]
     cost = np.zeros(size)
     cost[-1] = -1.0
     settings = clarabel.DefaultSettings()
@@ -173,15 +163,7 @@ def test_a_thin_dome_stands_by_its_hoop() -> None:
 
 def test_a_barrel_in_bond_by_the_programme_of_the_forces() -> None:
     """The barrel of cases/solid."""
-    structure = {
-        "kind": "arch",
-        "radius": 5.0,
-        "thickness": 0.8,
-        "embrace": 157.5,
-        "voussoirs": 14,
-        "depth": 3.0,
-        "stones_across": 3,
-    }
+    structure = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 157.5, "voussoirs": 14, "depth": 3.0, "stones_across": 3}
     solids = make_deck({"structure": structure, "analysis": {"kind": "tilt"}}).building.solids()
     assert pushed(SolidLimit(solids, 0.7)).gamma == pytest.approx(outside(solids, 0.7, 0.0, [], 0.0), abs=1e-6)
 
@@ -224,9 +206,8 @@ def test_a_tied_path_and_its_certificate() -> None:
     motion[limit.strands[0].blocks[0][0], 1] = live[limit.strands[0].blocks[0][0], 1] = 1.0
     dead[0, 2] = 1.0
     taken = certify_solids(
-        limit.assembly, limit.mu, dead, live, 0.0, np.zeros((len(limit.mu), 3)), np.empty((0, 2)), motion, limit.strands,
-        np.zeros(1),
-    )  # fmt: skip
+        limit.assembly, limit.mu, dead, live, 0.0, np.zeros((len(limit.mu), 3)), np.empty((0, 2)), motion, limit.strands, np.zeros(1)
+    )
     assert taken.zero_gap == pytest.approx(limit.strands[0].high)
 
 

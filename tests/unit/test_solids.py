@@ -83,9 +83,16 @@ def test_two_cubes_turned_on_each_other_share_an_octagon() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_contacts_turn_with_the_stones(seed: int) -> None:
-    wall = building({
-        "kind": "wall", "unit_length": 0.4, "unit_height": 0.2, "thickness": 0.2, "height": 1.0, "legs": [{"length": 1.6}, {"length": 1.0}],
-    }).solids()  # fmt: skip
+    wall = building(
+        {
+            "kind": "wall",
+            "unit_length": 0.4,
+            "unit_height": 0.2,
+            "thickness": 0.2,
+            "height": 1.0,
+            "legs": [{"length": 1.6}, {"length": 1.0}],
+        }
+    ).solids()
     rng = np.random.default_rng(seed)
     turn = Rotation.from_quat(rng.normal(size=4)).as_matrix()
     shift = rng.normal(size=3) * 3.0
@@ -93,15 +100,9 @@ def test_contacts_turn_with_the_stones(seed: int) -> None:
     found = touching(parts, wall.owner, 1e-6, 1e-5)
     stones = wall.b >= 0
     assert not found.overlaps
-    pairs = {
-        (a, b): (sum_area(p, n), n) for a, b, p, n in zip(found.a, found.b, found.polygon, found.normal, strict=True)
-    }
+    pairs = {(a, b): (sum_area(p, n), n) for a, b, p, n in zip(found.a, found.b, found.polygon, found.normal, strict=True)}
     known = dict(
-        zip(
-            zip(wall.a[stones], wall.b[stones], strict=True),
-            zip(wall.area[stones], wall.normal[stones], strict=True),
-            strict=True,
-        )
+        zip(zip(wall.a[stones], wall.b[stones], strict=True), zip(wall.area[stones], wall.normal[stones], strict=True), strict=True)
     )
     assert set(pairs) == set(known)
     for pair, (area, normal) in known.items():
@@ -130,18 +131,36 @@ SOLIDS: dict[str, dict[str, Any]] = {
     "cross-vault": {"kind": "cross-vault", "radius": 3, "thickness": 0.4, "embrace": 140, "voussoirs": 8, "stone_length": 0.8},
     "oblong vault": {"kind": "cross-vault", "radius": 3, "thickness": 0.4, "embrace": 150, "voussoirs": 8, "springers": 0, "oblong": 1.5},
     "barrel": {"kind": "arch", "radius": 3, "thickness": 0.5, "embrace": 150, "voussoirs": 9, "depth": 2, "stones_across": 3},
-    "skew barrel": {"kind": "arch", "radius": 3, "thickness": 0.5, "embrace": 150, "voussoirs": 9, "depth": 2, "stones_across": 2, "skew": 25},
+    "skew barrel": {
+        "kind": "arch",
+        "radius": 3,
+        "thickness": 0.5,
+        "embrace": 150,
+        "voussoirs": 9,
+        "depth": 2,
+        "stones_across": 2,
+        "skew": 25,
+    },
     "round column": {"kind": "column", "width": 1, "top_width": 0.8, "height": 5, "drums": 4, "section": "round"},
     "fluted column": {"kind": "column", "width": 1, "height": 5, "drums": 3, "section": "round", "sides": 20, "flute_depth": 0.04},
     "room": {
-        "kind": "wall", "unit_length": 0.4, "unit_height": 0.2, "thickness": 0.2, "height": 1.6, "closed": True,
+        "kind": "wall",
+        "unit_length": 0.4,
+        "unit_height": 0.2,
+        "thickness": 0.2,
+        "height": 1.6,
+        "closed": True,
         "legs": [{"length": 2.4, "openings": [{"x": [0.8, 1.4], "y": [0, 1.2]}]}, {"length": 2}, {"length": 2.4}, {"length": 2}],
     },
     "bent wall": {
-        "kind": "wall", "unit_length": 0.5, "unit_height": 0.25, "thickness": 0.2, "height": 1,
+        "kind": "wall",
+        "unit_length": 0.5,
+        "unit_height": 0.25,
+        "thickness": 0.2,
+        "height": 1,
         "legs": [{"length": 2}, {"length": 1.5, "turn": "right"}, {"length": 2, "turn": "left"}],
     },
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -170,21 +189,22 @@ def test_a_kind_is_a_sound_assembly(name: str) -> None:
 
 def test_a_dome_weighs_as_a_shell_in_the_end() -> None:
     shell = 2.0 / 3.0 * np.pi * (5.25**3 - 4.75**3) * 2000.0
-    off = [
-        building({**SOLIDS["dome"], "rings": n, "lunes": 2 * n}).solids().mass.sum() / shell - 1.0 for n in (4, 8, 16)
-    ]
-    assert (
-        abs(off[2]) < 3e-3
-        and off[1] / off[0] == pytest.approx(0.25, abs=0.06)
-        and off[2] / off[1] == pytest.approx(0.25, abs=0.06)
-    )
+    off = [building({**SOLIDS["dome"], "rings": n, "lunes": 2 * n}).solids().mass.sum() / shell - 1.0 for n in (4, 8, 16)]
+    assert abs(off[2]) < 3e-3 and off[1] / off[0] == pytest.approx(0.25, abs=0.06) and off[2] / off[1] == pytest.approx(0.25, abs=0.06)
 
 
 def test_corners_are_bonded() -> None:
     """At a corner the courses pass in turn: each quoin lies on one of the other leg, and half bond runs on both sides."""
-    made = building({
-        "kind": "wall", "unit_length": 0.4, "unit_height": 0.2, "thickness": 0.2, "height": 1.6, "legs": [{"length": 2.0}, {"length": 2.0}],
-    }).solids()  # fmt: skip
+    made = building(
+        {
+            "kind": "wall",
+            "unit_length": 0.4,
+            "unit_height": 0.2,
+            "thickness": 0.2,
+            "height": 1.6,
+            "legs": [{"length": 2.0}, {"length": 2.0}],
+        }
+    ).solids()
     crossing = [n for n in made.joint_names if " on " in n and "leg 1 on" in n and n.endswith("leg 2")]
     assert len(crossing) >= 3
     beds = made.area[(np.abs(made.normal[:, 2]) > 0.5) & (made.b >= 0)]
@@ -194,9 +214,9 @@ def test_corners_are_bonded() -> None:
 @pytest.mark.parametrize("lengths", [(3.0, 2.0), (2.37, 3.1), (2.4, 1.9, 2.6)])
 def test_head_joints_do_not_stand_above_each_other(lengths: tuple[float, ...]) -> None:
     """Whatever the lengths, from the corners on; where the units do not come out even a closer is cut."""
-    made = building({
-        "kind": "wall", "unit_length": 0.4, "unit_height": 0.2, "thickness": 0.2, "height": 1.0, "legs": [{"length": x} for x in lengths],
-    }).solids()  # fmt: skip
+    made = building(
+        {"kind": "wall", "unit_length": 0.4, "unit_height": 0.2, "thickness": 0.2, "height": 1.0, "legs": [{"length": x} for x in lengths]}
+    ).solids()
     upright = [j for j in range(len(made.a)) if abs(made.normal[j, 2]) < 0.5]
     middle = np.array([made.polygon[j].mean(axis=0) for j in upright])
     level = np.round(middle[:, 2] / 0.2 - 0.5).astype(int)
@@ -252,7 +272,7 @@ def test_every_stone_of_a_groin_vault_has_a_bed(given: dict[str, Any]) -> None:
         ({**SOLIDS["room"], "legs": SOLIDS["room"]["legs"][:3]}, "closed needs four legs"),
         ({**SOLIDS["bent wall"], "legs": [{"length": 0.3}, {"length": 2}]}, "less than two thicknesses"),
     ],
-)  # fmt: skip
+)
 def test_wrong_keys_are_told_in_words(structure: dict[str, Any], told: str) -> None:
     with pytest.raises(DeckError, match=told):
         building(structure)
@@ -269,13 +289,7 @@ def test_walls_that_do_not_fit_are_told() -> None:
 
 def test_kinds_in_space_refuse_what_looks_at_a_section() -> None:
     with pytest.raises(DeckError, match="rocking cannot analyse a structure of kind 'dome': it is no plane section"):
-        make_deck(
-            {
-                "structure": SOLIDS["dome"],
-                "motion": {"kind": "constant", "amplitude": "0.1 g"},
-                "analysis": {"kind": "rocking"},
-            }
-        )
+        make_deck({"structure": SOLIDS["dome"], "motion": {"kind": "constant", "amplitude": "0.1 g"}, "analysis": {"kind": "rocking"}})
     for name, words in (("skew barrel", "skew arch"), ("round column", "round drums")):
         with pytest.raises(NoView, match=words):
             building(SOLIDS[name]).blocks()
@@ -319,15 +333,13 @@ def compas(bodies: dict[str, Polyhedron], supports: tuple[str, ...] = ()) -> str
         vertex = {str(i): dict(zip("xyz", v.tolist(), strict=True)) for i, v in enumerate(body.vertices)}
         face = {str(i): [str(j) for j in f] for i, f in enumerate(body.faces)}
         nodes[str(k)] = {"block": {"data": {"vertex": vertex, "face": face}}, "is_support": name in supports}
-    return json.dumps(
-        {"dtype": "compas_assembly.datastructures/Assembly", "data": {"graph": {"data": {"node": nodes}}}}
-    )
+    return json.dumps({"dtype": "compas_assembly.datastructures/Assembly", "data": {"graph": {"data": {"node": nodes}}}})
 
 
 STACK = {
     "lower": prism(np.array([[0, 0], [2, 0.2], [1.8, 1.5], [-0.2, 1.2]]), 0.0, 1.0),
     "upper": hull(np.array([[0.2, 0.2, 1], [1.6, 0.3, 1], [1.5, 1.1, 1], [0.1, 1.0, 1], [0.4, 0.4, 2], [1.2, 0.5, 2.2], [0.6, 0.9, 2.1]])),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")
@@ -388,7 +400,10 @@ def test_what_is_wrong_with_a_file_is_told(folder: Path) -> None:
     pressed = {**STACK, "upper": STACK["upper"].moved(np.eye(3), np.array([0, 0, -5e-3]))}
     wrong = {
         "concave.obj": (obj({"ell": ell}), "ell is not convex: its hull has 16.7 % more volume; cut it into convex parts"),
-        "open.obj": (obj({"cube": Polyhedron(CUBE.vertices, CUBE.faces[1:])}), "cube is not closed: 4 edges do not have a face on either side"),
+        "open.obj": (
+            obj({"cube": Polyhedron(CUBE.vertices, CUBE.faces[1:])}),
+            "cube is not closed: 4 edges do not have a face on either side",
+        ),
         "short.obj": ("v 0 0\n", "short.obj:1: expected a vertex of three numbers"),
         "words.obj": ("v 0 0 0\nf 1 b 2\n", "words.obj:2: a face names vertices by numbers"),
         "none.obj": ("v 0 0 0\nf 1 2 3\n", "none.obj:2: a face names a vertex that is not there"),
@@ -397,7 +412,7 @@ def test_what_is_wrong_with_a_file_is_told(folder: Path) -> None:
         "nan.stl": (stl_text({"a": CUBE}).replace("vertex 0.0", "vertex nan", 1), "expected a vertex of three numbers"),
         "lifted.obj": (obj(lifted), "upper touches no other stone and no ground; its nearest face is 0.5 mm away: contact_tolerance"),
         "pressed.obj": (obj(pressed), "lower and upper overlap by 5 mm, more than 0.1 mm"),
-    }  # fmt: skip
+    }
     for name, (text, told) in wrong.items():
         (folder / name).write_text(text)
         with pytest.raises(BadGeometry) as refused:
@@ -411,10 +426,7 @@ def test_foundations_at_unlike_levels(folder: Path) -> None:
     (folder / "steps.obj").write_text(obj(steps))
     assert (of_file(folder, "steps.obj").b < 0).sum() == 1
     made = of_file(folder, "steps.obj", foundation_levels=[0.0, 1.0])
-    assert [n for n, b in zip(made.joint_names, made.b, strict=True) if b < 0] == [
-        "low on the ground",
-        "high on the ground",
-    ]
+    assert [n for n, b in zip(made.joint_names, made.b, strict=True) if b < 0] == ["low on the ground", "high on the ground"]
 
 
 def test_check_tells_and_draws_solids(folder: Path, tmp_path: Path) -> None:
@@ -423,7 +435,5 @@ def test_check_tells_and_draws_solids(folder: Path, tmp_path: Path) -> None:
     assert checked.complaints == [] and checked.solids is not None and len(checked.solids.a) == 2
     assert write_solids(checked.solids, tmp_path / "check").stat().st_size > 10_000
     deck = make_deck({"structure": {"kind": "blocks", "file": "pressed.obj"}, "analysis": {"kind": "tilt"}}, folder)
-    (folder / "pressed.obj").write_text(
-        obj({**STACK, "upper": STACK["upper"].moved(np.eye(3), np.array([0, 0, -5e-3]))})
-    )
+    (folder / "pressed.obj").write_text(obj({**STACK, "upper": STACK["upper"].moved(np.eye(3), np.array([0, 0, -5e-3]))}))
     assert "overlap by 5 mm" in check_building(deck).complaints[0]

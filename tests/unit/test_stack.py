@@ -14,9 +14,7 @@ from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
 
-def stack(
-    low: tuple[float, float], high: tuple[float, float], density: tuple[float, float] = (2000.0, 2000.0)
-) -> Stack:
+def stack(low: tuple[float, float], high: tuple[float, float], density: tuple[float, float] = (2000.0, 2000.0)) -> Stack:
     """Rectangles of width and height [m]."""
     mass = tuple(rho * b * h for rho, (b, h) in zip(density, (low, high), strict=True))
     inertia = tuple(m * (b * b + h * h) / 12.0 for m, (b, h) in zip(mass, (low, high), strict=True))
@@ -35,9 +33,7 @@ def residual(r) -> float:
 def test_a_slender_block_on_a_wide_one_rocks_alone() -> None:
     """Mode 3: impacts and rotations are those of one block."""
     found = stack_history(stack((4.0, 0.5), (0.6, 3.0)), shaking(1, 3.0), 8.0, 0.01, tolerance=1e-11)
-    alone = history(
-        Building(Block(kind="block", width=0.6, height=3.0)).rocker().body, shaking(1, 3.0), 8.0, 0.01, tolerance=1e-11
-    )
+    alone = history(Building(Block(kind="block", width=0.6, height=3.0)).rocker().body, shaking(1, 3.0), 8.0, 0.01, tolerance=1e-11)
     n = min(len(alone.time), len(found.time))
     assert found.impacts[1] == alone.impacts > 2
     assert (found.rotation[:, 0] == 0.0).all()
@@ -47,9 +43,7 @@ def test_a_slender_block_on_a_wide_one_rocks_alone() -> None:
 def test_a_tall_pair_of_wide_joint_rocks_as_one_block() -> None:
     """Mode 4: as one block of both heights, as long as the joint between stays shut."""
     found = stack_history(stack((1.0, 1.5), (1.0, 1.5)), shaking(2, 3.0), 8.0, 0.01, tolerance=1e-11)
-    alone = history(
-        Building(Block(kind="block", width=1.0, height=3.0)).rocker().body, shaking(2, 3.0), 8.0, 0.01, tolerance=1e-11
-    )
+    alone = history(Building(Block(kind="block", width=1.0, height=3.0)).rocker().body, shaking(2, 3.0), 8.0, 0.01, tolerance=1e-11)
     shut = np.flatnonzero(found.state[:, 1])
     n = min(len(found.time), len(alone.time), shut[0] if len(shut) else 10**6)
     assert np.abs(alone.rotation[:n]).max() > 0.02
@@ -72,9 +66,7 @@ def centres(s: Stack, pivots: np.ndarray, q: np.ndarray) -> np.ndarray:
 def test_both_open_contacts_move_by_the_principle_of_hamilton(pivots: tuple[int, int]) -> None:
     """Accelerations of a run against those of a Lagrangian made from the places of the centres by differences."""
     s = stack((1.2, 1.0), (0.7, 1.6), (1800.0, 2500.0))
-    start = np.array(
-        [0.08 * pivots[0], 0.08 * pivots[0] + 0.11 * pivots[1], 0.3 * pivots[0], 0.3 * pivots[0] + 0.2 * pivots[1]]
-    )
+    start = np.array([0.08 * pivots[0], 0.08 * pivots[0] + 0.11 * pivots[1], 0.3 * pivots[0], 0.3 * pivots[0] + 0.2 * pivots[1]])
     ground = np.array([1.3, -0.7])
     motion = Ground(samples=np.repeat(ground[:, None], 3, axis=1), step=1.0)
     r = stack_history(s, motion, 1e-3, 1e-3, start=start, tolerance=1e-12)
@@ -84,8 +76,7 @@ def test_both_open_contacts_move_by_the_principle_of_hamilton(pivots: tuple[int,
     def jacobian(at: np.ndarray) -> np.ndarray:
         """(2 centres, 2 axes, 2 rotations)"""
         return np.stack(
-            [(centres(s, pivots, at + step * e) - centres(s, pivots, at - step * e)) / (2.0 * step) for e in np.eye(2)],
-            axis=-1,
+            [(centres(s, pivots, at + step * e) - centres(s, pivots, at - step * e)) / (2.0 * step) for e in np.eye(2)], axis=-1
         )
 
     j = jacobian(q)
@@ -101,9 +92,7 @@ def test_both_open_contacts_move_by_the_principle_of_hamilton(pivots: tuple[int,
     assert (short.rate[-1] - v) / 1e-4 == pytest.approx(expected, rel=2e-3)
 
 
-def moreau(
-    s: Stack, pivots: tuple[int, int], q: tuple[float, float], v: np.ndarray, closing: tuple[bool, bool]
-) -> np.ndarray:
+def moreau(s: Stack, pivots: tuple[int, int], q: tuple[float, float], v: np.ndarray, closing: tuple[bool, bool]) -> np.ndarray:
     """Rates after the blow of mechanism_blow on the two blocks as bodies; a contact that stays open presses at its pivot."""
     step = 1e-6
     place = centres(s, pivots, np.array(q))
@@ -118,13 +107,7 @@ def moreau(
         for e, p, shut in zip((foot, bed), pivots, closing, strict=True)
     ]
     after = core_mechanism.inelastic_blow(
-        s.mass,
-        s.inertia,
-        place,
-        [[0, -1], [1, 0]],
-        ends,
-        [[[0.0, 1.0], [1.0, 0.0]], [up, along]],
-        np.column_stack([speed, -v]),
+        s.mass, s.inertia, place, [[0, -1], [1, 0]], ends, [[[0.0, 1.0], [1.0, 0.0]], [up, along]], np.column_stack([speed, -v])
     )
     return -after[:, 2]
 
@@ -174,13 +157,7 @@ def test_energy_never_grows_and_its_ledger_closes() -> None:
 
 
 def test_free_rocking_of_both_comes_to_rest() -> None:
-    r = stack_history(
-        stack((1.0, 1.0), (0.5, 1.5)),
-        Ground(samples=np.zeros((1, 2)), step=0.1),
-        30.0,
-        0.01,
-        start=(0.05, 0.12, 0.0, 0.0),
-    )
+    r = stack_history(stack((1.0, 1.0), (0.5, 1.5)), Ground(samples=np.zeros((1, 2)), step=0.1), 30.0, 0.01, start=(0.05, 0.12, 0.0, 0.0))
     assert r.settled and r.outcome == "recovery"
     assert residual(r) < 1e-6
     assert (r.rotation[-1] == 0.0).all()
@@ -206,12 +183,7 @@ def test_a_start_from_a_given_rotation_is_that_of_one_block() -> None:
     still = Ground(samples=np.zeros((1, 2)), step=0.1)
     one = history(r.body, still, 3.0, 0.01, tolerance=1e-11, start_rotation=r.start_rotation)
     two = stack_history(
-        stack((1.0, 2.0), (1.0, 1.0)),
-        still,
-        3.0,
-        0.01,
-        tolerance=1e-11,
-        start=(r.start_rotation, r.start_rotation, 0.0, 0.0),
+        stack((1.0, 2.0), (1.0, 1.0)), still, 3.0, 0.01, tolerance=1e-11, start=(r.start_rotation, r.start_rotation, 0.0, 0.0)
     )
     n = int(np.searchsorted(one.time, one.events[0][1]))
     assert two.rotation[:n, 0] == pytest.approx(one.rotation[:n], abs=1e-9)

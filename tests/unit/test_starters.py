@@ -14,9 +14,7 @@ from extrados.running.run import compute
 NEEDS = {"mesh": "meshio"}
 
 
-@pytest.mark.parametrize(
-    ("section", "kind"), [(section, kind) for section, there in kinds.TABLES.items() for kind in there]
-)
+@pytest.mark.parametrize(("section", "kind"), [(section, kind) for section, there in kinds.TABLES.items() for kind in there])
 def test_a_starter_runs_as_it_is(section: str, kind: str, tmp_path: Path) -> None:
     if kind in NEEDS:
         pytest.importorskip(NEEDS[kind])

@@ -19,34 +19,44 @@ from extrados.views.shell.options import ShellOptions
 
 FACADE = {
     "structure": {
-        "kind": "building", "storeys": [3.3, 3.3],
-        "walls": [{
-            "name": "front", "start": [0, 0], "end": [7, 0], "thickness": 0.3,
-            "openings": [
-                {"storey": 1, "x": [1.2, 2.2], "z": [0.0, 2.2]}, {"storey": 1, "x": [3.4, 4.6], "z": [0.9, 2.3]},
-                {"storey": 2, "x": [1.2, 2.2], "z": [0.9, 2.3]}, {"storey": 2, "x": [3.4, 4.6], "z": [0.9, 2.3]},
-            ],
-        }],
+        "kind": "building",
+        "storeys": [3.3, 3.3],
+        "walls": [
+            {
+                "name": "front",
+                "start": [0, 0],
+                "end": [7, 0],
+                "thickness": 0.3,
+                "openings": [
+                    {"storey": 1, "x": [1.2, 2.2], "z": [0.0, 2.2]},
+                    {"storey": 1, "x": [3.4, 4.6], "z": [0.9, 2.3]},
+                    {"storey": 2, "x": [1.2, 2.2], "z": [0.9, 2.3]},
+                    {"storey": 2, "x": [3.4, 4.6], "z": [0.9, 2.3]},
+                ],
+            }
+        ],
     },
     "material": {"density": 1800, "young": 1.7e9, "poisson": 0.0, "tensile_strength": 1e5, "fracture_energy": 50},
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")
 def facade():
     """A facade that loses equilibrium after its peak: multipliers run away to a thousand times it."""
     push = {
-        "kind": "pushover", "mesh": {"size": 0.4, "layers": 3}, "ripple": 0.2, "events": 8000, "directions": ["+", "-"],
+        "kind": "pushover",
+        "mesh": {"size": 0.4, "layers": 3},
+        "ripple": 0.2,
+        "events": 8000,
+        "directions": ["+", "-"],
         "without_equilibrium": "load-unload",
-    }  # fmt: skip
+    }
     return extrados.run({**FACADE, "analysis": [push]}).results[0]
 
 
 @pytest.mark.parametrize("prefix", ["", "minus_"])
 def test_no_result_rests_on_what_is_no_state(facade, prefix: str) -> None:
-    get = {
-        n: np.asarray(facade[f"{prefix}event_{n}"]) for n in ("load", "displacement", "state", "dissipated", "crack")
-    }
+    get = {n: np.asarray(facade[f"{prefix}event_{n}"]) for n in ("load", "displacement", "state", "dissipated", "crack")}
     r = facade.results if not prefix else facade.results.minus
     out, state = get["state"] == -1, get["state"] == 1
     size = 7.0
@@ -56,9 +66,7 @@ def test_no_result_rests_on_what_is_no_state(facade, prefix: str) -> None:
         assert np.abs(get[name][~out]).max() <= bound
     assert r.greatest_load_N == get["load"][state].max()
     # Energies: never negative, never falling, and no more than all cracks of the wall can take
-    assert (
-        get["dissipated"][0] >= 0.0 and (np.diff(get["dissipated"]) >= 0.0).all() and (np.diff(get["crack"]) >= 0).all()
-    )
+    assert get["dissipated"][0] >= 0.0 and (np.diff(get["dissipated"]) >= 0.0).all() and (np.diff(get["crack"]) >= 0).all()
     assert 0.0 < r.dissipated_energy_J < 50.0 * 0.3 * 7.0 * 6.6 / 0.4
 
 
@@ -112,17 +120,8 @@ def test_a_single_tooth_below_a_fraction_of_the_peak_is_no_fall() -> None:
 
 def test_a_push_ends_where_its_envelope_stays_below_the_fraction() -> None:
     """The facade in its weaker sense: the first state below 90 % of the peak so far does not end a run whose load goes on."""
-    keys = {
-        "kind": "pushover",
-        "mesh": {"size": 0.4, "layers": 3},
-        "ripple": 0.2,
-        "events": 8000,
-        "without_equilibrium": "load-unload",
-    }
-    whole, told = (
-        extrados.run({**FACADE, "analysis": [{**keys, "stop_fraction": fraction}]}).results[0]
-        for fraction in (0.0, 0.95)
-    )
+    keys = {"kind": "pushover", "mesh": {"size": 0.4, "layers": 3}, "ripple": 0.2, "events": 8000, "without_equilibrium": "load-unload"}
+    whole, told = (extrados.run({**FACADE, "analysis": [{**keys, "stop_fraction": fraction}]}).results[0] for fraction in (0.0, 0.95))
     load, way = (np.asarray(whole[f"event_{n}"]) for n in ("load", "displacement"))
     held, peak = np.asarray(whole["event_state"]) == 1, np.maximum.accumulate(whole["event_load"])
     ahead = np.maximum.accumulate(np.where(load == peak, way, 0.0))
@@ -167,9 +166,7 @@ def test_a_box_without_bed_joints_is_capped_by_coulombs_limit() -> None:
     verdict = r.judged(Demanded(0.1))
     assert verdict.outcome == "not-applicable" and verdict.bound == "upper" and verdict.demand is None
     assert verdict.capacity == pytest.approx(limit / weight, rel=1e-6) and len(verdict.violated) == 1
-    assert (
-        f"Sliding on {r.sliding_level}" in verdict.statement and "Coulomb" in found.answer and "at most" in found.answer
-    )
+    assert f"Sliding on {r.sliding_level}" in verdict.statement and "Coulomb" in found.answer and "at most" in found.answer
 
 
 def test_a_box_slides_on_its_sole_by_itself() -> None:
@@ -207,11 +204,12 @@ def test_friction_that_limits_a_push_is_among_its_assumptions() -> None:
 def test_what_cannot_slide_is_not_capped() -> None:
     found = extrados.run(
         {
-            "structure": {"kind": "building", "storeys": [3.0], "walls": WALLS}, "material": BRICK,
+            "structure": {"kind": "building", "storeys": [3.0], "walls": WALLS},
+            "material": BRICK,
             "joints": {"friction": "no-sliding"},
             "analysis": [{"kind": "pushover", "mesh": {"size": 0.7, "layers": 3}, "events": 50}],
         }
-    ).results[0]  # fmt: skip
+    ).results[0]
     r = found.results
     assert r.capacity_N == r.greatest_load_N and r.sliding_capacity_N is None and r.sliding is None
     assert r.judged(Demanded(0.1)).bound == "lower" and not r.judged(Demanded(0.1)).violated
@@ -235,18 +233,14 @@ def test_sliding_limits_of_storeys_and_of_bed_joints() -> None:
             rows = sliding_limits(model, building, options, core.report(0.0))
         assert [row.level for row in rows] == ["the base of storey 2", "bed joint low"]
         upper, low = rows
-        assert upper.normal_N == pytest.approx(2.0 * wall) and low.normal_N == pytest.approx(
-            5.0 * wall + floor, rel=1e-6
-        )
+        assert upper.normal_N == pytest.approx(2.0 * wall) and low.normal_N == pytest.approx(5.0 * wall + floor, rel=1e-6)
         assert upper.resistance_N == pytest.approx(0.4 * 2.0 * wall + 1e3 * 4.8)
         # the floor's mass is below the base of the storey on it
-        share = {
-            "mass": 2.0 * wall / (5.0 * wall + floor), "triangular": 8.0 * wall / (12.5 * wall + 3.0 * floor),
-        }[pattern]  # fmt: skip
+        share = {"mass": 2.0 * wall / (5.0 * wall + floor), "triangular": 8.0 * wall / (12.5 * wall + 3.0 * floor)}[pattern]
         assert low.shear_share == pytest.approx(1.0) and upper.shear_share == pytest.approx(share, rel=0.02)
     driven = Pushover(
         kind="pushover", mesh=ShellOptions(size=0.5, layers=3), drives=[{"wall": "a", "storey": 1}, {"wall": "a", "storey": 2}]
-    )  # fmt: skip
+    )
     model = build(building.shell(driven.mesh), driven)
     with model.open(driven, 1) as core:
         core.loads(model.constant, model.reference)

@@ -123,9 +123,7 @@ def test_first_collapse_fit_and_bands_are_those_of_the_profile_likelihood() -> N
     found = fit_first_collapse(x, seen)
     best = minimize(negative, [-0.7, -0.7], (seen,), "Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-12})
     assert (found.median, found.dispersion) == pytest.approx(tuple(np.exp(best.x)), rel=1e-6)
-    expected = 200 * np.diff(
-        norm.cdf(np.log([1e-300, *x, 1e300]) / found.dispersion - np.log(found.median) / found.dispersion)
-    )
+    expected = 200 * np.diff(norm.cdf(np.log([1e-300, *x, 1e300]) / found.dispersion - np.log(found.median) / found.dispersion))
     hits = np.bincount(np.where(over.any(axis=1), over.argmax(axis=1), 4), minlength=5)
     assert found.freedom == 2 and found.deviance == pytest.approx(2 * np.sum(hits * np.log(hits / expected)), rel=1e-6)
     region = likelihood.region(seen, found, 0.95)
@@ -133,8 +131,9 @@ def test_first_collapse_fit_and_bands_are_those_of_the_profile_likelihood() -> N
     def excess(quantile: float, at: float) -> float:
         """Twice the likelihood lost where the quantile lies at a value, the dispersion free, less 3.84."""
         z = norm.ppf(quantile)
-        free = minimize_scalar(lambda s: negative(np.array([at - z * np.exp(s), s]), seen), bounds=(-2.5, 1.0),
-                               method="bounded", options={"xatol": 1e-11})  # fmt: skip
+        free = minimize_scalar(
+            lambda s: negative(np.array([at - z * np.exp(s), s]), seen), bounds=(-2.5, 1.0), method="bounded", options={"xatol": 1e-11}
+        )
         return 2.0 * (free.fun - best.fun) - 3.841458820694124
 
     at = np.log(found.median)
@@ -152,9 +151,7 @@ def test_levels_without_a_result_widen_the_interval() -> None:
     over = np.array([[0, 0, 1], [0, 0, 1], [0, 0, 0], [1, 0, 1], [0, 0, 0]], bool)
     valid = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 0], [1, 1, 1], [0, 0, 0]], bool)
     seen = first_collapses(x, over, valid)
-    assert sorted(zip(seen.low, seen.high, seen.weight, strict=True)) == [
-        (0.0, 0.2, 1), (0.2, 0.8, 1), (0.4, 0.8, 1), (0.4, np.inf, 1),
-    ]  # fmt: skip
+    assert sorted(zip(seen.low, seen.high, seen.weight, strict=True)) == [(0.0, 0.2, 1), (0.2, 0.8, 1), (0.4, 0.8, 1), (0.4, np.inf, 1)]
 
 
 def test_bootstrap_covers_and_repeats() -> None:

@@ -44,9 +44,7 @@ def sample() -> Result:
 HEAD = {"extrados": {"version": "0"}, "deck": {"path": "d", "sha256": "", "title": "", "resolved": {}}}
 
 
-def test_nothing_is_left_beside_where_the_disk_fails_after_the_exchange(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_is_left_beside_where_the_disk_fails_after_the_exchange(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out, sync = tmp_path / "run", store._sync
     with store.NewFolder(out) as folder:
         store.write(folder, HEAD, [sample()])
@@ -58,9 +56,7 @@ def test_nothing_is_left_beside_where_the_disk_fails_after_the_exchange(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems exchange folders in two steps")
-def test_results_are_there_at_every_moment_of_their_replacement(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_results_are_there_at_every_moment_of_their_replacement(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Old or new, whenever the run is killed: no rename takes the folder away before the next one is in its place."""
     out, rename = tmp_path / "run", Path.rename
 
@@ -84,18 +80,11 @@ def test_round_trip(tmp_path) -> None:
     with store.NewFolder(out) as folder:
         store.write(folder, HEAD, [sample(), sample()])
     run = store.read(out)
-    assert (
-        run["rocking-spectrum"]["peak_ground_acceleration_g"]
-        == run["rocking-spectrum"].peak_ground_acceleration_g
-        == 0.37
-    )
+    assert run["rocking-spectrum"]["peak_ground_acceleration_g"] == run["rocking-spectrum"].peak_ground_acceleration_g == 0.37
     assert run["rocking-spectrum-2"].longest_overturning_period_s == [None]
     assert run["rocking-spectrum-2"].size_m == [0.0, 1.0, 2.0]
     assert np.array_equal(run.array("rocking-spectrum", "x"), sample().arrays["x"].data)
-    assert (
-        run.arrays["rocking-spectrum"]["x"].dims == ("time", "joint")
-        and run.arrays["rocking-spectrum"]["x"].unit == "m"
-    )
+    assert run.arrays["rocking-spectrum"]["x"].dims == ("time", "joint") and run.arrays["rocking-spectrum"]["x"].unit == "m"
     rows = (out / "tilt.csv").read_text().splitlines()
     assert rows[0] == "t [s],w" and rows[1] == "1e-308,'=1+1" and float(rows[2].split(",")[0]) == 0.1 + 0.2
     assert (out / "tilt-2.csv").exists()
@@ -161,17 +150,14 @@ CHANGES = {
     "a link to a folder": lambda run: (run / "mine").symlink_to("/etc"),
     "a file in the place of its list": lambda run: (run / ".written.json").write_text("mine"),
     "a damaged list": lambda run: (run / ".written.json").write_bytes((run / ".written.json").read_bytes()[:100]),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module")
 def with_figures(tmp_path_factory) -> Path:
     """The folder of a whole run, to be copied."""
     out = tmp_path_factory.mktemp("whole") / "run"
-    deck = {
-        "structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 7},
-        "analysis": {"kind": "tilt"},
-    }
+    deck = {"structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 7}, "analysis": {"kind": "tilt"}}
     extrados.run(deck, out, figures=True)
     return out
 
@@ -286,7 +272,15 @@ def test_damage_is_seen(tmp_path) -> None:
         store.read(tmp_path)
 
 
-@pytest.mark.parametrize("limit", [pytest.param(0, marks=pytest.mark.verify), 1000, pytest.param(20_000, marks=pytest.mark.verify), pytest.param(100_000, marks=pytest.mark.verify)])  # fmt: skip
+@pytest.mark.parametrize(
+    "limit",
+    [
+        pytest.param(0, marks=pytest.mark.verify),
+        1000,
+        pytest.param(20_000, marks=pytest.mark.verify),
+        pytest.param(100_000, marks=pytest.mark.verify),
+    ],
+)
 def test_full_disk(tmp_path, limit) -> None:
     """Writes that fail end as one message and exit code 3; nothing half-written stays under the final name."""
     deck = tmp_path / "d.toml"
@@ -377,9 +371,7 @@ def test_results_of_another_version_are_told(key, value, words, tmp_path, with_f
         ("é" * 101, "more than 200 bytes"),
     ],
 )
-def test_a_place_for_no_results_is_refused_before_a_long_run(
-    out: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_place_for_no_results_is_refused_before_a_long_run(out: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(store.StoreError, match=words):
         store.prepare(Path(out))

@@ -65,9 +65,14 @@ def test_the_order_of_the_ranking() -> None:
     """Collapse that is proven, no answer, no verdict, the least margins, what stands by a margin that is not known."""
     nan = float("nan")
     worst_first = [
-        ("cannot stand", 0.0, "ok"), ("", nan, "failed"), ("open", nan, "ok"), ("open", 0.4, "ok"), ("depends", 0.9, "ok"),
-        ("stands under all", 1.4, "ok"), ("stands under all", nan, "ok"),
-    ]  # fmt: skip
+        ("cannot stand", 0.0, "ok"),
+        ("", nan, "failed"),
+        ("open", nan, "ok"),
+        ("open", 0.4, "ok"),
+        ("depends", 0.9, "ok"),
+        ("stands under all", 1.4, "ok"),
+        ("stands under all", nan, "ok"),
+    ]
     rows = [survey.Assessed("", overall, margin, "", status, "", Path()) for overall, margin, status in worst_first]
     orders = [row.order for row in rows]
     assert orders == sorted(orders) and orders[0] < orders[1] and orders[5] < orders[6]
@@ -101,9 +106,7 @@ def test_it_goes_on_where_it_was_stopped(folder: Path, tmp_path: Path, monkeypat
     monkeypatch.setattr(survey.SurveyJob, "_one", stopped)
     assert len(survey.assess_folder(folder, tmp_path / "out", figures=False)) == 1
     again: list[str] = []
-    monkeypatch.setattr(
-        survey.SurveyJob, "_one", lambda job, k, threads: (again.append(job.names[k]), one(job, k, threads))[1]
-    )
+    monkeypatch.setattr(survey.SurveyJob, "_one", lambda job, k, threads: (again.append(job.names[k]), one(job, k, threads))[1])
     rows = survey.assess_folder(folder, tmp_path / "out", resume=True, figures=False)
     assert len(rows) == 3 and not set(done) & set(again), "the building that was done is not computed anew"
 
@@ -126,9 +129,7 @@ def test_a_cluster_gives_the_same_ranking(cluster, folder: Path, tmp_path: Path)
     address, _ = cluster
     apart = survey.assess_folder(folder, tmp_path / "a", scheduler=address, figures=False)
     here = survey.assess_folder(folder, tmp_path / "b", figures=False)
-    assert [(r.building, r.overall, r.least_margin) for r in apart] == [
-        (r.building, r.overall, r.least_margin) for r in here
-    ]
+    assert [(r.building, r.overall, r.least_margin) for r in apart] == [(r.building, r.overall, r.least_margin) for r in here]
     assert (tmp_path / "a" / "ranking.csv").read_bytes() == (tmp_path / "b" / "ranking.csv").read_bytes()
     for row in apart:
         assert extrados.load(row.folder)["assess"].statement == row.statement, "written by a worker"
@@ -160,9 +161,7 @@ def test_a_wrong_deck_does_not_stop_the_others(folder: Path, tmp_path: Path) -> 
     assert done.exit_code == 3 and "wrong deck" in done.output and "w2.0" in done.output
 
 
-def test_a_fault_in_one_building_does_not_stop_the_others(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_fault_in_one_building_does_not_stop_the_others(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(context: Context) -> Run:
         if context.deck.path == "w1.2.toml":
             raise ZeroDivisionError("planted")
@@ -176,8 +175,11 @@ def test_a_fault_in_one_building_does_not_stop_the_others(
 
 def test_what_changed_between_two_runs() -> None:
     def ran(width: float) -> Run:
-        deck = {"structure": {"kind": "block", "width": width, "height": 5.0}, "motion": {"kind": "constant", "amplitude": "0.22 g"},
-                "analysis": {"kind": "tilt"}}  # fmt: skip
+        deck = {
+            "structure": {"kind": "block", "width": width, "height": 5.0},
+            "motion": {"kind": "constant", "amplitude": "0.22 g"},
+            "analysis": {"kind": "tilt"},
+        }
         return compute(Context(make_deck(deck)))
 
     same = compare(ran(1.0), ran(1.0))
@@ -198,20 +200,12 @@ def test_what_changed_between_two_runs() -> None:
 
 def test_what_changed_of_an_assessment_is_told_by_names() -> None:
     """Strategies and reasons by their names, whatever their place in the list; what follows from verdicts is not told again."""
-    old = {
-        "verdicts": [{"strategy": "tilt", "margin": 0.5}, {"strategy": "dem", "margin": None}],
-        "agreement": {"tilt": {"dem": "open"}},
-    }
-    new = {
-        "verdicts": [{"strategy": "dem", "margin": None}, {"strategy": "tilt", "margin": 0.8}],
-        "agreement": {"tilt": {"dem": "agree"}},
-    }
+    old = {"verdicts": [{"strategy": "tilt", "margin": 0.5}, {"strategy": "dem", "margin": None}], "agreement": {"tilt": {"dem": "open"}}}
+    new = {"verdicts": [{"strategy": "dem", "margin": None}, {"strategy": "tilt", "margin": 0.8}], "agreement": {"tilt": {"dem": "agree"}}}
     (only,) = changes(flat(old), flat(new), 0.0)
     assert (only.key, only.ratio) == ("verdicts.tilt.margin", pytest.approx(1.6))
     twice = {"rows": [{"name": "a", "n": 1}, {"name": "a", "n": 2}]}
-    assert set(flat(twice)) == {"rows.0.name", "rows.0.n", "rows.1.name", "rows.1.n"}, (
-        "names that stand twice name nothing"
-    )
+    assert set(flat(twice)) == {"rows.0.name", "rows.0.n", "rows.1.name", "rows.1.n"}, "names that stand twice name nothing"
 
 
 def test_on_the_command_line(folder: Path, tmp_path: Path) -> None:

@@ -55,7 +55,7 @@ def hidden(document: Any, space: Any) -> None:
 HIDDEN = (
     "not read, since the drawing does not show it: 1 of layer '0' (reference to another drawing), 7 of layer 'OLD' (frozen), "
     "4 of layer 'SKETCH' (off), 5 of layer 'STONE' (invisible)"
-)  # fmt: skip
+)
 
 
 def test_what_a_drawing_does_not_show_is_no_masonry(tmp_path: Path) -> None:
@@ -104,10 +104,14 @@ def test_hidden_ground_and_an_outline_with_a_hidden_opening(tmp_path: Path) -> N
     path = sketch(tmp_path / "panel.dxf", draw)
     drawing, _ = Blocks(kind="blocks", file=path.name)._drawing(tmp_path)
     assert len(drawing.blocks) == 1 and drawing.ground is None
-    deck = make_deck({
-        "structure": {"kind": "panel", "outline": path.name, "thickness": 0.3}, "material": {"young": 1e9},
-        "analysis": {"kind": "sla", "mesh": {"element": "T3", "size": 0.5}},
-    }, tmp_path)  # fmt: skip
+    deck = make_deck(
+        {
+            "structure": {"kind": "panel", "outline": path.name, "thickness": 0.3},
+            "material": {"young": 1e9},
+            "analysis": {"kind": "sla", "mesh": {"element": "T3", "size": 0.5}},
+        },
+        tmp_path,
+    )
     mesh = deck.building.mesh(deck.analyses[0].mesh)
     assert sum(element_areas(mesh.xy, g.kind, g.connect).sum() for g in mesh.groups) == pytest.approx(12.0)
     assert any("1 of layer 'GROUND' (frozen), 1 of layer 'OLD' (off)" in w for w in mesh.warnings)

@@ -26,10 +26,18 @@ ezdxf = pytest.importorskip("ezdxf")
 
 def test_net_of_loose_lines() -> None:
     """Ends that nearly meet, stand on a line, cross or lead nowhere."""
-    lines = np.array([
-        [0, 0, 2, 0.0005], [2, 0, 2, 1], [2, 1, 0, 1], [0, 1, 0, 0], [1, 0.0003, 1, 0.9996], [0.5, -0.5, 0.5, 1.5],
-        [3, 3, 4, 3], [1.5, 0, 1.5, 0.98],
-    ])  # fmt: skip
+    lines = np.array(
+        [
+            [0, 0, 2, 0.0005],
+            [2, 0, 2, 1],
+            [2, 1, 0, 1],
+            [0, 1, 0, 0],
+            [1, 0.0003, 1, 0.9996],
+            [0.5, -0.5, 0.5, 1.5],
+            [3, 3, 4, 3],
+            [1.5, 0, 1.5, 0.98],
+        ]
+    )
     net = net_of(lines, 1e-3, 0.1)
     areas = sorted(round(signed_area(f), 2) for f in net.faces)
     assert areas == [0.5, 0.5, 1.0]
@@ -104,9 +112,7 @@ def test_references_to_blocks_are_exploded(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("grid", [False, True])
-def test_references_to_blocks_are_counted_before_they_are_put_in_their_places(
-    tmp_path: Path, monkeypatch, grid
-) -> None:
+def test_references_to_blocks_are_counted_before_they_are_put_in_their_places(tmp_path: Path, monkeypatch, grid) -> None:
     """30^5 lines or a grid of 30,000 x 30,000 took more than 45 s before they were found to be too many."""
 
     def draw(document: Any, space: Any) -> None:
@@ -121,9 +127,7 @@ def test_references_to_blocks_are_counted_before_they_are_put_in_their_places(
             space.add_blockref("B4", (0, 0))
 
     sketch(tmp_path / "many.dxf", draw)
-    monkeypatch.setattr(
-        "ezdxf.entities.Insert.virtual_entities", lambda *_: pytest.fail("they were put in their places")
-    )
+    monkeypatch.setattr("ezdxf.entities.Insert.virtual_entities", lambda *_: pytest.fail("they were put in their places"))
     assert "more than 200,000 entities, those of its references" in run({"file": "many.dxf"}, tmp_path).reason
 
 
@@ -137,17 +141,22 @@ def test_layers_for_material_friction_and_supports(tmp_path: Path) -> None:
 
     path = sketch(tmp_path / "layers.dxf", draw)
     structure = {
-        "kind": "blocks", "file": path.name,
+        "kind": "blocks",
+        "file": path.name,
         "layer": [
-            {"name": "brick", "material": "brick"}, {"name": "FELT", "role": "joints"}, {"name": "ROCK", "role": "ground"},
+            {"name": "brick", "material": "brick"},
+            {"name": "FELT", "role": "joints"},
+            {"name": "ROCK", "role": "ground"},
             {"name": "OTHER", "role": "left-out"},
         ],
-    }  # fmt: skip
+    }
     data = {
-        "structure": structure, "materials": {"brick": {"density": 1000.0}}, "material": {"density": 2500.0},
+        "structure": structure,
+        "materials": {"brick": {"density": 1000.0}},
+        "material": {"density": 2500.0},
         "joints": {"friction": 0.8, "types": [{"joints": ["FELT"], "friction": 0.3}, {"joints": ["BRICK"], "friction": 0.6}]},
         "analysis": {"kind": "tilt"},
-    }  # fmt: skip
+    }
     deck = make_deck(data, tmp_path)
     assembly = deck.building.blocks()
     assert assembly.mass.tolist() == [2500.0, 1000.0, 1000.0]
@@ -164,10 +173,7 @@ def test_layers_for_material_friction_and_supports(tmp_path: Path) -> None:
     assert deck.building.rigid().mass.sum() == pytest.approx(4500.0)
     with pytest.raises(DeckError, match="unknown material 'brick'"):
         make_deck({**data, "materials": {}}, tmp_path)
-    for change, words in (
-        ({"name": "NONE"}, "no layer 'NONE'"),
-        ({"name": "OTHER", "role": "joints"}, "mark no joint"),
-    ):
+    for change, words in (({"name": "NONE"}, "no layer 'NONE'"), ({"name": "OTHER", "role": "joints"}, "mark no joint")):
         wrong = make_deck({**data, "structure": {**structure, "layer": [*structure["layer"][:3], change]}}, tmp_path)
         assert words in run_analyses(Context(wrong, threads=1))[0].reason
 
@@ -198,9 +204,7 @@ def test_foundations_at_unlike_levels() -> None:
     same = run({"block": portal, "ground": [[0, 0, 1, 0], [3, 1, 4, 1]]})
     assert found["collapse_acceleration_g"] == pytest.approx(same["collapse_acceleration_g"], rel=1e-9)
     wrong = run({"block": portal, "foundation_levels": [0.5]})
-    assert (
-        wrong.status == "refused" and "no stone has a level sole at 0.5 m; there are soles at 0, 1, 3 m" in wrong.reason
-    )
+    assert wrong.status == "refused" and "no stone has a level sole at 0.5 m; there are soles at 0, 1, 3 m" in wrong.reason
 
 
 # --- assemblies of COMPAS
@@ -229,9 +233,7 @@ def compas(old: bool = False, axis: int = 1, skew: float = 0.0) -> dict[str, Any
         inner = {"value": {"data": data, "datatype": sort}} if old else {"data": data}
         return {"dtype": f"compas_assembly.datastructures/{sort}", **inner}
 
-    nodes = {
-        str(k): {"block": wrapped("Block", mesh(outline)), "is_support": k >= 7} for k, outline in enumerate(outlines)
-    }
+    nodes = {str(k): {"block": wrapped("Block", mesh(outline)), "is_support": k >= 7} for k, outline in enumerate(outlines)}
     if old:
         return wrapped("Assembly", {"node": nodes, "edge": {}})
     return wrapped("Assembly", {"graph": {"dtype": "compas.datastructures/Graph", "data": {"node": nodes, "edge": {}}}})

@@ -81,22 +81,25 @@ def test_random_surveys_give_a_band() -> None:
     assert small["high_collapse_acceleration_g"] - small["low_collapse_acceleration_g"] < 0.02 * (high - low)
     # Without one given it is the contact tolerance; other structures must be told.
     assert run({"block": block}, kind="imperfections", count=10)["deviation_m"] == 1e-4
-    arch = make_deck({
-        "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 9},
-        "analysis": {"kind": "imperfections"},
-    })  # fmt: skip
-    assert "give the deviation" in run_analyses(Context(arch, threads=1))[0].reason
-    assert (
-        "a quarter of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
+    arch = make_deck(
+        {
+            "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 9},
+            "analysis": {"kind": "imperfections"},
+        }
     )
+    assert "give the deviation" in run_analyses(Context(arch, threads=1))[0].reason
+    assert "a quarter of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
 
 
 def test_surveys_that_cannot_stand_belong_to_the_band() -> None:
     """An arch near its least thickness: some surveys fall, and count as nothing borne."""
-    arch = make_deck({
-        "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.09, "embrace": 180.0, "voussoirs": 36},
-        "joints": {"friction": "no-sliding"}, "analysis": {"kind": "imperfections", "deviation": "60 mm", "count": 60},
-    })  # fmt: skip
+    arch = make_deck(
+        {
+            "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.09, "embrace": 180.0, "voussoirs": 36},
+            "joints": {"friction": "no-sliding"},
+            "analysis": {"kind": "imperfections", "deviation": "60 mm", "count": 60},
+        }
+    )
     found = run_analyses(Context(arch, threads=1))[0]
     assert 0 < found["cannot_stand"] < 60 and found["least_collapse_acceleration_g"] == 0.0
     assert found["cannot_stand"] == int(np.isnan(found["gamma"]).any(axis=1).sum())

@@ -75,10 +75,11 @@ def test_the_drawing_of_the_church_is_what_its_script_draws(tmp_path: Path) -> N
         sys.path.remove(str(ROOT / "tools"))
     assert draw_church.draw(tmp_path / "church.dxf") == 125
     shipped, drawn = (
-        Blocks(kind="blocks", file="church.dxf", origin=[431250.0, 5062480.0], join_tolerance=8e-3, contact_tolerance=6e-3)
-        .assembly(2300.0, folder)
+        Blocks(kind="blocks", file="church.dxf", origin=[431250.0, 5062480.0], join_tolerance=8e-3, contact_tolerance=6e-3).assembly(
+            2300.0, folder
+        )
         for folder in (CHURCH.parent, tmp_path)
-    )  # fmt: skip
+    )
     assert shipped.p == pytest.approx(drawn.p, abs=1e-9) and shipped.mass == pytest.approx(drawn.mass, rel=1e-9)
 
 
@@ -91,9 +92,7 @@ def test_check_lists_and_draws_what_run_refuses(tmp_path: Path) -> None:
     assert (tmp_path / "seen" / "geometry.png").stat().st_size > 10_000
     with (tmp_path / "seen" / "geometry.csv").open() as stream:
         listed = list(csv.DictReader(stream))
-    assert [r["status"] for r in listed] == sorted(
-        (r["status"] for r in listed), key=["overlap", "open", "closed"].index
-    )
+    assert [r["status"] for r in listed] == sorted((r["status"] for r in listed), key=["overlap", "open", "closed"].index)
     deepest = max(float(r["depth_mm"]) for r in listed)
     assert 4.0 < deepest < 6.0
     good = CliRunner().invoke(app, ["check", str(CHURCH), "--out", str(tmp_path / "good")])
@@ -143,9 +142,7 @@ def test_check_leaves_the_files_of_others(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, words)
     assert found.exit_code == 0 and "geometry-2.csv" in found.output
     assert (out / "geometry.csv").read_text().endswith("a remark of mine\n")
-    assert sorted(p.name for p in out.glob("geometry*")) == [
-        "geometry-2.csv", "geometry.csv", "geometry.png", "geometry.svg",
-    ]  # fmt: skip
+    assert sorted(p.name for p in out.glob("geometry*")) == ["geometry-2.csv", "geometry.csv", "geometry.png", "geometry.svg"]
     assert sorted(p.name for p in tmp_path.iterdir()) == ["mine"]
 
 
@@ -161,11 +158,7 @@ def test_check_makes_buildings_that_are_no_surveys_too(tmp_path: Path) -> None:
 
 
 def test_joint_types_of_layers_reach_every_strategy() -> None:
-    blocks = [
-        Polygon("a", SQUARE, layer="L"),
-        Polygon("b", SQUARE + np.array([0, 1]), layer="L"),
-        Polygon("c", SQUARE + np.array([0, 2])),
-    ]
+    blocks = [Polygon("a", SQUARE, layer="L"), Polygon("b", SQUARE + np.array([0, 1]), layer="L"), Polygon("c", SQUARE + np.array([0, 2]))]
     made = assemble(inspect(Drawing(blocks), None, 1e-4), 2000.0, 1.0)
     assert {name: [made.joint_names[j] for j in joints] for name, joints in made.groups.items()} == {"L": ["a on b"]}
     assert make_blocks(blocks, None).groups == made.groups
@@ -204,9 +197,7 @@ def test_lines_of_two_arches_meet_on_their_pier() -> None:
 
 
 def make_aisled(preset: str):
-    return make_deck(
-        {"structure": {"kind": "aisled-vault", "preset": preset}, "analysis": {"kind": "tilt"}}
-    ).building.blocks()
+    return make_deck({"structure": {"kind": "aisled-vault", "preset": preset}, "analysis": {"kind": "tilt"}}).building.blocks()
 
 
 def test_a_stone_with_several_joints_shares_its_line() -> None:
@@ -259,15 +250,11 @@ def test_supports_of_free_blocks_move() -> None:
     ground = [[*arch.p[0], *arch.q[0]], [*arch.q[7], *arch.p[7]]]
     found = run({"block": rows(*stones), "ground": ground}, kind="supports")
     shuffled = [stones[i] for i in (3, 6, 0, 5, 1, 4, 2)]
-    again = run(
-        {"block": rows(*(Polygon(s.name, s.points[::-1]) for s in shuffled)), "ground": ground}, kind="supports"
-    )
+    again = run({"block": rows(*(Polygon(s.name, s.points[::-1]) for s in shuffled)), "ground": ground}, kind="supports")
     assert again["movement_at_fall_m"] == pytest.approx(found["movement_at_fall_m"], rel=1e-6)
     assert [h.joint for h in again["hinges_at_rest"]] == [h.joint for h in found["hinges_at_rest"]]
     made = make_blocks(stones, np.array(ground))
-    exact = support_movement(
-        replace(arch, mass=made.mass, centroid=made.centroid, inertia=made.inertia), (1.0, 0.0), 200
-    )  # fmt: skip
+    exact = support_movement(replace(arch, mass=made.mass, centroid=made.centroid, inertia=made.inertia), (1.0, 0.0), 200)
     assert found["movement_at_fall_m"] == pytest.approx(exact[-1].movement, rel=1e-6)
     assert "left haunch of the chain at 8 % of the span, intrados; crown of the chain, extrados" in found.answer
     pier = run({"block": rows(box("a", 0, 0), box("b", 0, 1))}, kind="supports")

@@ -32,29 +32,55 @@ BUILDINGS: dict[str, tuple[dict | None, dict]] = {
     ),
     "facade with weak floors": (
         None,
-        {"mechanism": "facade", "height": 6.0, "thickness": 0.5,
-         "floors": [{"height": 3.0, "load": "8 kN", "arm": 0.35}, {"height": 6.0, "load": "5 kN", "arm": 0.35}]},
+        {
+            "mechanism": "facade",
+            "height": 6.0,
+            "thickness": 0.5,
+            "floors": [{"height": 3.0, "load": "8 kN", "arm": 0.35}, {"height": 6.0, "load": "5 kN", "arm": 0.35}],
+        },
     ),
     "tower": (None, {"mechanism": "tower", "height": 25.0, "thickness": 4.0}),
     "nave": (
-        {"kind": "vault", "radius": 3.0, "thickness": 0.6, "embrace": 180.0, "voussoirs": 20, "face": 2.7, "buttress_width": 1.8,
-         "height": 6.0, "height_to": "centre"},
+        {
+            "kind": "vault",
+            "radius": 3.0,
+            "thickness": 0.6,
+            "embrace": 180.0,
+            "voussoirs": 20,
+            "face": 2.7,
+            "buttress_width": 1.8,
+            "height": 6.0,
+            "height_to": "centre",
+        },
         OWN,
     ),
     "barrel vault": ({"kind": "arch", "radius": 3.0, "thickness": 0.6, "embrace": 160.0, "voussoirs": 15}, OWN),
     "bridge": (
-        {"kind": "bridge", "depth": 4.0, "spans": [{"span": 6.0, "rise": 2.0, "thickness": 0.6, "voussoirs": 16}],
-         "abutments": {"width": 3.0, "height": 1.5}, "fill": {"cover": 0.4, "density": 1900, "friction_angle": 32}},
+        {
+            "kind": "bridge",
+            "depth": 4.0,
+            "spans": [{"span": 6.0, "rise": 2.0, "thickness": 0.6, "voussoirs": 16}],
+            "abutments": {"width": 3.0, "height": 1.5},
+            "fill": {"cover": 0.4, "density": 1900, "friction_angle": 32},
+        },
         OWN,
     ),
     "garden wall": (None, {"mechanism": "wall", "height": 2.0, "thickness": 0.4}),
-    "chimney": (None, {"mechanism": "chimney", "height": 2.0, "thickness": 0.6, "base_height": 8.0, "building_height": 10.0, "period": 0.05}),
+    "chimney": (
+        None,
+        {"mechanism": "chimney", "height": 2.0, "thickness": 0.6, "base_height": 8.0, "building_height": 10.0, "period": 0.05},
+    ),
     "row house": (
         None,
-        {"mechanism": "vertical-bending", "height": 3.0, "thickness": 0.3, "floors": [{"height": 3.0, "load": "20 kN"}],
-         "building_height": 6.0},
+        {
+            "mechanism": "vertical-bending",
+            "height": 3.0,
+            "thickness": 0.3,
+            "floors": [{"height": 3.0, "load": "20 kN"}],
+            "building_height": 6.0,
+        },
     ),
-}  # fmt: skip
+}
 #: The rules that apply to each, beside those of NTC, which are for every rigid-body mechanism
 IN_SCOPE = {
     "EN1998": {"parapet": "EN 1998-1 part of a building", "chimney": "EN 1998-1 part of a building"},
@@ -67,7 +93,12 @@ IN_SCOPE = {
 @cache
 def run(name: str, code: str) -> object:
     structure, keys = BUILDINGS[name]
-    deck = {"code": CODES[code], "material": {"density": 1800.0}, "joints": {"friction": "no-sliding"}, "analysis": [{"kind": "local-mechanism", **keys}]}  # fmt: skip
+    deck = {
+        "code": CODES[code],
+        "material": {"density": 1800.0},
+        "joints": {"friction": "no-sliding"},
+        "analysis": [{"kind": "local-mechanism", **keys}],
+    }
     if structure is not None:
         deck |= {"structure": structure, "analysis": [*deck["analysis"], {"kind": "tilt"}]}
     return extrados.run(deck)
@@ -94,11 +125,7 @@ def test_the_rules_of_one_jurisdiction_and_their_scope(name: str, code: str) -> 
     assert all(rule.startswith(own) for rule in r.checks), "one jurisdiction a report"
     applies = {rule for rule, c in r.checks.items() if c.verdict in ("holds", "fails")}
     if code == "NTC":
-        assert (
-            "NTC nonlinear" in applies
-            and r.overall().outcome in ("stands", "collapses")
-            and "NTC 2018, Circ. 7/2019" in r.clause
-        )
+        assert "NTC nonlinear" in applies and r.overall().outcome in ("stands", "collapses") and "NTC 2018, Circ. 7/2019" in r.clause
         return
     asked = IN_SCOPE[code].get(name)
     assert applies == ({asked} if asked else set())
@@ -115,9 +142,7 @@ def by_hand_ntc() -> dict[str, tuple[float, float, float]]:
         found[name] = (b / h, *slv(b / h, b / 2.0))
     # weight, arm behind the hinge, height: d_0 = (sum P arm/sum P h) (sum P d^2/sum P d), with d = h for a unit rotation
     parts = [(1800.0 * G * 0.5 * 6.0, 0.25, 3.0), (8e3, 0.35, 3.0), (5e3, 0.35, 6.0)]
-    held, drive, second = (
-        sum(w * f(a, h) for w, a, h in parts) for f in (lambda a, h: a, lambda a, h: h, lambda a, h: h * h)
-    )
+    held, drive, second = (sum(w * f(a, h) for w, a, h in parts) for f in (lambda a, h: a, lambda a, h: h, lambda a, h: h * h))
     part = drive**2 / (sum(w for w, *_ in parts) * second)
     found["facade with weak floors"] = (held / drive, *slv(held / drive, held / drive * second / drive, part))
     return found
@@ -131,9 +156,7 @@ def test_the_displacement_check_of_ntc_by_hand(name: str) -> None:
     assert r.multiplier == pytest.approx(alpha, rel=1e-9)
     assert check.demand == pytest.approx(demand, rel=2e-3) and check.capacity == pytest.approx(capacity, rel=2e-3)
     starts = r.checks["NTC activation (at the ground)"]
-    assert starts.demand == pytest.approx(0.15) and starts.capacity == pytest.approx(
-        alpha / (1.35 * r.participating_part)
-    )
+    assert starts.demand == pytest.approx(0.15) and starts.capacity == pytest.approx(alpha / (1.35 * r.participating_part))
     assert r.zeta_E == pytest.approx(max(capacity / demand, starts.capacity / 0.15), rel=2e-3)
 
 
@@ -141,20 +164,14 @@ def test_the_displacement_check_of_ntc_by_hand(name: str) -> None:
 def test_a_chain_of_blocks_starts_where_limit_analysis_says(name: str) -> None:
     found = run(name, "NTC")
     r, tilt = found["local-mechanism"], found["tilt"]
-    assert r.multiplier == pytest.approx(
-        min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g), rel=1e-4
-    )
-    assert r.checks["NTC activation (at the ground)"].capacity == pytest.approx(
-        r.multiplier / (r.participating_part * 1.35)
-    )
+    assert r.multiplier == pytest.approx(min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g), rel=1e-4)
+    assert r.checks["NTC activation (at the ground)"].capacity == pytest.approx(r.multiplier / (r.participating_part * 1.35))
 
 
 def test_parts_at_a_height_by_hand() -> None:
     """EN 1998-1 4.3.5 (of the parapet no period is known: resonance) and the floor spectrum of NTC: plateau 2.5 0.15 g of the first
     mode, gamma_1 = 4/3 of four storeys in 10 m, psi z/H."""
-    parapet, chimney = (
-        run(n, "EN1998")["local-mechanism"].checks["EN 1998-1 part of a building"] for n in ("parapet", "chimney")
-    )
+    parapet, chimney = (run(n, "EN1998")["local-mechanism"].checks["EN 1998-1 part of a building"] for n in ("parapet", "chimney"))
     assert (parapet.demand, parapet.capacity) == (pytest.approx(0.15 * (3.0 * 1.9 - 0.5)), pytest.approx(0.25))
     first = 0.05 * 10.0**0.75
     shape = 3.0 * 1.8 / (1.0 + (1.0 - 0.05 / first) ** 2) - 0.5
@@ -173,9 +190,9 @@ def test_slenderness_by_hand() -> None:
     period = math.sqrt(0.65 * 1.2 * slope)
     coefficient = 0.15 * G * min(1.0 + 9.0 / 6.0, 3.0) * 2.0 * (1.75 - period)
     check = nz["NZSEE C8 parapet"]
-    assert check.demand == pytest.approx(
-        1.5 / slope * coefficient * (period / 2.0 / math.pi) ** 2
-    ) and check.capacity == pytest.approx(0.09)
+    assert check.demand == pytest.approx(1.5 / slope * coefficient * (period / 2.0 / math.pi) ** 2) and check.capacity == pytest.approx(
+        0.09
+    )
     house = run("row house", "ASCE41")["local-mechanism"].checks["ASCE 41 slenderness"]
     assert (house.demand, house.capacity) == (pytest.approx(10.0), 20.0)
     r = run("row house", "NZSEE")["local-mechanism"]
@@ -183,7 +200,5 @@ def test_slenderness_by_hand() -> None:
     effective = 0.3 * (0.975 - 0.025 * load / weight)
     a, b = weight * 1.5 + load * 3.0, weight * effective + load * 1.5 * effective
     wall = r.checks["NZSEE C8 one-way wall"]
-    assert wall.capacity == pytest.approx(0.6 * b * 3.0 / (2.0 * a)), (
-        "moments of both halves: a = W h/2 + P h, b = W t_e + 1.5 P t_e"
-    )
+    assert wall.capacity == pytest.approx(0.6 * b * 3.0 / (2.0 * a)), "moments of both halves: a = W h/2 + P h, b = W t_e + 1.5 P t_e"
     assert r.nbs_percent == pytest.approx(100.0 * wall.capacity / wall.demand)

@@ -88,12 +88,7 @@ def test_the_tie_of_an_arch_on_a_free_foot_carries_its_thrust() -> None:
     thrust = abs(float(least.force(arch)[joints[0], 0]))
     structure = {"kind": "arch", "radius": 5.0, "thickness": 1.0, "embrace": 180.0, "voussoirs": 24}
     foot = arch.joint_names[joints[0]]
-    ends = {
-        "start": [-5.0, 0.0],
-        "end": [5.0, 0.0],
-        "start_stone": arch.block_names[0],
-        "end_stone": arch.block_names[-1],
-    }
+    ends = {"start": [-5.0, 0.0], "end": [5.0, 0.0], "start_stone": arch.block_names[0], "end_stone": arch.block_names[-1]}
     joints = {"friction": "no-sliding", "types": [{"joints": [foot], "friction": 0.0}]}
     for share, stands in ((1.0 - 1e-6, False), (1.0 + 1e-6, True)):
         (found,) = run(structure, [{**ends, "yield_force": share * thrust}], {"kind": "tilt"}, joints=joints)
@@ -189,14 +184,16 @@ def test_a_proof_that_nothing_stands_counts_what_ties_take() -> None:
     arch = make_arch(5.0, 0.2, 170.0, 20)  # too thin
     bare = LimitAnalysis(arch)
     assert bare.certificate() is not None
-    deck = make_deck({
-        "structure": {"kind": "arch", "radius": 5.0, "thickness": 0.2, "embrace": 170.0, "voussoirs": 20},
-        "ties": [
-            {"start": list(arch.centroid[k]), "ground": [float(arch.centroid[k, 0]), -9.0], "works_in": "compression"}
-            for k in range(20)
-        ],
-        "analysis": {"kind": "tilt"},
-    })  # fmt: skip
+    deck = make_deck(
+        {
+            "structure": {"kind": "arch", "radius": 5.0, "thickness": 0.2, "embrace": 170.0, "voussoirs": 20},
+            "ties": [
+                {"start": list(arch.centroid[k]), "ground": [float(arch.centroid[k, 0]), -9.0], "works_in": "compression"}
+                for k in range(20)
+            ],
+            "analysis": {"kind": "tilt"},
+        }
+    )
     loads = loads_of(arch, deck.analyses[0], deck.building)
     held = LimitAnalysis(arch, loads=loads)  # every stone stands on a strut of its own
     assert held.stands() and held.certificate() is None
@@ -213,14 +210,10 @@ def test_a_proof_that_nothing_stands_counts_what_ties_take() -> None:
 def test_supports_that_give_way_stretch_ties() -> None:
     """The frame's foot moves out by 2 cm: the rod, which the stones follow, keeps its yield force."""
     move = {"movements": [{"joint": "left on the ground", "dx": -0.02}]}
-    (found,) = run(
-        FRAME, [{**ROD, "yield_force": 5e3}], {"kind": "supports"}, initial=move, joints={"friction": "no-sliding"}
-    )
+    (found,) = run(FRAME, [{**ROD, "yield_force": 5e3}], {"kind": "supports"}, initial=move, joints={"friction": "no-sliding"})
     assert found.results.ties[0].state == "yields"
     assert found.results.work_gap_J < 1e-9 * found.results.work_J
-    assert found.results.openings[0].opening_mm == pytest.approx(
-        20.0 / 4.0
-    )  # turned by 20 mm over the height of the crown
+    assert found.results.openings[0].opening_mm == pytest.approx(20.0 / 4.0)  # turned by 20 mm over the height of the crown
     ends = {"start": [-4.9, 1.0], "end": [4.9, 1.0], "start_stone": "voussoir 1", "end_stone": "voussoir 16"}
     arch = {"kind": "arch", "radius": 5.0, "thickness": 1.0, "embrace": 160.0, "voussoirs": 16}
     (spread,) = run(arch, [{**ends, "yield_force": 1e3}], {"kind": "supports"})  # not followed to its fall
@@ -229,9 +222,7 @@ def test_supports_that_give_way_stretch_ties() -> None:
 
 @pytest.mark.parametrize("kind", ["assessment", "rocking-spectrum"])
 def test_who_does_not_reckon_with_ties_says_so(kind: str) -> None:
-    more = {
-        "dem-domain": {"durations": [0.1, 0.2], "amplitudes": ["0.5 g"]},
-    }
+    more = {"dem-domain": {"durations": [0.1, 0.2], "amplitudes": ["0.5 g"]}}
     motion = {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.2}
     tie = {"start": [-0.5, 4.0], "ground": [-3.5, 0.0]}
     (found,) = run(PIER, [tie], {"kind": kind, **more.get(kind, {})}, motion=motion)
@@ -241,16 +232,22 @@ def test_who_does_not_reckon_with_ties_says_so(kind: str) -> None:
 def test_sweeps_and_surveys_reckon_with_ties() -> None:
     tie = {"start": [-0.5, 4.0], "ground": [-3.5, 0.0], "yield_force": 1e4}
     tilt, swept, band = run(
-        PIER, [tie], {"kind": "tilt"}, {"kind": "sweep", "vary": "width", "values": [1.0, 1.0001], "locate": False},
-        {"kind": "imperfections", "deviation": 1e-9, "count": 10}, joints={"friction": "no-sliding"},
-    )  # fmt: skip
+        PIER,
+        [tie],
+        {"kind": "tilt"},
+        {"kind": "sweep", "vary": "width", "values": [1.0, 1.0001], "locate": False},
+        {"kind": "imperfections", "deviation": 1e-9, "count": 10},
+        joints={"friction": "no-sliding"},
+    )
     capacity = tilt.results.collapse_acceleration_g
     assert swept.results.collapse_accelerations_g[0] == pytest.approx(capacity)
     assert band.arrays["gamma"].data[:, 0] == pytest.approx(np.full(10, capacity), rel=1e-6)
     (by_force,) = run(
-        PIER, [tie], {"kind": "sweep", "vary": "ties.0.yield_force", "values": ["5 kN", "10 kN"], "locate": False},
+        PIER,
+        [tie],
+        {"kind": "sweep", "vary": "ties.0.yield_force", "values": ["5 kN", "10 kN"], "locate": False},
         joints={"friction": "no-sliding"},
-    )  # fmt: skip
+    )
     half, whole = by_force.results.collapse_accelerations_g
     assert whole == pytest.approx(capacity) and half == pytest.approx(0.25 + 0.5 * (capacity - 0.25))
 

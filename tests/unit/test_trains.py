@@ -18,13 +18,15 @@ from extrados.model.errors import BadGeometry
 @pytest.mark.parametrize(
     ("train", "gap", "weight", "length"),
     [
-        ("LM71", None, 1000.0, 4.8), ("SV80", None, 780.0, 6.0), ("SV80", 9.0, 780.0, 13.8), ("SV100", 5.0, 990.0, 9.8),
-        ("SV196", None, 1945.0, 19.6), ("SV196", 5.0, 1945.0, 23.4),
+        ("LM71", None, 1000.0, 4.8),
+        ("SV80", None, 780.0, 6.0),
+        ("SV80", 9.0, 780.0, 13.8),
+        ("SV100", 5.0, 990.0, 9.8),
+        ("SV196", None, 1945.0, 19.6),
+        ("SV196", 5.0, 1945.0, 23.4),
     ],
-)  # fmt: skip
-def test_axles_have_the_weight_and_length_of_the_rule(
-    train: str, gap: float | None, weight: float, length: float
-) -> None:
+)
+def test_axles_have_the_weight_and_length_of_the_rule(train: str, gap: float | None, weight: float, length: float) -> None:
     """SV80 stands for 80 t, SV100 for 100 t, SV196 for 196 t: their axles weigh as much within 3 %."""
     found = train_of(MovingLoad(kind="moving-load", train=train, gap=gap), 4.0)
     assert found.forces.sum() == pytest.approx(1e3 * weight)
@@ -41,12 +43,7 @@ def test_even_loads_are_those_of_the_rail_models(train: str) -> None:
 
 
 CASES = Path(__file__).parents[2] / "cases"
-BRIDGE = {
-    "kind": "bridge",
-    "depth": 4.0,
-    "spans": [{"span": 6.0, "rise": 1.5, "thickness": 0.5, "voussoirs": 20}],
-    "fill": {"cover": 0.4},
-}
+BRIDGE = {"kind": "bridge", "depth": 4.0, "spans": [{"span": 6.0, "rise": 1.5, "thickness": 0.5, "voussoirs": 20}], "fill": {"cover": 0.4}}
 
 
 def test_a_special_vehicle_is_its_axles_and_says_that_nobody_read_the_clause() -> None:
@@ -55,7 +52,7 @@ def test_a_special_vehicle_is_its_axles_and_says_that_nobody_read_the_clause() -
     named, given = (
         extrados.run({"structure": BRIDGE, "joints": {"friction": 0.6}, "analysis": {"kind": "moving-load", "count": 7, **one}})
         for one in ({"train": "SV100", "gap": 5.0}, own)
-    )  # fmt: skip
+    )
     assert named["moving-load"].adequacy_factor == pytest.approx(given["moving-load"].adequacy_factor, rel=1e-9)
     assert "not read in the standard" in named.analyses[0]["warnings"][0] and not given.analyses[0]["warnings"]
 
@@ -73,9 +70,7 @@ def test_every_train_of_the_library_has_a_name_of_the_deck() -> None:
 @pytest.mark.parametrize("name", [name for name in get_args(TrainName) if name.startswith("CS454")])
 def test_bogies_weigh_what_the_table_of_cs_454_gives(name: str) -> None:
     """Tonnes of Table 7.3.1a; the conversion factors of an axle lift-off keep the sum."""
-    tonnes = {
-        "single": 11.5, "double 1.0": 16.0, "double 1.3": 19.0, "double 1.8": 20.0, "triple 1.0": 21.0, "triple 1.3": 24.0,
-    }  # fmt: skip
+    tonnes = {"single": 11.5, "double 1.0": 16.0, "double 1.3": 19.0, "double 1.8": 20.0, "triple 1.0": 21.0, "triple 1.3": 24.0}
     found = train_of(MovingLoad(kind="moving-load", train=name), 4.0)
     assert found.forces.sum() == pytest.approx(9810.0 * tonnes[name.removeprefix("CS454 ").removesuffix(" lift")])
     if name.endswith("lift"):
@@ -93,10 +88,11 @@ def test_a_tracked_vehicle_weighs_the_short_tons_of_its_class(name: str) -> None
 def of_service(**keys: object) -> dict[str, object]:
     """A moving load on the bridge, its stone as strong as 4 MPa."""
     return {
-        "structure": {**BRIDGE, "fill": {"cover": 0.4, "passive": 0.5}}, "joints": {"friction": 0.6},
+        "structure": {**BRIDGE, "fill": {"cover": 0.4, "passive": 0.5}},
+        "joints": {"friction": 0.6},
         "material": {"compressive_strength": "4 MPa"},
         "analysis": {"kind": "moving-load", "train": "CS454 single", "count": 7, **keys},
-    }  # fmt: skip
+    }
 
 
 def test_the_permissible_limit_state_is_collapse_at_the_permissible_stress() -> None:
@@ -121,10 +117,7 @@ def test_impact_multiplies_the_train_of_the_permissible_limit_state_too() -> Non
     """The dynamic factor is an effect of the motion: as heavy a train without it has the same multiple."""
     still, moving = (
         extrados.run(of_service(count=3, **keys))["moving-load"].permissible_factor
-        for keys in (
-            {"serviceability": {"live": 1.5}},
-            {"serviceability": {}, "factors": {"dynamic": 1.5, "live": 2.0}},
-        )
+        for keys in ({"serviceability": {"live": 1.5}}, {"serviceability": {}, "factors": {"dynamic": 1.5, "live": 2.0}})
     )
     assert moving == pytest.approx(still, rel=1e-9)
 
@@ -164,9 +157,7 @@ def test_spandrel_walls_weigh_in_place_of_fill() -> None:
     with pytest.raises(DeckError, match="leave no fill"):
         make_deck({"structure": {**BRIDGE, "spandrels": {"thickness": 2.0}}, "analysis": {"kind": "tilt"}})
     with pytest.raises(DeckError, match="spandrels: requires fill"):
-        make_deck(
-            {"structure": {**BRIDGE, "fill": None, "spandrels": {"thickness": 0.3}}, "analysis": {"kind": "tilt"}}
-        )
+        make_deck({"structure": {**BRIDGE, "fill": None, "spandrels": {"thickness": 0.3}}, "analysis": {"kind": "tilt"}})
 
 
 def test_a_drawn_arch_under_fill_carries_what_the_bridge_of_its_sizes_carries() -> None:
@@ -176,10 +167,13 @@ def test_a_drawn_arch_under_fill_carries_what_the_bridge_of_its_sizes_carries() 
     made = make_deck(deck).structure.assembly(2000.0, Path())
     on_ground = [j for j, pair in enumerate(zip(made.a, made.b, strict=True)) if min(pair) < 0]
     drawn = {
-        "kind": "blocks", "depth": 4.0, "fill": deck["structure"]["fill"], "surfacing": deck["structure"]["surfacing"],
+        "kind": "blocks",
+        "depth": 4.0,
+        "fill": deck["structure"]["fill"],
+        "surfacing": deck["structure"]["surfacing"],
         "block": [{"name": n, "points": o.tolist()} for n, o in zip(made.block_names, made.outlines, strict=True)],
         "ground": [[*made.p[j].tolist(), *made.q[j].tolist()] for j in on_ground],
-    }  # fmt: skip
+    }
     whole, polygons = (extrados.run({**deck, "structure": one})["moving-load"] for one in (deck["structure"], drawn))
     assert polygons.adequacy_factor == pytest.approx(whole.adequacy_factor, rel=1e-6)
     assert polygons.chain is None and not polygons.violated

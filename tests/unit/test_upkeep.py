@@ -33,14 +33,8 @@ def sources(tmp_path: Path) -> Path:
     for name in ["CHANGELOG.md", *release.PLACES]:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text((ROOT / name).read_text(encoding="utf-8"), encoding="utf-8")
-    for words in (
-        ["init", "-q"],
-        ["config", "user.email", "a@b"],
-        ["config", "user.name", "a"],
-        ["add", "."],
-        ["commit", "-qm", "all"],
-    ):
-        subprocess.run(["git", "-C", tmp_path, *words], check=True)  # fmt: skip
+    for words in (["init", "-q"], ["config", "user.email", "a@b"], ["config", "user.name", "a"], ["add", "."], ["commit", "-qm", "all"]):
+        subprocess.run(["git", "-C", tmp_path, *words], check=True)
     return tmp_path
 
 
@@ -107,7 +101,7 @@ def test_a_site_with_a_broken_link_is_refused(tmp_path: Path, monkeypatch: pytes
     (tmp_path / "a.html").write_text(
         '<h1 id="here">a</h1> <a href="#here">b</a> <h2 id="o%28-%29">d</h2> <a href="#o%28-%29">e</a> <img src="data:,"> <a href="https://x">c</a>'
     )
-    (tmp_path / "b.html").write_text('<a href="gone.html">a</a> <a href="a.html#gone">b</a> <script src="https://x"></script>')  # fmt: skip
+    (tmp_path / "b.html").write_text('<a href="gone.html">a</a> <a href="a.html#gone">b</a> <script src="https://x"></script>')
     wrong = ["gone.html leads nowhere", "a.html#gone leads nowhere", "https://x is loaded from the network"]
     assert tool("tools/site.py").broken(tmp_path) == [f"b.html: {text}" for text in wrong]
 
@@ -139,9 +133,7 @@ def test_every_way_to_install_asks_for_the_same() -> None:
 
 
 def test_forms_of_the_issue_tracker_ask_for_deck_result_source_and_version() -> None:
-    forms = {
-        path.stem: path.read_text(encoding="utf-8") for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")
-    }
+    forms = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")}
     assert set(forms) == {"config", "fault", "question", "wish"}
     assert re.findall(r"^    id: (\w+)$", forms["fault"], re.M) == ["deck", "found", "expected", "version", "system"]
     assert forms["fault"].count("required: true") == 4
@@ -157,33 +149,16 @@ def test_the_citation_and_the_paper_name_the_dissertation() -> None:
     assert set(re.findall(r"@([A-Z]\w+\d{4})", paper)) == known and title.lower() in sources.lower()
 
 
-def test_an_installed_copy_tells_the_commit_that_it_was_built_from(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_installed_copy_tells_the_commit_that_it_was_built_from(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / ".git").mkdir()  # of a repository that happens to lie around
     monkeypatch.setattr(provenance, "COMMIT", "abc1234")
-    monkeypatch.setattr(
-        provenance, "__file__", str(tmp_path / "site-packages" / "extrados" / "running" / "provenance.py")
-    )
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "site-packages" / "extrados" / "running" / "provenance.py"))
     assert provenance.provenance()["commit"] == "abc1234"
 
 
 def test_the_stub_is_made_with_what_the_build_requires(tmp_path: Path) -> None:
     """numpy and pydantic: the libraries of the program are not there as it is built."""
-    absent = (
-        "scipy",
-        "pint",
-        "matplotlib",
-        "h5py",
-        "rich",
-        "typer",
-        "ezdxf",
-        "jinja2",
-        "typst",
-        "highspy",
-        "clarabel",
-        "dask",
-    )
+    absent = ("scipy", "pint", "matplotlib", "h5py", "rich", "typer", "ezdxf", "jinja2", "typst", "highspy", "clarabel", "dask")
     code = (
         f"import runpy, sys; sys.modules.update(dict.fromkeys({absent})); sys.argv[1:] = {[str(ROOT / 'python/extrados'), str(tmp_path / 'x.pyi')]}; "
         f"runpy.run_path({str(ROOT / 'python/make_stub.py')!r}, run_name='__main__')"

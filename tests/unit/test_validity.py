@@ -17,9 +17,7 @@ def test_they_are_sentences(kind) -> None:
         assert text.endswith(".")
         for sentence in re.split(r"(?<=[.;:])\s+", text):
             assert 1 < len(sentence.split()) <= 25, sentence
-        assert not re.search(
-            r"\b(?:stones?|bears?|falls?|gives? way|come down|brings? down|nobody|for ever)\b", text
-        ), text
+        assert not re.search(r"\b(?:stones?|bears?|falls?|gives? way|come down|brings? down|nobody|for ever)\b", text), text
 
 
 #: A deck of each kind whose limits were silently empty, as quick as it gets

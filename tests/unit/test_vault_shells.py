@@ -27,9 +27,8 @@ DOME = Dome(kind="dome", radius=5.0, thickness=0.5, embrace=150.0, rings=6, lune
 OPEN_DOME = Dome(kind="dome", radius=5.0, thickness=0.5, embrace=150.0, rings=6, lunes=12, oculus=30.0)
 GROINS = CrossVault(kind="cross-vault", radius=3.0, thickness=0.4, embrace=140.0, voussoirs=16, edge=0.5)
 ON_WALLS = Vault(
-    kind="vault", radius=4.0, thickness=0.7, embrace=180.0, face=3.65, buttress_width=1.9, height=4.0, height_to="centre",
-    depth=0.6,
-)  # fmt: skip
+    kind="vault", radius=4.0, thickness=0.7, embrace=180.0, face=3.65, buttress_width=1.9, height=4.0, height_to="centre", depth=0.6
+)
 EVERY = {"barrel": BARREL, "dome": DOME, "open dome": OPEN_DOME, "groins": GROINS, "on walls": ON_WALLS}
 
 
@@ -55,10 +54,7 @@ def free_edges(mesh):
         (DOME, 2.0 * np.pi * 25.0 * (1.0 - np.cos(np.radians(75.0)))),
         (OPEN_DOME, 2.0 * np.pi * 25.0 * (np.cos(np.radians(15.0)) - np.cos(np.radians(75.0)))),
         # Eight half webs: R times the integral of reach - R sin a
-        (
-            GROINS,
-            8 * 3.0 * ((3.2 * np.sin(np.radians(70)) + 0.5) * np.radians(70) - 3.0 * (1 - np.cos(np.radians(70)))),
-        ),
+        (GROINS, 8 * 3.0 * ((3.2 * np.sin(np.radians(70)) + 0.5) * np.radians(70) - 3.0 * (1 - np.cos(np.radians(70))))),
         (ON_WALLS, 0.6 * (4.0 * np.pi + 2 * 4.0 + 2 * 0.6)),
     ],
 )
@@ -77,9 +73,12 @@ def test_vaults_end_where_they_should():
         "barrel": lambda p: np.isclose(p[:, 1], 0.0) | np.isclose(p[:, 1], 2.0) | np.isclose(p[:, 2], 5.0 * np.cos(np.radians(80.0))),
         "dome": lambda p: np.isclose(p[:, 2], 5.0 * np.cos(np.radians(75.0))),
         "open dome": lambda p: np.isclose(p[:, 2], 5.0 * np.cos(np.radians(75.0))) | np.isclose(p[:, 2], 5.0 * np.cos(np.radians(15.0))),
-        "groins": lambda p: np.isclose(np.abs(p[:, :2]).max(axis=1), 3.2 * np.sin(np.radians(70.0)) + 0.5) | np.isclose(p[:, 2], 3.0 * np.cos(np.radians(70.0))),
+        "groins": lambda p: (
+            np.isclose(np.abs(p[:, :2]).max(axis=1), 3.2 * np.sin(np.radians(70.0)) + 0.5)
+            | np.isclose(p[:, 2], 3.0 * np.cos(np.radians(70.0)))
+        ),
         "on walls": lambda p: np.isclose(p[:, 1], 0.0) | np.isclose(p[:, 1], 0.6) | np.isclose(p[:, 2], -4.0),
-    }  # fmt: skip
+    }
     for name, structure in EVERY.items():
         mesh = meshed(structure)
         edges = free_edges(mesh)
@@ -114,15 +113,16 @@ def test_feet_bear_the_weight_and_the_push(name):
     nodes, axis = np.nonzero(model.freedoms.equation >= core_model.equations)
     of = model.freedoms.equation[nodes, axis] - core_model.equations
     own = np.stack(
-        [np.bincount(of, model.freedoms.factor[nodes, axis] * load[nodes, axis], len(model.grounds)) for load in (model.constant, model.reference)],
+        [
+            np.bincount(of, model.freedoms.factor[nodes, axis] * load[nodes, axis], len(model.grounds))
+            for load in (model.constant, model.reference)
+        ],
         axis=1,
-    )  # fmt: skip
+    )
     borne = own - inner
     by = {(mesh.feet[ground.foot].name, ground.way): borne[k] for ground, k in model.grounds.items()}
     assert sum(force[0] for (_, way), force in by.items() if way == "down") == pytest.approx(model.weight, rel=1e-9)
-    assert sum(force[1] for (_, way), force in by.items() if way == "down") == pytest.approx(
-        0.0, abs=1e-6 * model.weight
-    )
+    assert sum(force[1] for (_, way), force in by.items() if way == "down") == pytest.approx(0.0, abs=1e-6 * model.weight)
     outs = [force for (_, way), force in by.items() if way == "out"]
     assert [force[0] for force in outs] == pytest.approx(len(outs) * [outs[0][0]], rel=1e-6) and outs[0][0] > 0.0
     if len(outs) == 2:
@@ -220,12 +220,16 @@ def test_a_spreading_barrel_opens_in_three_hinge_lines(tmp_path):
 @pytest.mark.parametrize(
     "stages, change, words",
     [
-        ('\n[[analysis.stages]]\nsettlements = [{ foot = "springing", out = 0.01 }]\n', ("", ""), "no foot 'springing'; there are left, right"),
-        ('\n[[analysis.stages]]\nbase_shear = -5.0\n', ("", ""), "not below"),
+        (
+            '\n[[analysis.stages]]\nsettlements = [{ foot = "springing", out = 0.01 }]\n',
+            ("", ""),
+            "no foot 'springing'; there are left, right",
+        ),
+        ("\n[[analysis.stages]]\nbase_shear = -5.0\n", ("", ""), "not below"),
         ('control = { wall = "a", storey = 1 }\n', ("", ""), "it has none"),
         ("", ("depth = 0.6", "depth = 0.6\nskew = 20"), "skew"),
     ],
-)  # fmt: skip
+)
 def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
     run = extrados.run(deck(tmp_path, stages, change)).results[0]
     assert run.status == "refused" and words in run.reason
@@ -239,10 +243,7 @@ def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
         ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "take two stages"),
         ({"stages": [{"name": "a"}, {"name": "a"}]}, "stands twice"),
         ({"stages": [{}], "directions": ["+", "-"]}, "beside stages"),
-        (
-            {"stages": [{}], "without_equilibrium": "proportional"},
-            'without_equilibrium = "proportional" cannot stand beside',
-        ),
+        ({"stages": [{}], "without_equilibrium": "proportional"}, 'without_equilibrium = "proportional" cannot stand beside'),
         ({"main_stage": "a"}, "there are none"),
     ],
 )
@@ -270,10 +271,7 @@ def test_thick_walls_are_no_shells():
     with pytest.raises(NoView, match="skew"):
         meshed(BARREL.model_copy(update={"skew": 10.0}))
     with pytest.raises(Refused, match="density"):
-        build(
-            Building(BARREL, MASONRY.model_copy(update={"density": 0.0})).shell(ShellOptions(size=0.8)),
-            Pushover(kind="pushover"),
-        )
+        build(Building(BARREL, MASONRY.model_copy(update={"density": 0.0})).shell(ShellOptions(size=0.8)), Pushover(kind="pushover"))
 
 
 def test_a_released_load_is_never_raised_on_the_way(tmp_path):

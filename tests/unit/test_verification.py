@@ -18,23 +18,26 @@ WALLS = [
     {"name": "A", "start": [0, 0], "end": [0, 3], "thickness": 0.25},
     {"name": "2", "start": [0, 3], "end": [3, 3], "thickness": 0.25},
     {"name": "B", "start": [3, 0], "end": [3, 3], "thickness": 0.25},
-]  # fmt: skip
+]
 FLOOR = {"storey": 1, "walls": ["1", "B", "2", "A"], "young": 5e8, "thickness": 0.05, "load": 5000}
 MASONRY = {"density": 1900, "young": 1.5e9, "poisson": 0.2, "tensile_strength": 3e4, "fracture_energy": 5}
 CODE = {
-    "jurisdiction": "NTC", "limit_states": ["SLD", "SLV", "SLC"], "ground": "C", "accelerations": ["0.05 g", "0.25 g", "0.32 g"],
-    "amplifications": [2.4, 2.45, 2.5], "corner_periods": [0.28, 0.33, 0.35],
-}  # fmt: skip
-PUSH = {
-    "kind": "pushover", "mesh": {"size": 0.75, "layers": 3}, "ripple": 0.2, "events": 1500, "stop_fraction": 0.75,
-}  # fmt: skip
+    "jurisdiction": "NTC",
+    "limit_states": ["SLD", "SLV", "SLC"],
+    "ground": "C",
+    "accelerations": ["0.05 g", "0.25 g", "0.32 g"],
+    "amplifications": [2.4, 2.45, 2.5],
+    "corner_periods": [0.28, 0.33, 0.35],
+}
+PUSH = {"kind": "pushover", "mesh": {"size": 0.75, "layers": 3}, "ripple": 0.2, "events": 1500, "stop_fraction": 0.75}
 
 
 def deck(floor=None, material=None, code=None, **push):
     made = {
         "structure": {"kind": "building", "storeys": [3.0], "walls": WALLS, "floors": [{**FLOOR, **(floor or {})}]},
-        "material": {**MASONRY, **(material or {})}, "analysis": [{**PUSH, **push}],
-    }  # fmt: skip
+        "material": {**MASONRY, **(material or {})},
+        "analysis": [{**PUSH, **push}],
+    }
     return made | ({"code": {**CODE, **code}} if code is not None else {})
 
 
@@ -58,9 +61,7 @@ def test_period_of_the_oscillator_is_that_of_the_mode_that_pushes():
     model = build(Building(structure, Material(**MASONRY)).shell(options.mesh), options)
     mass = model.mesh.mass()
     with model.open(options, 1) as core:
-        shape, through = displaced_shape(
-            core, model.reference, model.control, model.along, model.freedoms.equation >= 0
-        )
+        shape, through = displaced_shape(core, model.reference, model.control, model.along, model.freedoms.equation >= 0)
         c = model.control
         stiffness = model.unit / float(core.displacement(1.0)[c.node, c.direction] @ c.share)
     _, frequency, ratio = first_mode(model, options, mass)
@@ -91,9 +92,7 @@ def test_verdict_is_that_of_the_least_factor(verified):
     factors = {c.limit_state: c.factor for c in found.checks}
     assert found.zeta_E == factors["SLV"]
     assert verdict["ratio"] == pytest.approx(min(factors.values()))
-    assert verdict["violated"] and "limit drift of piers in shear, 0.5 %" in verdict["violated"][0], (
-        "piers in shear end their curve there"
-    )
+    assert verdict["violated"] and "limit drift of piers in shear, 0.5 %" in verdict["violated"][0], "piers in shear end their curve there"
     assert verdict["outcome"] == ("open" if min(factors.values()) > 1.0 else "collapses")
     # the base shear of the oscillator is without the forces on the supports, half a row of elements of 0.75 m
     assert found.curves[0].yield_load_N < 0.95 * results.greatest_load_N
@@ -117,27 +116,55 @@ def test_a_deck_without_an_action_keeps_its_strengths_and_has_no_verdict():
 
 def made(factor, ended="drop", violated=(), state="SLV", jurisdiction="NTC"):
     curve = IdealisedCurve(
-        push="+", equivalent_mass_kg=1e5, participation_factor=1.2, mass_ratio=0.8, period_s=0.2, yield_load_N=3e5,
-        yield_displacement_m=3e-3, ultimate_displacement_m=0.02, ended_by=ended,
-    )  # fmt: skip
+        push="+",
+        equivalent_mass_kg=1e5,
+        participation_factor=1.2,
+        mass_ratio=0.8,
+        period_s=0.2,
+        yield_load_N=3e5,
+        yield_displacement_m=3e-3,
+        ultimate_displacement_m=0.02,
+        ended_by=ended,
+    )
     check = DisplacementCheck(
-        push="+", limit_state=state, demand_m=0.01, capacity_m=0.01 * factor, strength_ratio=1.5, greatest_strength_ratio=3.0,
-        factor=factor, demand_pga_g=0.2, capacity_pga_g=0.2 * factor, return_period_years=475.0,
-        capacity_return_period_years=None, verdict="holds" if factor >= 1.0 else "fails", clause="",
-    )  # fmt: skip
+        push="+",
+        limit_state=state,
+        demand_m=0.01,
+        capacity_m=0.01 * factor,
+        strength_ratio=1.5,
+        greatest_strength_ratio=3.0,
+        factor=factor,
+        demand_pga_g=0.2,
+        capacity_pga_g=0.2 * factor,
+        return_period_years=475.0,
+        capacity_return_period_years=None,
+        verdict="holds" if factor >= 1.0 else "fails",
+        clause="",
+    )
     return Verification(
-        jurisdiction=jurisdiction, code="NTC 2018", by_default=False, method="N2", confidence_factor=1.0, curves=[curve],
-        checks=[check], zeta_E=factor, violated=list(violated),
-    )  # fmt: skip
+        jurisdiction=jurisdiction,
+        code="NTC 2018",
+        by_default=False,
+        method="N2",
+        confidence_factor=1.0,
+        curves=[curve],
+        checks=[check],
+        zeta_E=factor,
+        violated=list(violated),
+    )
 
 
 @pytest.mark.parametrize(
     ("factor", "ended", "violated", "outcome"),
     [
-        (1.4, "drop", (), "stands"), (0.7, "drop", (), "collapses"), (1.4, "end", (), "stands"), (0.7, "end", (), "open"),
-        (1.4, "drop", ("It slides.",), "open"), (0.7, "drop", ("It slides.",), "collapses"),
+        (1.4, "drop", (), "stands"),
+        (0.7, "drop", (), "collapses"),
+        (1.4, "end", (), "stands"),
+        (0.7, "end", (), "open"),
+        (1.4, "drop", ("It slides.",), "open"),
+        (0.7, "drop", ("It slides.",), "collapses"),
     ],
-)  # fmt: skip
+)
 def test_conditions_of_the_verdict(factor, ended, violated, outcome):
     """A curve that ends early is a lower bound; a violated assumption opens a check that holds, never one that fails."""
     verdict = made(factor, ended, violated).judged("")
@@ -151,7 +178,7 @@ def test_conditions_of_the_verdict(factor, ended, violated, outcome):
         ({"jurisdiction": "NZSEE", "ground": "C", "hazard_factor": 0.3}, "N2"),
         ({"jurisdiction": "ASCE41", "short_accelerations": ["0.6 g"], "one_second_accelerations": ["0.3 g"]}, "coefficient"),
     ],
-)  # fmt: skip
+)
 def test_other_codes(code, method):
     results, record = pushed({**deck(events=400), "code": code})
     rows = results.verification
@@ -175,9 +202,10 @@ def test_spectrum_of_another_code_is_refused():
 def panel(**more):
     return {
         "structure": {"kind": "panel", "width": 0.6, "height": 6.0, "thickness": 0.3},
-        "material": {**MASONRY, "tensile_strength": 1e5, "fracture_energy": 20}, "code": CODE,
+        "material": {**MASONRY, "tensile_strength": 1e5, "fracture_energy": 20},
+        "code": CODE,
         "analysis": [{"kind": "sla", "mesh": {"size": 0.15}, "ripple": 0.2, "stop_fraction": 0.7, "events": 800, **more}],
-    }  # fmt: skip
+    }
 
 
 def test_participating_mass_of_a_slender_wall_is_that_of_a_cantilever_under_its_masses():
@@ -201,14 +229,12 @@ def test_a_load_without_mass_opens_the_verdict():
 
 
 def framed(code=None, material=None, **more):
-    made = deck(
-        material={"compressive_strength": 3e6, "tensile_strength": 1e5, "fracture_energy": 20, **(material or {})},
-        code=code,
-    )
+    made = deck(material={"compressive_strength": 3e6, "tensile_strength": 1e5, "fracture_energy": 20, **(material or {})}, code=code)
     made["joints"] = {"cohesion": 1e5, "friction": 0.6}
     made["analysis"] = [
-        {"kind": "frame-pushover", "directions": [0.0], "eccentricities": [0.0], "patterns": ["uniform"], **more}, {"kind": "frame-modes"},
-    ]  # fmt: skip
+        {"kind": "frame-pushover", "directions": [0.0], "eccentricities": [0.0], "patterns": ["uniform"], **more},
+        {"kind": "frame-modes"},
+    ]
     return made
 
 
@@ -238,9 +264,7 @@ def test_least_factor_of_all_pushes_governs(frame):
 
 
 def test_strengths_of_a_frame_are_divided_by_the_confidence_factor(frame):
-    by_hand = framed(
-        code={"knowledge_level": "LC3"}, material={"compressive_strength": 3e6 / 1.35, "tensile_strength": 1e5 / 1.35}
-    )  # fmt: skip
+    by_hand = framed(code={"knowledge_level": "LC3"}, material={"compressive_strength": 3e6 / 1.35, "tensile_strength": 1e5 / 1.35})
     by_hand["joints"]["cohesion"] = 1e5 / 1.35
     other = extrados.run(by_hand, threads=1)["frame-pushover"]
     peaks = [[row.peak_base_shear_N for row in one.runs] for one in (frame["frame-pushover"], other)]
@@ -263,14 +287,10 @@ def test_walls_out_of_plane_are_those_of_the_local_mechanism(frame):
     """The same check as an analysis of its own, with the period of the frame."""
     found = frame["frame-pushover"].out_of_plane
     alone = framed(code={})
-    alone["analysis"] = [
-        {"kind": "local-mechanism", "mechanism": "building", "building_period": found.building_period_s}
-    ]
+    alone["analysis"] = [{"kind": "local-mechanism", "mechanism": "building", "building_period": found.building_period_s}]
     verdict = extrados.run(alone, threads=1).analysis("local-mechanism")["verdict"]
     assert (found.factor, found.outcome) == (verdict["ratio"], verdict["outcome"])
-    assert found.building_period_s == pytest.approx(
-        max(m.period_s for m in frame["frame-modes"].modes if m.mass_ratio_x > 0.5), rel=1e-6
-    )
+    assert found.building_period_s == pytest.approx(max(m.period_s for m in frame["frame-modes"].modes if m.mass_ratio_x > 0.5), rel=1e-6)
     violated = any("out of plane" in text for text in frame["frame-pushover"].verification.violated)
     assert violated == (found.outcome == "collapses")
 
@@ -278,14 +298,17 @@ def test_walls_out_of_plane_are_those_of_the_local_mechanism(frame):
 def test_the_limit_state_of_operation_is_two_thirds_of_that_of_damage():
     """SLO has a return period of 30 years (V_R 50 years, 81 %), and no check of local mechanisms."""
     code = {
-        "limit_states": ["SLO", "SLD"], "accelerations": ["0.04 g", "0.05 g"], "amplifications": [2.4, 2.4], "corner_periods": [0.27, 0.28],
-    }  # fmt: skip
+        "limit_states": ["SLO", "SLD"],
+        "accelerations": ["0.04 g", "0.05 g"],
+        "amplifications": [2.4, 2.4],
+        "corner_periods": [0.27, 0.28],
+    }
     run = extrados.run(framed(code=code), threads=1)
     for curve in run["frame-pushover"].verification.curves:
         slo, sld = (
             next(c for c in run["frame-pushover"].verification.checks if (c.push, c.limit_state) == (curve.push, state))
             for state in ("SLO", "SLD")
-        )  # fmt: skip
+        )
         assert slo.capacity_m == pytest.approx(2.0 / 3.0 * sld.capacity_m, rel=1e-12)
         assert slo.return_period_years == pytest.approx(-50.0 / np.log(1.0 - 0.81), rel=1e-12)
     alone = framed(code=code)
@@ -299,9 +322,7 @@ def test_fragility_over_motions_is_that_of_each_motion_by_itself():
     """The accelerations carried of a set of three are those of three runs with the spectrum of one of its motions (SLV)."""
     motion = {"kind": "generated", "mmi": 7, "duration": 4.0, "seed": 3}
     whole = framed(verification={"motions": 3})
-    run = extrados.run(
-        {**whole, "motion": motion, "code": {"jurisdiction": "NTC", "knowledge_level": "LC3"}}, threads=1
-    )
+    run = extrados.run({**whole, "motion": motion, "code": {"jurisdiction": "NTC", "knowledge_level": "LC3"}}, threads=1)
     found, carried = run["frame-pushover"].verification, run.array("frame-pushover", "carried_pga")
     (row,) = found.fragility
     assert (row.limit_state, row.motions, carried.shape) == ("SLV", 3, (3, 1))

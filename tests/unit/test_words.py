@@ -36,7 +36,7 @@ def test_words_stand_in_one_line_each() -> None:
 @pytest.mark.parametrize(
     "word",
     ["backfill", "span", "hinge", "hinges", "PGA", "mortar", "voussoir count", "keystone", "springing", "infill", "PGV", "thrust-line"],
-)  # fmt: skip
+)
 def test_a_word_of_the_trade_is_known(word: str) -> None:
     assert "Read docs/" in manual.explain(word, TABLES)
 
@@ -54,8 +54,15 @@ def test_terms_of_five_languages_lead_to_what_explain_knows() -> None:
 
 @pytest.mark.parametrize(
     ("word", "place"),
-    [("catena", "[[ties]]"), ("tirants", "[[ties]]"), ("Bogen", 'kind = "arch"'), ("boveda", 'kind = "vault"'), ("flèche", "rise"), ("cupola", 'kind = "dome"')],
-)  # fmt: skip
+    [
+        ("catena", "[[ties]]"),
+        ("tirants", "[[ties]]"),
+        ("Bogen", 'kind = "arch"'),
+        ("boveda", 'kind = "vault"'),
+        ("flèche", "rise"),
+        ("cupola", 'kind = "dome"'),
+    ],
+)
 def test_a_word_of_another_language_is_explained(word: str, place: str) -> None:
     assert place in manual.explain(word, TABLES)
 
@@ -73,13 +80,15 @@ def test_every_kind_has_a_line_of_its_own() -> None:
 
 @pytest.mark.parametrize(
     ("typed", "completed"),
-    [("extrados new roc", {"rocking", "rocking-spectrum"}), ("extrados explain rocking.end", {"rocking.end_time"}), ("extrados vers", {"version"})],
-)  # fmt: skip
+    [
+        ("extrados new roc", {"rocking", "rocking-spectrum"}),
+        ("extrados explain rocking.end", {"rocking.end_time"}),
+        ("extrados vers", {"version"}),
+    ],
+)
 def test_the_shell_completes_commands_kinds_and_keys(typed: str, completed: set[str]) -> None:
     """As bash asks for it, by the words of its completion script."""
     asking = {"_EXTRADOS_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": str(typed.count(" "))}
     command = "import sys; sys.argv[0] = 'extrados'; from extrados.__main__ import main; main()"
-    answer = subprocess.run(
-        [sys.executable, "-c", command], env={**os.environ, **asking}, capture_output=True, text=True
-    )
+    answer = subprocess.run([sys.executable, "-c", command], env={**os.environ, **asking}, capture_output=True, text=True)
     assert set(answer.stdout.split()) == completed

@@ -66,19 +66,8 @@ class Oracle:
 
             hit.terminal = fallen.terminal = True
             hit.direction = turned.direction = -1
-            s = solve_ivp(
-                rhs,
-                (t, end),
-                y,
-                rtol=rtol,
-                atol=1e-14,
-                max_step=max_step,
-                events=[hit, turned, fallen],
-                method="DOP853",
-            )
-            peaks += [
-                (float(a), side * float(b[0])) for a, b in zip(s.t_events[1], s.y_events[1], strict=True) if b[0] > 1e-9
-            ]
+            s = solve_ivp(rhs, (t, end), y, rtol=rtol, atol=1e-14, max_step=max_step, events=[hit, turned, fallen], method="DOP853")
+            peaks += [(float(a), side * float(b[0])) for a, b in zip(s.t_events[1], s.y_events[1], strict=True) if b[0] > 1e-9]
             if len(s.t_events[2]):
                 return impacts, peaks, float(s.t_events[2][0])
             if not len(s.t_events[0]):

@@ -66,8 +66,7 @@ def follow_beam(depth: float, prestress: float, ripple: float = 0.1, events: int
     root = 1 / np.sqrt(3)
     roots, weights = np.polynomial.legendre.leggauss(ROWS)
     whole = sum(
-        B.T @ ELASTICITY @ B * (a * b / 4 * THICKNESS)
-        for B in (strain_matrix(x, y, a, b) for x in (-root, root) for y in (-root, root))
+        B.T @ ELASTICITY @ B * (a * b / 4 * THICKNESS) for B in (strain_matrix(x, y, a, b) for x in (-root, root) for y in (-root, root))
     )
     fixed = np.zeros((2 * nodes, 2 * nodes))
     points = []
@@ -75,10 +74,7 @@ def follow_beam(depth: float, prestress: float, ripple: float = 0.1, events: int
         for j in range(ROWS):
             at = place(i, j)
             if i == COLUMNS // 2:
-                points += [
-                    (at, strain_matrix(0.0, y, a, b), w / 2 * a * b * THICKNESS)
-                    for y, w in zip(roots, weights, strict=True)
-                ]
+                points += [(at, strain_matrix(0.0, y, a, b), w / 2 * a * b * THICKNESS) for y, w in zip(roots, weights, strict=True)]
             else:
                 fixed[np.ix_(at, at)] += whole
     loads = np.zeros((2 * nodes, 2))  # A: prestress; B: two forces of 500 N

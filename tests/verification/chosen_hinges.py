@@ -85,14 +85,10 @@ class FourHinges:
             least, most = np.minimum(*ends).min(axis=1), np.maximum(*ends).max(axis=1)
             sense = np.where(least > -1e-9, 1.0, np.where(most < 1e-9, -1.0, 0.0))
             norm = np.sqrt((velocity**2 * self.weight).sum(axis=(1, 2)))
-            found += [
-                (velocity[k] * sense[k] / norm[k], quads[k], outer)
-                for k in np.flatnonzero((sense != 0.0) & (norm > 0.0))
-            ]
+            found += [(velocity[k] * sense[k] / norm[k], quads[k], outer) for k in np.flatnonzero((sense != 0.0) & (norm > 0.0))]
         self.velocity = np.array([v for v, _, _ in found])
         self.hinges = [
-            [(int(j), "extrados" if out else "intrados") for j, out in zip(quad, outer, strict=True)]
-            for _, quad, outer in found
+            [(int(j), "extrados" if out else "intrados") for j, out in zip(quad, outer, strict=True)] for _, quad, outer in found
         ]
         self.momentum = (self.velocity * self.weight).reshape(len(found), -1)
         self.drive = (self.velocity[:, :, 0] * arch.mass).sum(axis=1)
@@ -106,11 +102,7 @@ class FourHinges:
         first, second, third, last = np.where(outer[:, None, None], a.q[quads.T], a.p[quads.T])
         u, w, apart = second - first, third - last, third - second
         with np.errstate(divide="ignore", invalid="ignore"):
-            centre = (
-                second
-                + ((w[:, 0] * apart[:, 1] - w[:, 1] * apart[:, 0]) / (w[:, 0] * u[:, 1] - w[:, 1] * u[:, 0]))[:, None]
-                * u
-            )
+            centre = second + ((w[:, 0] * apart[:, 1] - w[:, 1] * apart[:, 0]) / (w[:, 0] * u[:, 1] - w[:, 1] * u[:, 0]))[:, None] * u
             middle = (u * (second - centre)).sum(axis=1) / ((second - centre) ** 2).sum(axis=1)
             right = middle * ((third - centre) * w).sum(axis=1) / (w**2).sum(axis=1)
         whole = np.isfinite(middle) & np.isfinite(right)

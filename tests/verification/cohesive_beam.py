@@ -102,15 +102,11 @@ def _graded(marks: list[float], first: float, most: float) -> np.ndarray:
 
 
 @cache
-def cohesive_path(
-    beam: Beam, young: float, nu: float, strength: float, energy: float, kind: str, elements: int = 100
-) -> Path:
+def cohesive_path(beam: Beam, young: float, nu: float, strength: float, energy: float, kind: str, elements: int = 100) -> Path:
     """The path of a beam with so many elements over its ligament; young, strength [Pa], energy [N/m]."""
     step = (beam.depth - beam.notch) / elements
     below = round(beam.notch / step)
-    y = np.concatenate(
-        [np.linspace(0.0, beam.notch, below + 1)[:-1], np.linspace(beam.notch, beam.depth, elements + 1)]
-    )
+    y = np.concatenate([np.linspace(0.0, beam.notch, below + 1)[:-1], np.linspace(beam.notch, beam.depth, elements + 1)])
     x = _graded([0.0, beam.slot / 2, beam.gauge / 2, beam.span / 2, beam.length / 2], step, beam.depth / 12)
     number = np.arange(len(x) * len(y)).reshape(len(x), len(y))
     i, j = (a.ravel() for a in np.meshgrid(np.arange(len(x) - 1), np.arange(len(y) - 1), indexing="ij"))
@@ -118,14 +114,10 @@ def cohesive_path(
     i, j = i[solid], j[solid]
     nodes = np.stack([number[i, j], number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]], axis=1)
     freedoms = np.stack([2 * nodes, 2 * nodes + 1], axis=2).reshape(-1, 8)
-    sizes, which = np.unique(
-        np.round(np.stack([x[i + 1] - x[i], y[j + 1] - y[j]], axis=1), 12), axis=0, return_inverse=True
-    )
+    sizes, which = np.unique(np.round(np.stack([x[i + 1] - x[i], y[j + 1] - y[j]], axis=1), 12), axis=0, return_inverse=True)
     values = beam.thickness * np.stack([_rectangle(a, b, young, nu) for a, b in sizes])[which.ravel()]
     n = 2 * number.size
-    k = coo_matrix(
-        (values.ravel(), (np.repeat(freedoms, 8, axis=1).ravel(), np.tile(freedoms, 8).ravel())), (n, n)
-    ).tocsc()
+    k = coo_matrix((values.ravel(), (np.repeat(freedoms, 8, axis=1).ravel(), np.tile(freedoms, 8).ravel())), (n, n)).tocsc()
 
     crack = 2 * number[0, below:]
     at = lambda place: int(np.abs(x - place).argmin())  # noqa: E731
@@ -157,15 +149,15 @@ def cohesive_path(
             change = np.linalg.solve(tangent, -gap)
             u[:tip] += change[:-1]
             force += change[-1]
-            if (
-                np.abs(change[:-1]).max(initial=0.0) <= 1e-12 * energy / strength
-                and np.abs(gap).max() < 1e-9 * strength * share[1]
-            ):
+            if np.abs(change[:-1]).max(initial=0.0) <= 1e-12 * energy / strength and np.abs(gap).max() < 1e-9 * strength * share[1]:
                 break
         else:
             raise ArithmeticError(f"no equilibrium with the crack at node {tip}")
-        path.append([
-            2.0 * (by_load[place[gauge]] * force + by_crack[place[gauge]] @ u), force,
-            -(by_load[place[load]] * force + by_crack[place[load]] @ u),
-        ])  # fmt: skip
+        path.append(
+            [
+                2.0 * (by_load[place[gauge]] * force + by_crack[place[gauge]] @ u),
+                force,
+                -(by_load[place[load]] * force + by_crack[place[load]] @ u),
+            ]
+        )
     return Path(*np.array(path).T)

@@ -26,9 +26,17 @@ from extrados.views.rockers.mechanism import MechanismModel
 
 #: t/R, embrace in degrees, voussoirs.
 ARCHES = [
-    (0.08, 120.0, 11), (0.10, 130.0, 12), (0.10, 145.0, 13), (0.12, 150.0, 13), (0.12, 160.0, 14),
-    (0.14, 157.5, 14), (0.15, 170.0, 16), (0.18, 165.0, 15), (0.18, 175.0, 17), (0.22, 175.0, 17),
-]  # fmt: skip
+    (0.08, 120.0, 11),
+    (0.10, 130.0, 12),
+    (0.10, 145.0, 13),
+    (0.12, 150.0, 13),
+    (0.12, 160.0, 14),
+    (0.14, 157.5, 14),
+    (0.15, 170.0, 16),
+    (0.18, 165.0, 15),
+    (0.18, 175.0, 17),
+    (0.22, 175.0, 17),
+]
 SHAPES: dict[str, tuple[int, Callable[[float, float], Motion]]] = {
     "sine": (10, pulses.sine_pulse),
     "step": (4, lambda amplitude, period: pulses.step_pulse(amplitude, period / 3.0)),
@@ -68,12 +76,7 @@ class Sample:
         draw = np.random.default_rng(self.seed)
         capacity = self.model.collapse[0].gamma * GRAVITY
         return [
-            (
-                shape,
-                make(
-                    capacity * 1.1 * (4.0 / 1.1) ** draw.random(), self.time_unit * 0.7 * (4.0 / 0.7) ** draw.random()
-                ),
-            )
+            (shape, make(capacity * 1.1 * (4.0 / 1.1) ** draw.random(), self.time_unit * 0.7 * (4.0 / 0.7) ** draw.random()))
             for shape, (count, make) in SHAPES.items()
             for _ in range(count)
         ]
@@ -85,12 +88,7 @@ class Sample:
         ends = np.array([motion.end + REST * self.time_unit for _, motion in self.pulses])
         runs = np.arange(len(grounds))
         found = rocking.ensemble(
-            [rocking.arch_body(self.model.four_hinge, c_v)],
-            grounds,
-            np.zeros_like(runs),
-            runs,
-            np.full(len(runs), scale),
-            ends,
+            [rocking.arch_body(self.model.four_hinge, c_v)], grounds, np.zeros_like(runs), runs, np.full(len(runs), scale), ends
         )
         return np.array([rocking.OUTCOMES[k] == "collapse" for k in found.outcome])
 
@@ -103,21 +101,31 @@ class Sample:
             return 0.0
         s = side[moving]
         line = core_arch.thrust_line(
-            self.model.four_hinge, self.arch, s * run.rotation[moving], s * run.rate[moving],
-            s * run.acceleration[moving], s * run.ground[moving], run.vertical[moving],
-        )  # fmt: skip
+            self.model.four_hinge,
+            self.arch,
+            s * run.rotation[moving],
+            s * run.rate[moving],
+            s * run.acceleration[moving],
+            s * run.ground[moving],
+            run.vertical[moving],
+        )
         return float((np.abs(line.position - 0.5).max(axis=1) > 0.51).mean())
 
     @cached_property
     def elements(self) -> dem_model.Model:
         building = make_deck(
             {
-                "structure": {"kind": "arch", "radius": 1.0, "thickness": self.thickness, "embrace": self.embrace,
-                              "voussoirs": self.voussoirs},
+                "structure": {
+                    "kind": "arch",
+                    "radius": 1.0,
+                    "thickness": self.thickness,
+                    "embrace": self.embrace,
+                    "voussoirs": self.voussoirs,
+                },
                 "joints": {"friction": 2.0, "normal_stiffness": 1e12},
                 "analysis": [{"kind": "tilt"}],
             }
-        ).building  # fmt: skip
+        ).building
         return dem_model.Model(building.blocks(), building.rigid(), joint_values(building))
 
     def falls(self, motion: Motion) -> bool:

@@ -47,9 +47,10 @@ def lattice(wall: Wall, a: float) -> tuple[np.ndarray, np.ndarray]:
         if k < rows:
             bars += [
                 (start[k] + i, start[k + 1] + j)
-                for i in range(len(row)) for j in range(len(places[k + 1]))
+                for i in range(len(row))
+                for j in range(len(places[k + 1]))
                 if abs(row[i, 0] - places[k + 1][j, 0]) <= 0.5 * a + 1e-9
-            ]  # fmt: skip
+            ]
     return nodes, np.array(bars)
 
 
@@ -59,9 +60,7 @@ def push(wall: Wall, a: float, reach: float, events: int = 20000) -> tuple[np.nd
     way = nodes[bars[:, 1]] - nodes[bars[:, 0]]
     long = np.hypot(*way.T)
     unit = way / long[:, None]
-    edge = np.isin(nodes[bars], (0.0, wall.length))[:, :, 0].all(axis=1) | np.isclose(
-        nodes[bars][:, :, 1], wall.height
-    ).all(axis=1)
+    edge = np.isin(nodes[bars], (0.0, wall.length))[:, :, 0].all(axis=1) | np.isclose(nodes[bars][:, :, 1], wall.height).all(axis=1)
     stiff = np.sqrt(3.0) / 2.0 * wall.young * a * wall.thickness / long * np.where(edge, 0.5, 1.0)
     top, foot = np.isclose(nodes[:, 1], wall.height), np.isclose(nodes[:, 1], 0.0)
     number = np.full(nodes.shape, -1)
@@ -82,9 +81,7 @@ def push(wall: Wall, a: float, reach: float, events: int = 20000) -> tuple[np.nd
     held = free >= 0
     b = sp.csr_matrix((shape[held], (np.nonzero(held)[0], free[held])), shape=(len(bars), n))
     force = wall.strength * a * wall.thickness / np.sqrt(3.0) * np.where(edge, 0.5, 1.0)
-    teeth = np.where(
-        np.abs(unit[:, 1]) < 1e-9, TEETH, 0
-    )  # level bars stay whole: under compression they would split the lattice
+    teeth = np.where(np.abs(unit[:, 1]) < 1e-9, TEETH, 0)  # level bars stay whole: under compression they would split the lattice
     last = np.sqrt(3.0) * wall.energy / wall.strength
     begin = force / stiff
     limit, now = force.copy(), stiff.copy()

@@ -19,7 +19,7 @@ def arm(axis: np.ndarray, radius: float, height: float) -> np.ndarray:
     return -0.5 * height * axis - radius * across / np.linalg.norm(across)
 
 
-def rolled(axis: np.ndarray, spin: np.ndarray, inertia: tuple[float, float], radius: float, height: float, times: np.ndarray) -> np.ndarray:  # fmt: skip
+def rolled(axis: np.ndarray, spin: np.ndarray, inertia: tuple[float, float], radius: float, height: float, times: np.ndarray) -> np.ndarray:
     """Axis of the cylinder at the times (t, 3).
 
     axis: at the start, spin [rad/s]; inertia over the mass about a diameter through the centroid and about the axis [m^2].
@@ -38,9 +38,7 @@ def rolled(axis: np.ndarray, spin: np.ndarray, inertia: tuple[float, float], rad
         right = -np.cross(w, turning @ w) + np.cross(a, GRAVITY * UP - np.cross(w, da))
         return np.concatenate([moved, np.linalg.solve(matrix, right)])
 
-    return solve_ivp(
-        rates, (0.0, float(times[-1])), [*axis, *spin], rtol=1e-10, atol=1e-12, t_eval=times
-    ).y[:3].T  # fmt: skip
+    return solve_ivp(rates, (0.0, float(times[-1])), [*axis, *spin], rtol=1e-10, atol=1e-12, t_eval=times).y[:3].T
 
 
 def steady(tilt: float, inertia: tuple[float, float], radius: float, height: float) -> tuple[np.ndarray, float]:

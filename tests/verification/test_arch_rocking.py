@@ -146,10 +146,7 @@ def test_stopping_when_safe_changes_no_outcome(oppenheim) -> None:
     durations = np.linspace(0.1, 1.0, 40)
     grounds = [pulses.step_pulse(-9.0, t).ground for t in durations]
     index = np.arange(40)
-    quick, whole = (
-        rocking.ensemble([oppenheim.body], grounds, 0 * index, index, 1.0, 60.0, stop_when_safe=s)
-        for s in (True, False)
-    )
+    quick, whole = (rocking.ensemble([oppenheim.body], grounds, 0 * index, index, 1.0, 60.0, stop_when_safe=s) for s in (True, False))
     assert np.array_equal(quick.outcome, whole.outcome)
     assert quick.peak == pytest.approx(whole.peak, rel=1e-12)
 
@@ -157,7 +154,7 @@ def test_stopping_when_safe_changes_no_outcome(oppenheim) -> None:
 @pytest.mark.parametrize(
     ("ratio", "embrace", "value"),
     [(0.12, 160, 1.052), (0.12, 170, 1.148), (0.15, 170, 0.980), (0.15, 180, 1.017), (0.18, 180, 0.949), (0.21, 180, 0.877)],
-)  # fmt: skip
+)
 def test_impact_where_hinge_a_is_above_the_springing(ratio, embrace, value) -> None:
     model = ArchModel(make_arch(1.0, ratio, embrace, embrace // 5), "thesis")
     assert model.impacts.thesis == pytest.approx(value, abs=6e-4)
@@ -167,9 +164,8 @@ def test_impact_where_hinge_a_is_above_the_springing(ratio, embrace, value) -> N
 
 
 @pytest.mark.parametrize(
-    ("ratio", "embrace", "value"),
-    [(0.12, 140, 0.724), (0.15, 160, 0.731), (0.18, 150, 0.633), (0.21, 180, 0.618), (0.18, 180, 0.645)],
-)  # fmt: skip
+    ("ratio", "embrace", "value"), [(0.12, 140, 0.724), (0.15, 160, 0.731), (0.18, 150, 0.633), (0.21, 180, 0.618), (0.18, 180, 0.645)]
+)
 def test_energy_safe_impact(ratio, embrace, value) -> None:
     assert ArchModel(make_arch(1.0, ratio, embrace, embrace // 5)).impacts.energy_safe == pytest.approx(value, abs=6e-4)
 
@@ -185,9 +181,7 @@ def test_ring_sector_against_a_fine_polygon() -> None:
 
     inner, outer, angle = 1.3, 1.9, 0.37
     area, centre, polar = ring_sector(inner, outer, angle)
-    r, t = np.meshgrid(
-        inner + (outer - inner) * (np.arange(2000) + 0.5) / 2000, angle * ((np.arange(400) + 0.5) / 400 - 0.5)
-    )
+    r, t = np.meshgrid(inner + (outer - inner) * (np.arange(2000) + 0.5) / 2000, angle * ((np.arange(400) + 0.5) / 400 - 0.5))
     w = r * (outer - inner) / 2000 * angle / 400
     assert area == pytest.approx(w.sum(), rel=1e-9)
     assert centre == pytest.approx((w * r * np.cos(t)).sum() / area, rel=1e-6)
@@ -211,14 +205,17 @@ def response_to_sine(model: ArchModel, amplitude: float, period: float) -> tuple
     gamma, omega = model.collapse[0].gamma, 2.0 * np.pi / period
     found, _, fallen = Oracle(model, model.restitution).run(
         lambda t: -amplitude * GRAVITY * np.sin(omega * t) if t < period else 0.0,
-        np.arcsin(gamma / amplitude) / omega, 1, period + 8.0, period / 200.0, rtol=1e-8,
-    )  # fmt: skip
+        np.arcsin(gamma / amplitude) / omega,
+        1,
+        period + 8.0,
+        period / 200.0,
+        rtol=1e-8,
+    )
     return len(found), fallen
 
 
 @pytest.mark.parametrize(
-    ("amplitude", "period", "impacts"),
-    [(0.5, 1.1417, 1), pytest.param(1.0, 0.6669, 1, marks=pytest.mark.verify), (1.0, 1.4419, 0)],
+    ("amplitude", "period", "impacts"), [(0.5, 1.1417, 1), pytest.param(1.0, 0.6669, 1, marks=pytest.mark.verify), (1.0, 1.4419, 0)]
 )
 def test_failing_sines_of_fig_5_7_against_scipy(oppenheim, amplitude: float, period: float, impacts: int) -> None:
     """`cases/arch/figure-5-7`: the arch recovers under a sine 0.1 % shorter, and collapses under one 0.1 % longer after this many impacts."""

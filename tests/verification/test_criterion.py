@@ -12,11 +12,19 @@ from extrados.views.rockers.arch import ArchModel
 
 #: Table 5.3, cells whose impact rule is not in question (c_v below 0.9)
 PRINTED = {
-    (0.12, 140): (0.040, -0.69, 0.20, 0.42), (0.15, 140): (0.061, -0.54, 0.28, 0.55), (0.15, 150): (0.048, -0.59, 0.26, 0.43),
-    (0.15, 160): (0.032, -0.76, 0.21, 0.33), (0.18, 140): (0.082, -0.41, 0.39, 0.69), (0.18, 150): (0.063, -0.51, 0.33, 0.54),
-    (0.18, 160): (0.050, -0.57, 0.30, 0.43), (0.18, 170): (0.032, -0.79, 0.23, 0.33), (0.21, 140): (0.101, -0.41, 0.48, 0.82),
-    (0.21, 150): (0.080, -0.42, 0.41, 0.65), (0.21, 160): (0.063, -0.50, 0.35, 0.52), (0.21, 170): (0.047, -0.64, 0.28, 0.41),
-}  # fmt: skip
+    (0.12, 140): (0.040, -0.69, 0.20, 0.42),
+    (0.15, 140): (0.061, -0.54, 0.28, 0.55),
+    (0.15, 150): (0.048, -0.59, 0.26, 0.43),
+    (0.15, 160): (0.032, -0.76, 0.21, 0.33),
+    (0.18, 140): (0.082, -0.41, 0.39, 0.69),
+    (0.18, 150): (0.063, -0.51, 0.33, 0.54),
+    (0.18, 160): (0.050, -0.57, 0.30, 0.43),
+    (0.18, 170): (0.032, -0.79, 0.23, 0.33),
+    (0.21, 140): (0.101, -0.41, 0.48, 0.82),
+    (0.21, 150): (0.080, -0.42, 0.41, 0.65),
+    (0.21, 160): (0.063, -0.50, 0.35, 0.52),
+    (0.21, 170): (0.047, -0.64, 0.28, 0.41),
+}
 
 
 @pytest.mark.parametrize("cell", PRINTED, ids=str)
@@ -34,9 +42,7 @@ def test_shipped_table_is_what_the_tool_fits() -> None:
     """One cell refitted now gives the row of the shipped table."""
     fit, _, _ = criterion.fit_arch(ArchModel(make_arch(1.0, 0.18, 150, 30), "thesis"), threads=2)
     stored = criterion.table()[0.18, 150.0]
-    assert (fit.c1, fit.c2, fit.t_min, fit.gamma) == pytest.approx(
-        (stored.c1, stored.c2, stored.t_min, stored.gamma), rel=1e-4
-    )
+    assert (fit.c1, fit.c2, fit.t_min, fit.gamma) == pytest.approx((stored.c1, stored.c2, stored.t_min, stored.gamma), rel=1e-4)
     assert fit.rms < 0.01
 
 

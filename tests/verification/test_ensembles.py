@@ -52,8 +52,6 @@ def test_probabilities_follow_strength_slenderness_and_size(fell: np.ndarray) ->
 def test_single_motions_follow_no_trend(fell: np.ndarray) -> None:
     """Among the first twenty motions each rule of thumb is broken by some block."""
     few = fell[:, :, :20]
-    assert (few[:, :, :, :-1] & ~few[:, :, :, 1:]).any(), (
-        "a stronger motion leaves standing what a weaker one overturns"
-    )
+    assert (few[:, :, :, :-1] & ~few[:, :, :, 1:]).any(), "a stronger motion leaves standing what a weaker one overturns"
     assert (few[:, 1:] & ~few[:, :-1]).any(), "a larger block falls where the smaller one stands"
     assert (few[:-1] & ~few[1:]).any(), "a stockier block falls where the slenderer one stands"

@@ -49,9 +49,7 @@ def test_fixed_hinges_end_as_discrete_elements_do() -> None:
     assert all(other > 0.84 for other, _, _ in found.values())
     # near the border safe pockets lie between fallen ones, so that no factor on the pulse takes all unsafe errors
     stronger = {
-        scale: told(
-            f"inelastic, pulses times {scale}", np.array([one.rocks_down("inelastic", scale) for one in SAMPLES])
-        )
+        scale: told(f"inelastic, pulses times {scale}", np.array([one.rocks_down("inelastic", scale) for one in SAMPLES]))
         for scale in (1.1, 1.2, 1.3)
     }
     assert stronger[1.2][1] < unsafe
@@ -115,9 +113,7 @@ def test_the_arch_of_the_readme(scale: float) -> None:
     deck["motion"]["scale"] = scale
 
     def outcome(kind: str, joints: dict, **keys: bool) -> str:
-        run = extrados.run(
-            deck | {"joints": joints, "analysis": [{"kind": kind, "output_step": 0.01, **keys}]}, threads=1
-        )
+        run = extrados.run(deck | {"joints": joints, "analysis": [{"kind": kind, "output_step": 0.01, **keys}]}, threads=1)
         return run[kind]["outcome"]
 
     elements = outcome("dem", {"friction": 2.0, "normal_stiffness": 1e11})
@@ -132,9 +128,7 @@ def test_when_the_thrust_line_of_the_readme_leaves_the_arch() -> None:
     """While it swings back: whenever the ground pushes the arch on with less than half of its capacity, or the other way."""
     deck = tomllib.loads(README.read_text())
     run = extrados.run(deck | {"analysis": [{"kind": "tilt"}, {"kind": "rocking"}]}, threads=1)
-    rotation, ground, position = (
-        np.array(run.array("rocking", name)) for name in ("rotation", "ground", "thrust_position")
-    )
+    rotation, ground, position = (np.array(run.array("rocking", name)) for name in ("rotation", "ground", "thrust_position"))
     rocks = rotation != 0.0
     outside = np.abs(position[rocks] - 0.5).max(axis=1) > 0.51
     push = -np.sign(rotation[rocks]) * ground[rocks] / (GRAVITY * run["tilt"]["collapse_acceleration_g"])

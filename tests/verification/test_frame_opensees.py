@@ -12,21 +12,34 @@ ops = pytest.importorskip("openseespy.opensees")
 
 FACADE = {
     "structure": {
-        "kind": "building", "storeys": [3.2, 2.9],
+        "kind": "building",
+        "storeys": [3.2, 2.9],
         "walls": [
             {
-                "name": "front", "start": [0, 0], "end": [7, 0], "thickness": 0.4,
+                "name": "front",
+                "start": [0, 0],
+                "end": [7, 0],
+                "thickness": 0.4,
                 "openings": [
-                    {"storey": 1, "x": [1.2, 2.2], "z": [0.0, 2.2]}, {"storey": 1, "x": [4.0, 5.2], "z": [0.9, 2.3]},
-                    {"storey": 2, "x": [1.2, 2.2], "z": [0.8, 2.1]}, {"storey": 2, "x": [4.3, 5.5], "z": [0.8, 2.1]},
+                    {"storey": 1, "x": [1.2, 2.2], "z": [0.0, 2.2]},
+                    {"storey": 1, "x": [4.0, 5.2], "z": [0.9, 2.3]},
+                    {"storey": 2, "x": [1.2, 2.2], "z": [0.8, 2.1]},
+                    {"storey": 2, "x": [4.3, 5.5], "z": [0.8, 2.1]},
                 ],
             }
         ],
     },
-    "material": {"density": 1800, "young": 2e9, "poisson": 0.25, "compressive_strength": 4e6, "tensile_strength": 1e5, "fracture_energy": 20},
+    "material": {
+        "density": 1800,
+        "young": 2e9,
+        "poisson": 0.25,
+        "compressive_strength": 4e6,
+        "tensile_strength": 1e5,
+        "fracture_energy": 20,
+    },
     "joints": {"cohesion": 1e5},
     "analysis": [{"kind": "frame-modes"}],
-}  # fmt: skip
+}
 
 
 def elastic(model, forces: dict[int, float]) -> dict[int, float]:
@@ -53,9 +66,7 @@ def elastic(model, forces: dict[int, float]) -> dict[int, float]:
         ops.geomTransf("Linear", k + 1)
         area, inertia = e.depth * e.thickness, e.thickness * e.depth**3 / 12
         shear = e.shear_stiffness * e.length  # G times the shear area
-        ops.element(
-            "ElasticTimoshenkoBeam", k + 1, *ends, e.young, shear / area, area if e.pier else 1e-9, inertia, area, k + 1
-        )  # fmt: skip
+        ops.element("ElasticTimoshenkoBeam", k + 1, *ends, e.young, shear / area, area if e.pier else 1e-9, inertia, area, k + 1)
     ops.timeSeries("Linear", 1)
     ops.pattern("Plain", 1, 1)
     for level, force in forces.items():
@@ -172,9 +183,19 @@ def interpreted(script: str) -> None:
         area, inertia = depth * thickness, thickness * depth**3 / 12
         ops.geomTransf("Linear", int(tag), 0.0, 1.0, 0.0)
         ops.element(
-            "ElasticTimoshenkoBeam", int(tag), *ends, young, shear, area if sort == "-pier" else 1e-9, 2 * inertia, 1.0, inertia,
-            area / 1.2, area / 1.2, int(tag),
-        )  # fmt: skip
+            "ElasticTimoshenkoBeam",
+            int(tag),
+            *ends,
+            young,
+            shear,
+            area if sort == "-pier" else 1e-9,
+            2 * inertia,
+            1.0,
+            inertia,
+            area / 1.2,
+            area / 1.2,
+            int(tag),
+        )
         return ""
 
     def pattern(sort: str, tag: str, series: str, body: str) -> str:
@@ -184,8 +205,27 @@ def interpreted(script: str) -> None:
         return ""
 
     ops.wipe()
-    for name in ("wipe", "model", "node", "fix", "equalDOF", "element", "rigidLink", "uniaxialMaterial", "load", "constraints", "numberer",
-                 "system", "test", "algorithm", "integrator", "analysis", "analyze", "loadConst", "wipeAnalysis"):  # fmt: skip
+    for name in (
+        "wipe",
+        "model",
+        "node",
+        "fix",
+        "equalDOF",
+        "element",
+        "rigidLink",
+        "uniaxialMaterial",
+        "load",
+        "constraints",
+        "numberer",
+        "system",
+        "test",
+        "algorithm",
+        "integrator",
+        "analysis",
+        "analyze",
+        "loadConst",
+        "wipeAnalysis",
+    ):
         tcl.createcommand(name, call(name))
     tcl.createcommand("pattern", pattern)
     tcl.eval(script)
@@ -195,7 +235,8 @@ def test_the_exported_frame_of_a_house_moves_as_this_one():
     """Walls side by side, floors as springs between their displacements, corners as vertical springs: the same displacements."""
     facade = FACADE["structure"]["walls"][0]
     house = {
-        "kind": "building", "storeys": [3.2, 2.9],
+        "kind": "building",
+        "storeys": [3.2, 2.9],
         "walls": [
             facade,
             {"name": "right", "start": [7, 0], "end": [7, 5], "thickness": 0.4},
@@ -203,12 +244,16 @@ def test_the_exported_frame_of_a_house_moves_as_this_one():
             {"name": "left", "start": [0, 5], "end": [0, 0], "thickness": 0.4},
         ],
         "floors": [{"storey": k, "young": 5e7, "thickness": 0.05, "load": 3e3} for k in (1, 2)],
-    }  # fmt: skip
+    }
     deck = make_deck({**FACADE, "structure": house, "analysis": [{"kind": "frame-modes"}]})
     frame = deck.building.frame(FrameOptions())
     interpreted(exported(deck, "opensees-frame"))
-    nodes = {freedom: k + 1 for k, node in reversed(list(enumerate(frame.nodes))) if node.level
-             for freedom in [frame.along[node.wall, node.level]]}  # fmt: skip
+    nodes = {
+        freedom: k + 1
+        for k, node in reversed(list(enumerate(frame.nodes)))
+        if node.level
+        for freedom in [frame.along[node.wall, node.level]]
+    }
     before = np.array([ops.nodeDisp(nodes[f], 1) for f in sorted(nodes)])
     ops.constraints("Penalty", 1e15, 1e15)
     ops.numberer("Plain")

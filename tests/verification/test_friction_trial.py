@@ -46,9 +46,7 @@ def random_wall(draw: np.random.Generator) -> Assembly:
 def random_section(draw: np.random.Generator) -> Assembly:
     kind = int(draw.integers(3))
     if kind == 0:
-        return make_arch(
-            5.0, draw.uniform(0.5, 1.5), draw.uniform(100.0, 175.0), int(draw.integers(5, 30))
-        )  # fmt: skip
+        return make_arch(5.0, draw.uniform(0.5, 1.5), draw.uniform(100.0, 175.0), int(draw.integers(5, 30)))
     if kind == 1:
         return make_vault(5.0, draw.uniform(0.4, 0.9), 120.0, 16, 4.4, draw.uniform(1.5, 4.0), draw.uniform(5.0, 12.0))
     aisle = Aisle(draw.uniform(3.0, 5.0), 0.45, 150.0, 10, draw.uniform(5.0, 8.0), draw.uniform(1.0, 3.0))
@@ -84,9 +82,7 @@ def test_every_one_is_answered(first: int) -> None:
             found = limit.coulomb[direction]
             assert found.residuals.worst < 1e-7, (seed, found.residuals)
             assert (found.falling is not None) is (seed in HANGING), seed
-            print(
-                f"{seed:4d} {direction:+d} {state.gamma:+.5f} spread {np.ptp(found.starts):.5f} residual {found.residuals.worst:.1e}"
-            )
+            print(f"{seed:4d} {direction:+d} {state.gamma:+.5f} spread {np.ptp(found.starts):.5f} residual {found.residuals.worst:.1e}")
             lower, upper = limit.without_dilatancy_between(direction)
             assert upper is None or direction * state.gamma <= direction * upper + 1e-8, seed
             assert lower is None or direction * state.gamma >= direction * lower - 1e-8, seed
@@ -116,25 +112,27 @@ def least_by_integers(assembly: Assembly, friction: float) -> float:
     rooms = [pick(0), pick(1), plus, minus]
     # unknowns: corner forces, gamma, twists, motions (4 m), binaries (4 m); a binary of one lets the motion be.
     four = sparse.eye_array(4 * m, format="csr")
-    motion = sparse.vstack([
-        sparse.hstack([turned[0::3], -one, none(m, m), none(m, m), none(m, m)]),
-        sparse.hstack([turned[1::3], none(m, m), -one, none(m, m), none(m, m)]),
-        sparse.hstack([turned[2::3], none(m, m), none(m, m), one, -one]),
-        sparse.hstack([sparse.csr_array(live[None, :]), none(1, 4 * m)]),
-    ])  # fmt: skip
+    motion = sparse.vstack(
+        [
+            sparse.hstack([turned[0::3], -one, none(m, m), none(m, m), none(m, m)]),
+            sparse.hstack([turned[1::3], none(m, m), -one, none(m, m), none(m, m)]),
+            sparse.hstack([turned[2::3], none(m, m), none(m, m), one, -one]),
+            sparse.hstack([sparse.csr_array(live[None, :]), none(1, 4 * m)]),
+        ]
+    )
     room = sparse.vstack(rooms)
-    rows = sparse.vstack([
-        sparse.hstack([corner, sparse.csr_array(live[:, None]), none(n, n + 8 * m)]),
-        sparse.hstack([none(3 * m + 1, 3 * m + 1), motion, none(3 * m + 1, 4 * m)]),
-        sparse.hstack([room, none(4 * m, 1 + n + 4 * m), big_force * four]),
-        sparse.hstack([none(4 * m, 3 * m + 1 + n), four, -big_motion * four]),
-        sparse.hstack([room, none(4 * m, 1 + n + 8 * m)]),
-    ]).tocsr()  # fmt: skip
+    rows = sparse.vstack(
+        [
+            sparse.hstack([corner, sparse.csr_array(live[:, None]), none(n, n + 8 * m)]),
+            sparse.hstack([none(3 * m + 1, 3 * m + 1), motion, none(3 * m + 1, 4 * m)]),
+            sparse.hstack([room, none(4 * m, 1 + n + 4 * m), big_force * four]),
+            sparse.hstack([none(4 * m, 3 * m + 1 + n), four, -big_motion * four]),
+            sparse.hstack([room, none(4 * m, 1 + n + 8 * m)]),
+        ]
+    ).tocsr()
     inf = highspy.kHighsInf
     lower = np.concatenate([system.right, np.zeros(3 * m), [1.0], np.full(8 * m, -inf), np.zeros(4 * m)])
-    upper = np.concatenate(
-        [system.right, np.zeros(3 * m), [1.0], np.full(4 * m, big_force), np.zeros(4 * m), np.full(4 * m, inf)]
-    )
+    upper = np.concatenate([system.right, np.zeros(3 * m), [1.0], np.full(4 * m, big_force), np.zeros(4 * m), np.full(4 * m, inf)])
     low = np.concatenate([np.zeros(3 * m), [0.0], np.full(n, -inf), np.zeros(8 * m)])
     low[2 : 3 * m : 3] = -inf
     high = np.concatenate([np.full(3 * m + 1 + n, inf), np.full(4 * m, big_motion), np.ones(4 * m)])
@@ -147,9 +145,22 @@ def least_by_integers(assembly: Assembly, friction: float) -> float:
     solver.setOptionValue("time_limit", 120.0)
     kind = np.concatenate([np.zeros(3 * m + 1 + n + 4 * m, dtype=np.int32), np.ones(4 * m, dtype=np.int32)])
     solver.passModel(
-        len(cost), rows.shape[0], rows.nnz, int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
-        cost, low, high, lower, upper, rows.indptr.astype(np.int32), rows.indices.astype(np.int32), rows.data, kind,
-    )  # fmt: skip
+        len(cost),
+        rows.shape[0],
+        rows.nnz,
+        int(highspy.MatrixFormat.kRowwise),
+        int(highspy.ObjSense.kMinimize),
+        0.0,
+        cost,
+        low,
+        high,
+        lower,
+        upper,
+        rows.indptr.astype(np.int32),
+        rows.indices.astype(np.int32),
+        rows.data,
+        kind,
+    )
     solver.run()
     assert solver.getModelStatus() == highspy.HighsModelStatus.kOptimal
     return solver.getObjectiveValue()
@@ -169,9 +180,10 @@ def test_rigid_contacts_collapse_within_the_interval(seed: int) -> None:
     """Slowly tilted, both ways: at or above the least state found, at or below the associated bound, within the accuracy."""
     accuracy = 2e-3
     deck = {
-        "structure": coursed(seed), "joints": {"friction": 0.65},
+        "structure": coursed(seed),
+        "joints": {"friction": 0.65},
         "analysis": [{"kind": "tilt"}, {"kind": "dem", "test": "tilt", "tilt_accuracy": accuracy, "solver": "nonsmooth"}],
-    }  # fmt: skip
+    }
     limit, elements = (r.results for r in run_analyses(Context(make_deck(deck), threads=1)))
     fallen = elements.collapse_acceleration_g, elements.collapse_acceleration_opposite_g
     for opposite, fell in zip((False, True), fallen, strict=True):

@@ -20,8 +20,7 @@ pytestmark = pytest.mark.verify
 RATIO = 0.1
 EMBRACES = (120.0, 130.0, 140.0, 150.0, 157.5, 165.0, 170.0, 175.0, 180.0, 185.0)
 #: t/R -> the least and the greatest embrace of arches that stand, and do not lock as they rock
-ROCK = {0.07: (120.0, 157.5), 0.10: (120.0, 175.0), 0.12: (120.0, 185.0), 0.15: (120.0, 185.0), 0.20: (120.0, 185.0),
-        0.25: (150.0, 185.0)}  # fmt: skip
+ROCK = {0.07: (120.0, 157.5), 0.10: (120.0, 175.0), 0.12: (120.0, 185.0), 0.15: (120.0, 185.0), 0.20: (120.0, 185.0), 0.25: (150.0, 185.0)}
 ARCHES = [(t, e) for t, (least, greatest) in ROCK.items() for e in EMBRACES if least <= e <= greatest]
 
 
@@ -48,10 +47,8 @@ def measured(thickness: float, embrace: float) -> Measured:
             "analysis": [{"kind": "dem", "end_time": 3.5 * quarter, "output_step": max(quarter / 400.0, 1e-5)}],
         },
         threads=1,
-    )  # fmt: skip
-    time, potential, kinetic = (
-        np.array(run.array("dem", name)) for name in ("time", "potential_energy", "kinetic_energy")
     )
+    time, potential, kinetic = (np.array(run.array("dem", name)) for name in ("time", "potential_energy", "kinetic_energy"))
     rest, start = mechanism.coefficients(1, [0.0, RATIO * mechanism.critical[0]]).potential
     potential = potential - potential[0] + start - rest
     hit = int(np.argmax(np.where(time < 1.5 * quarter, kinetic, 0.0)))
@@ -69,7 +66,7 @@ def test_the_blow_at_all_joints_is_nearest_to_discrete_elements() -> None:
     print("t/R   deg    thesis  energy-safe  inelastic  swing  blow")
     for (thickness, embrace), m in zip(ARCHES, found, strict=True):
         r = m.rules
-        print(f"{thickness:.2f}  {embrace:5.1f}  {r.thesis:6.3f}  {r.energy_safe:11.3f}  {r.inelastic:9.3f}  {m.swing:.3f}  {m.blow:.3f}")  # fmt: skip
+        print(f"{thickness:.2f}  {embrace:5.1f}  {r.thesis:6.3f}  {r.energy_safe:11.3f}  {r.inelastic:9.3f}  {m.swing:.3f}  {m.blow:.3f}")
     blow = np.array([m.blow for m in found])
     rms = {}
     for rule in ("thesis", "energy-safe", "inelastic"):

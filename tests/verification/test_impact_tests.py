@@ -20,7 +20,7 @@ PRINTED = {
     0.15: ((0.061, -0.54, 0.28), (0.048, -0.59, 0.26), (0.032, -0.76, 0.21), (0.018, -1.00, 0.16), (0.008, -1.31, 0.11)),
     0.18: ((0.082, -0.41, 0.39), (0.063, -0.51, 0.33), (0.050, -0.57, 0.30), (0.032, -0.79, 0.23), (0.018, -1.04, 0.17)),
     0.21: ((0.101, -0.41, 0.48), (0.080, -0.42, 0.41), (0.063, -0.50, 0.35), (0.047, -0.64, 0.28), (0.028, -0.89, 0.22)),
-}  # fmt: skip
+}
 ARCHES = {"Arch1": (162.0, 16, (0.00252, -1.51, 0.044, 0.20)), "Arch2": (152.0, 15, (0.00674, -1.18, 0.060, 0.31))}
 PERIODS = np.array([0.08, 0.10, 0.12, 0.15, 0.20, 0.30, 0.40])
 FREQUENCIES = (2.0, 4.0, 6.0, 8.0, 10.0)
@@ -61,8 +61,11 @@ def test_one_cell_of_table_5_3_by_each_rule() -> None:
     for rule in RULES:
         fit, _, _ = criterion.fit_arch(ArchModel(make_arch(1.0, 0.15, 180.0, 36), rule), threads=2)
         found[rule] = shift(fit, criterion.Fit(*PRINTED[0.15][4], fit.gamma))
-    assert found == {"thesis": pytest.approx(0.98, abs=0.02), "inelastic": pytest.approx(1.11, abs=0.02),
-                     "energy-safe": pytest.approx(1.54, abs=0.04)}  # fmt: skip
+    assert found == {
+        "thesis": pytest.approx(0.98, abs=0.02),
+        "inelastic": pytest.approx(1.11, abs=0.02),
+        "energy-safe": pytest.approx(1.54, abs=0.04),
+    }
 
 
 @pytest.mark.parametrize("name", ARCHES)
@@ -91,9 +94,7 @@ def test_fig_5_15_by_each_rule() -> None:
         found[rule] = criterion.mode_i_curve(model.body, model.collapse[0].gamma, 1.0, periods, cap=8.0, threads=2)
         print(f"{rule}: " + "  ".join(f"{x:.3f}" for x in found[rule]))
         large = ArchModel(make_arch(5.0, 0.72, 170.0, 34), rule)
-        same = criterion.mode_i_curve(
-            large.body, large.collapse[0].gamma, 5.0, np.sqrt(5.0) * periods, cap=8.0, threads=2
-        )
+        same = criterion.mode_i_curve(large.body, large.collapse[0].gamma, 5.0, np.sqrt(5.0) * periods, cap=8.0, threads=2)
         assert same == pytest.approx(found[rule], rel=2e-3)
     assert (found["thesis"] < found["inelastic"]).all() and (found["inelastic"] < found["energy-safe"]).all()
 
@@ -140,9 +141,7 @@ def test_harmonic_tests_of_arch_1_by_each_rule() -> None:
     for rule in RULES:
         found[rule] = np.array([amplitude_at_collapse(rule, f) for f in FREQUENCIES])
         model = ArchModel(make_arch(0.2, 0.024, 162.0, 16), rule)
-        single = criterion.mode_i_curve(
-            model.body, model.collapse[0].gamma, 0.2, 1.0 / np.array(FREQUENCIES), cap=8.0, threads=2
-        )
+        single = criterion.mode_i_curve(model.body, model.collapse[0].gamma, 0.2, 1.0 / np.array(FREQUENCIES), cap=8.0, threads=2)
         print(f"{rule}: growing {np.round(found[rule], 2)} g, single sine {np.round(single, 2)} g")
         # 2 and 4 Hz: about the single sine
         assert np.abs(found[rule][:2] / single[:2] - 1.0).max() < 0.35
@@ -155,7 +154,7 @@ def test_harmonic_tests_of_arch_1_by_each_rule() -> None:
 ELEMENTS = {
     "Arch1": {0.08: (1.2, 1.35), 0.10: (1.2, 1.35), 0.12: (1.2, 1.35), 0.15: (1.0, 1.1), 0.20: (1.0, 1.1), 0.30: (1.0, 1.1)},
     "Arch2": {0.08: (1.5, 1.7), 0.10: (1.0, 1.1), 0.12: (1.1, 1.2), 0.15: (0.9, 1.0), 0.20: (0.9, 1.0), 0.30: (1.0, 1.1)},
-}  # fmt: skip
+}
 
 
 @pytest.mark.verify

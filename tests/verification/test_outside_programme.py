@@ -29,13 +29,8 @@ VARIANTS = {
 
 
 def rows_of(method: str) -> list[Any]:
-    named = [
-        (case, row)
-        for case in load_cases()
-        for row in case.rows
-        if row.source.startswith(method) and row.source.endswith(HERE)
-    ]
-    return [pytest.param(case, row, id=f"{case.name}-{row.quantity}-{len(row.change)}") for case, row in named]  # fmt: skip
+    named = [(case, row) for case in load_cases() for row in case.rows if row.source.startswith(method) and row.source.endswith(HERE)]
+    return [pytest.param(case, row, id=f"{case.name}-{row.quantity}-{len(row.change)}") for case, row in named]
 
 
 def greatest_load_factor(a: Assembly, loads: Loads, friction: np.ndarray | None, sense: float) -> float:
@@ -95,9 +90,7 @@ def impulse() -> dict[str, float]:
 
     grid = product(np.arange(0.2, 2.0, 0.02), np.arange(0.0, 20.0, 0.04))
     best = max(grid, key=lambda place: amplitude(*place)[1])
-    found = minimize(
-        lambda place: -amplitude(*place)[1], best, method="Nelder-Mead", options={"xatol": 1e-6, "fatol": 1e-9}
-    )
+    found = minimize(lambda place: -amplitude(*place)[1], best, method="Nelder-Mead", options={"xatol": 1e-6, "fatol": 1e-9})
     return {"period_s": found.x[0], "amplitude_g": abs(amplitude(*found.x)[0]) / GRAVITY}
 
 

@@ -44,18 +44,13 @@ def test_every_outcome_of_the_spectrum_is_that_of_the_closed_form(pulse: str) ->
     found = codes(model, pulse, 2.0 * np.pi / (ratios * p), amplitudes * alpha * GRAVITY)
     expected = np.array([[closed(pulse, w, a) for a in amplitudes] for w in ratios])
     assert {1, 2, 3} <= set(expected.ravel()) or pulse == "rectangular"
-    trial = Trial(
-        f"overturning_{pulse}",
-        f"outcomes of the overturning spectrum of one {pulse} that are not those of the closed form",
-    )
+    trial = Trial(f"overturning_{pulse}", f"outcomes of the overturning spectrum of one {pulse} that are not those of the closed form")
     trial.tried = found.size
     trial.notes.append("omega/p 0.75 to 8, amplitudes to 12 g alpha, c_v 0.9 (Zhang and Makris 2001)")
     for i, k in np.argwhere(found != expected):
         near = {closed(pulse, ratios[i], amplitudes[k] * (1.0 + shift)) for shift in (-1e-6, 1e-6)}
         if found[i, k] not in near:
-            trial.fail(
-                f"omega/p {ratios[i]:.3f}, amplitude {amplitudes[k]:.3f}: {found[i, k]}, expected {expected[i, k]}"
-            )
+            trial.fail(f"omega/p {ratios[i]:.3f}, amplitude {amplitudes[k]:.3f}: {found[i, k]}, expected {expected[i, k]}")
     trial.close(1200, keep=True)
 
 
@@ -80,7 +75,7 @@ def test_edges_of_the_spectrum(pulse: str, ratios: tuple[float, ...]) -> None:
 
 @pytest.mark.parametrize(
     ("ratio", "edge"), [(5.0, "first"), (5.5, "first"), (6.0, "first"), (3.0, "last"), (4.0, "last"), (5.0, "last"), (6.0, "last")]
-)  # fmt: skip
+)
 def test_overturning_after_one_impact_past_the_pulse(ratio: float, edge: str) -> None:
     """Dimitrakopoulos and DeJong (2012): free motion keeps E = v^2 - (x - 1)^2, an impact leaves c_v^2 of v^2, and the
     block just reaches its balance where c_v^2 (1 + E) = 1 with E the energy at the end of the pulse: the first and the
@@ -109,9 +104,7 @@ def test_overturning_after_one_impact_past_the_pulse(ratio: float, edge: str) ->
     model = slender()
     p, alpha = float(model.frequency[0]), float(model.alpha[0])
     around = critical * np.array([1.0 - 1e-7, 1.0 + 1e-7]) * alpha * GRAVITY
-    assert codes(model, "sine", np.array([2.0 * np.pi / (ratio * p)]), around)[0].tolist() == (
-        [1, 2] if rising else [2, 1]
-    )
+    assert codes(model, "sine", np.array([2.0 * np.pi / (ratio * p)]), around)[0].tolist() == ([1, 2] if rising else [2, 1])
 
 
 @pytest.mark.parametrize("linear", [True, False])

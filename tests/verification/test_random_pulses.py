@@ -87,7 +87,7 @@ def by_dop853(p: float, alpha: float, c_v: float, shape: str, amplitude: float, 
             falls.terminal, falls.direction = True, 1
             s = solve_ivp(
                 rhs, (t, end), (q, v), "DOP853", rtol=1e-11, atol=1e-14 * alpha, events=(closes, turns, falls), max_step=0.1 * length
-            )  # fmt: skip
+            )
             peak = max([peak, s.y[0, -1], *(y[0] for y in s.y_events[1])])
             if len(s.t_events[2]):
                 return 2, 2.0

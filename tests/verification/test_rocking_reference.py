@@ -19,12 +19,7 @@ def motions(count: int, seed: int) -> np.ndarray:
     t = STEP * np.arange(POINTS)
     window = (np.arctan((t - 0.5) / 0.1) - np.arctan((t - 5.0) / 0.1)) / np.pi
     lines = np.geomspace(0.4, 10.0, 15)
-    raw = np.array(
-        [
-            np.sin(2 * np.pi * np.outer(t, lines) + rng.uniform(0, 2 * np.pi, 15)).sum(axis=1) * window
-            for _ in range(count)
-        ]
-    )
+    raw = np.array([np.sin(2 * np.pi * np.outer(t, lines) + rng.uniform(0, 2 * np.pi, 15)).sum(axis=1) * window for _ in range(count)])
     return raw / np.abs(raw).max(axis=1, keepdims=True) * rng.uniform(0.15, 0.6, (count, 1)) * 9.80665
 
 
@@ -40,15 +35,7 @@ def compare(count: int, seed: int, width: float, height: float) -> tuple[np.ndar
 
     def run(scale: float):
         return rocking.ensemble(
-            [m.body],
-            grounds,
-            np.zeros(count, int),
-            np.arange(count),
-            scale,
-            end,
-            start_rotation=start,
-            stop_when_safe=False,
-            threads=2,
+            [m.body], grounds, np.zeros(count, int), np.arange(count), scale, end, start_rotation=start, stop_when_safe=False, threads=2
         )
 
     ours, more, less = run(1.0), run(1.0 + 1e-6), run(1.0 - 1e-6)
@@ -71,18 +58,14 @@ def test_a_few_motions() -> None:
 def test_two_hundred_motions(width: float, height: float, seed: int) -> None:
     """Half of the 200 on each of two sizes."""
     difference, same, edge = compare(100, seed, width, height)
-    print(
-        f"{width} x {height} m: greatest difference {difference[~edge].max():.1e}, {edge.sum()} of 100 on the edge of collapse"
-    )
+    print(f"{width} x {height} m: greatest difference {difference[~edge].max():.1e}, {edge.sum()} of 100 on the edge of collapse")
     assert edge.sum() <= 10
     trial = Trial(
         f"random_motions_{seed}",
         f"random motions of a block of {width:g} x {height:g} m that end otherwise than by DOP853, or in another peak",
     )
     trial.tried = len(same)
-    trial.notes.append(
-        f"greatest difference of the peak {difference[~edge].max():.0e} alpha; {edge.sum()} on the edge of collapse"
-    )
+    trial.notes.append(f"greatest difference of the peak {difference[~edge].max():.0e} alpha; {edge.sum()} on the edge of collapse")
     for k in np.flatnonzero(~edge & ~(same & (difference < 1e-6))):
         trial.fail(f"motion {k}: difference {difference[k]:.1e}")
     trial.close(100, keep=True)

@@ -38,54 +38,46 @@ class Errors:
 
 
 @cache
-def errors(
-    depth: float,
-    law: str,
-    elements: int,
-    pattern: str = "structured",
-    seed: int = 1,
-    selective: bool = False,
-    **options,
-) -> Errors:
+def errors(depth: float, law: str, elements: int, pattern: str = "structured", seed: int = 1, selective: bool = False, **options) -> Errors:
     """A run with `elements` over the ligament, all else by default; events enough to come down to the last of TAIL."""
     size = 0.5 * depth / elements
-    slot = (
-        size  # as wide as one element: from the corner of a wider one a crack runs beside the load and the reference's
-    )
+    slot = size  # as wide as one element: from the corner of a wider one a crack runs beside the load and the reference's
     found = reference(depth, slot, law)
     b, middle = beam_of(depth, slot), 1.75 * depth
     zone = 0.2 * depth + 0.5 * slot
     deck = {
         "structure": {
-            "kind": "panel", "width": b.length, "height": depth, "thickness": b.thickness,
+            "kind": "panel",
+            "width": b.length,
+            "height": depth,
+            "thickness": b.thickness,
             "openings": [{"x": [middle - 0.5 * slot, middle + 0.5 * slot], "y": [0.0, b.notch]}],
-            "regions": [
-                {"x": [0.0, middle - zone], "linear": True}, {"x": [middle + zone, b.length], "linear": True},
-            ],
+            "regions": [{"x": [0.0, middle - zone], "linear": True}, {"x": [middle + zone, b.length], "linear": True}],
         },
-        "material": {
-            "young": YOUNG, "poisson": NU, "tensile_strength": STRENGTH, "fracture_energy": ENERGY, "softening": law,
-        },
-        "supports": {"held": [
-            {"x": middle - 0.5 * b.span, "y": 0.0, "fix": "xy"}, {"x": middle + 0.5 * b.span, "y": 0.0, "fix": "y"},
-        ]},
-        "analysis": [{
-            "kind": "sla",
-            "reference": [{"kind": "point", "x": middle, "y": depth, "fy": -1000.0}],
-            "control": [
-                {"x": middle + 0.5 * b.gauge, "y": 0.0, "direction": "x", "weight": 1},
-                {"x": middle - 0.5 * b.gauge, "y": 0.0, "direction": "x", "weight": -1},
-            ],
-            "target_displacement": 1.1 * found.opening_after_peak(TAIL[-1]),
-            "events": 250_000,
-            "mesh": {
-                "size": 0.1 * depth, "pattern": pattern, "seed": seed, "selective": selective,
-                "element": "T3" if pattern == "random" else "Q4",
-                "refine": [{"x": [middle - zone, middle + zone], "size": size}, {"y": [0.0, depth], "size": size}],
-            },
-            **options,
-        }],
-    }  # fmt: skip
+        "material": {"young": YOUNG, "poisson": NU, "tensile_strength": STRENGTH, "fracture_energy": ENERGY, "softening": law},
+        "supports": {"held": [{"x": middle - 0.5 * b.span, "y": 0.0, "fix": "xy"}, {"x": middle + 0.5 * b.span, "y": 0.0, "fix": "y"}]},
+        "analysis": [
+            {
+                "kind": "sla",
+                "reference": [{"kind": "point", "x": middle, "y": depth, "fy": -1000.0}],
+                "control": [
+                    {"x": middle + 0.5 * b.gauge, "y": 0.0, "direction": "x", "weight": 1},
+                    {"x": middle - 0.5 * b.gauge, "y": 0.0, "direction": "x", "weight": -1},
+                ],
+                "target_displacement": 1.1 * found.opening_after_peak(TAIL[-1]),
+                "events": 250_000,
+                "mesh": {
+                    "size": 0.1 * depth,
+                    "pattern": pattern,
+                    "seed": seed,
+                    "selective": selective,
+                    "element": "T3" if pattern == "random" else "Q4",
+                    "refine": [{"x": [middle - zone, middle + zone], "size": size}, {"y": [0.0, depth], "size": size}],
+                },
+                **options,
+            }
+        ],
+    }
     result = run_analyses(Context(make_deck(deck)))[0]
     assert result.status == "ok", result.reason
     assert result.results["stop"] in ("target displacement", "mechanism"), result.results["stop"]
@@ -96,9 +88,7 @@ def errors(
     work = np.trapezoid(np.append(0.0, found.load[upto]), np.append(0.0, found.opening[upto]))
     grid = np.linspace(0.0, found.opening[upto][-1], 2000)
     return Errors(
-        result.results["peak_load_N"] / peak - 1.0,
-        tuple(tail),
-        float(np.trapezoid(np.interp(grid, opening, load), grid) / work) - 1.0,
+        result.results["peak_load_N"] / peak - 1.0, tuple(tail), float(np.trapezoid(np.interp(grid, opening, load), grid) / work) - 1.0
     )
 
 
@@ -147,18 +137,23 @@ def strip(mesh: dict) -> float:
     """Energy of the teeth passed when a strip of 100 mm x 50 mm has come apart, over Gf times the notched section."""
     deck = {
         "structure": {
-            "kind": "panel", "width": 0.1, "height": 0.05, "thickness": 0.03,
+            "kind": "panel",
+            "width": 0.1,
+            "height": 0.05,
+            "thickness": 0.03,
             "openings": [{"x": [0.049, 0.051], "y": [0.0, 0.01]}, {"x": [0.049, 0.051], "y": [0.04, 0.05]}],
         },
-        "material": {
-            "young": YOUNG, "poisson": NU, "tensile_strength": STRENGTH, "fracture_energy": ENERGY, "softening": "linear",
-        },
+        "material": {"young": YOUNG, "poisson": NU, "tensile_strength": STRENGTH, "fracture_energy": ENERGY, "softening": "linear"},
         "supports": {"held": [{"edge": "left", "fix": "x"}, {"x": 0.0, "y": 0.0, "fix": "y"}]},
-        "analysis": [{
-            "kind": "sla", "mesh": mesh, "events": 9000,
-            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "right"}]}],
-        }],
-    }  # fmt: skip
+        "analysis": [
+            {
+                "kind": "sla",
+                "mesh": mesh,
+                "events": 9000,
+                "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "right"}]}],
+            }
+        ],
+    }
     result = run_analyses(Context(make_deck(deck)))[0]
     assert result.results["stop"] == "mechanism"
     return result.results["crack_energy_J"] / (ENERGY * 0.03 * 0.03)
@@ -171,9 +166,7 @@ def test_a_crack_along_the_mesh_takes_its_fracture_energy() -> None:
     assert strip({"size": 0.002, "lines_x": lines}) == pytest.approx(1.0, abs=0.01)
 
 
-@pytest.mark.parametrize(
-    "seed", [1, pytest.param(2, marks=pytest.mark.verify), pytest.param(3, marks=pytest.mark.verify)]
-)
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.verify), pytest.param(3, marks=pytest.mark.verify)])
 def test_a_crack_across_random_triangles_takes_its_fracture_energy(seed: int) -> None:
     """Each of three meshes, though no crack is as straight as the section."""
     mesh = {"size": 0.002, "element": "T3", "pattern": "random", "seed": seed}
@@ -222,16 +215,8 @@ def test_twelve_squares_without_shear_locking(law, depth) -> None:
 #: What default elements are held to, by elements over the ligament: peak, tail at 75 and at 50 % of the peak, at 25 %, work.
 #: Near a quarter of the peak one or two elements carry the load, and a tooth of p ft is a large part of it.
 HELD = {
-    "structured": {
-        6: (0.05, 0.07, 0.09, 0.16, 0.05),
-        12: (0.04, 0.05, 0.06, 0.13, 0.03),
-        24: (0.03, 0.03, 0.04, 0.12, 0.02),
-    },
-    "random": {
-        6: (0.12, 0.13, 0.20, 0.25, 0.09),
-        12: (0.07, 0.06, 0.09, 0.22, 0.04),
-        24: (0.06, 0.06, 0.13, 0.13, 0.03),
-    },
+    "structured": {6: (0.05, 0.07, 0.09, 0.16, 0.05), 12: (0.04, 0.05, 0.06, 0.13, 0.03), 24: (0.03, 0.03, 0.04, 0.12, 0.02)},
+    "random": {6: (0.12, 0.13, 0.20, 0.25, 0.09), 12: (0.07, 0.06, 0.09, 0.22, 0.04), 24: (0.06, 0.06, 0.13, 0.13, 0.03)},
 }
 
 
@@ -242,8 +227,10 @@ def test_laws_sizes_and_meshes(pattern, elements) -> None:
     """Three laws and three sizes of beam; squares by one mesh, random triangles by two."""
     rows = {
         (law, depth, seed): errors(depth, law, elements, pattern, seed)
-        for law in LAWS for depth in DEPTHS for seed in ((1,) if pattern == "structured" else (1, 2))
-    }  # fmt: skip
+        for law in LAWS
+        for depth in DEPTHS
+        for seed in ((1,) if pattern == "structured" else (1, 2))
+    }
     held, wrong = HELD[pattern][elements], []
     for case, found in rows.items():
         values = [found.peak, *found.tail, found.work]

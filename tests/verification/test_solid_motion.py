@@ -32,7 +32,9 @@ def cylinder(height: float, sides: int = SIDES) -> tuple[Polyhedron, tuple[float
     return drum, (inertia[0, 0] / mass, inertia[2, 2] / mass)
 
 
-def let_go(height: float, tilt: float, share: float, stiffness: float | None, times: np.ndarray, sides: int = SIDES) -> tuple[dem3.Run, np.ndarray, np.ndarray]:  # fmt: skip
+def let_go(
+    height: float, tilt: float, share: float, stiffness: float | None, times: np.ndarray, sides: int = SIDES
+) -> tuple[dem3.Run, np.ndarray, np.ndarray]:
     """A cylinder on its rim that leans towards +x, with a share of the spin of steady rolling: the run, its axis over time, and
     that of a circular one that rolls without sliding. Without a stiffness on rigid contacts."""
     drum, inertia = cylinder(height, sides)
@@ -43,18 +45,18 @@ def let_go(height: float, tilt: float, share: float, stiffness: float | None, ti
     speed = -np.cross(spin, arm(axis, RADIUS, height))
     rigid = Options(end_time=float(times[-1]), step=2e-4, rigid=True)
     run = dem3.run(
-        solids([leaning], Law(stiffness or 1.0, stiffness or 1.0, 2.0)), replace(rigid, step=0.0, rigid=False, fraction=0.1) if stiffness else rigid,
-        rate=np.array([[*speed, *spin], [0.0] * 6]), times=times,
-    )  # fmt: skip
+        solids([leaning], Law(stiffness or 1.0, stiffness or 1.0, 2.0)),
+        replace(rigid, step=0.0, rigid=False, fraction=0.1) if stiffness else rigid,
+        rate=np.array([[*speed, *spin], [0.0] * 6]),
+        times=times,
+    )
     return run, run.turn[:, 0] @ axis, rolled(axis, spin, inertia, RADIUS, height, times)
 
 
 def test_a_thin_steady_disk_goes_round_as_eulers() -> None:
     """4 g / (r sin tilt) under the root, and the axis of the oracle goes round at that rate without leaning otherwise."""
     thin = (0.25 * RADIUS**2, 0.5 * RADIUS**2)
-    assert steady(0.4, thin, RADIUS, 1e-9)[1] == pytest.approx(
-        np.sqrt(4.0 * GRAVITY / (RADIUS * np.sin(0.4))), rel=1e-6
-    )
+    assert steady(0.4, thin, RADIUS, 1e-9)[1] == pytest.approx(np.sqrt(4.0 * GRAVITY / (RADIUS * np.sin(0.4))), rel=1e-6)
     inertia = cylinder(COIN)[1]
     spin, rate = steady(0.4, inertia, RADIUS, COIN)
     times = np.linspace(0.0, 1.0, 51)
@@ -122,17 +124,24 @@ def test_free_rocking_on_a_facet() -> None:
 
     down.terminal = True
     exact = solve_ivp(
-        lambda _, s: [s[1], -GRAVITY * arm_length / about * np.sin(alpha - s[0])], (0.0, 5.0), [tilt, 0.0], events=down,
-        rtol=1e-10, atol=1e-12, dense_output=True,
-    )  # fmt: skip
+        lambda _, s: [s[1], -GRAVITY * arm_length / about * np.sin(alpha - s[0])],
+        (0.0, 5.0),
+        [tilt, 0.0],
+        events=down,
+        rtol=1e-10,
+        atol=1e-12,
+        dense_output=True,
+    )
     impact = float(exact.t_events[0][0])
     off = []
     for stiffness in (1e10, 1e11):
         times = np.linspace(0.0, 0.95 * impact, 60)
         run = dem3.run(
-            solids([leaning], Law(stiffness, stiffness, 1.0)), Options(end_time=float(times[-1]), fraction=0.1),
-            rate=np.zeros((2, 6)), times=times,
-        )  # fmt: skip
+            solids([leaning], Law(stiffness, stiffness, 1.0)),
+            Options(end_time=float(times[-1]), fraction=0.1),
+            rate=np.zeros((2, 6)),
+            times=times,
+        )
         axis = run.turn[:, 0] @ np.array([np.sin(tilt), 0.0, np.cos(tilt)])
         off.append(np.abs(np.arctan2(axis[:, 0], axis[:, 2]) - exact.sol(times)[0]).max() / tilt)
         assert np.abs(axis[:, 1]).max() < 1e-6
@@ -163,13 +172,17 @@ def test_the_ledger_of_an_arch_closes(stiffness: float, off: float) -> None:
     parts, n = [*arch.parts, *below], len(arch.mass)
     middle = np.array([part.vertices.mean(axis=0) for part in below])
     model = Solids(
-        np.concatenate([arch.centroid, middle]), np.concatenate([arch.mass, np.zeros(len(below))]),
-        np.concatenate([arch.inertia, np.tile(np.eye(3), (len(below), 1, 1))]), [p.vertices for p in parts],
-        [p.faces for p in parts], [*arch.owner.tolist(), *range(n, n + len(below))], [Law(stiffness, stiffness, 0.7, damping=1e6 / stiffness)],
-    )  # fmt: skip
+        np.concatenate([arch.centroid, middle]),
+        np.concatenate([arch.mass, np.zeros(len(below))]),
+        np.concatenate([arch.inertia, np.tile(np.eye(3), (len(below), 1, 1))]),
+        [p.vertices for p in parts],
+        [p.faces for p in parts],
+        [*arch.owner.tolist(), *range(n, n + len(below))],
+        [Law(stiffness, stiffness, 0.7, damping=1e6 / stiffness)],
+    )
     pulse = Ground(
         breaks=np.array([0.0, 0.2, 0.6]), linear=GRAVITY * np.array([[[-1.0, 0.0]], [[0.5, 0.0]]]), harmonic=np.zeros((2, 1, 0, 4))
-    )  # fmt: skip
+    )
     run = dem3.run(model, Options(end_time=1.0), pulse)
     assert np.linalg.norm(run.place[:, :n] - run.settled[:n], axis=2).max() > 0.2
     assert run.residual < off

@@ -16,10 +16,11 @@ BUILDINGS: dict[str, tuple[dict[str, Any], float]] = {
     "nave": ({"structure": {"kind": "vault", "preset": "dejong-a"}, "joints": {"friction": "no-sliding"}}, 0.6),
     "arch": ({"structure": {"kind": "arch", "radius": 1.0, "thickness": 0.18, "embrace": 170.0, "voussoirs": 20}}, 1.25),
     "statue on a pedestal": (
-        {"structure": {"kind": "stack", "lower_width": 1.0, "lower_height": 1.5, "upper_width": 0.6, "upper_height": 2.0}}, 1.0,
+        {"structure": {"kind": "stack", "lower_width": 1.0, "lower_height": 1.5, "upper_width": 0.6, "upper_height": 2.0}},
+        1.0,
     ),
     "pointed arch": ({"structure": {"kind": "pointed-arch", "radius": 4.0, "span": 5.0, "thickness": 0.5, "voussoirs": 16}}, 1.0),
-}  # fmt: skip
+}
 #: Strategies that apply the load as limit analysis does, by other mechanics
 STATIC = ("limit analysis", "sequentially linear analysis")
 
@@ -37,9 +38,7 @@ def test_a_strengthened_building_stands_by_the_other_strategies_too(name: str) -
     for one in (one for one in r.interventions if one.meets_target):
         assert one.verdicts
         rows = {row.strategy: row for row in one.verdicts}
-        assert rows["limit analysis"].before == "collapses" and rows["limit analysis"].margin_after == pytest.approx(
-            1.0, rel=1e-5
-        )
+        assert rows["limit analysis"].before == "collapses" and rows["limit analysis"].margin_after == pytest.approx(1.0, rel=1e-5)
         elements = rows.get("sequentially linear analysis")
         if elements is not None and elements.margin_after is not None:  # finite elements: another method
             # a tie yields only after some movement, of which elements crack: the force of a tie is then not reached

@@ -52,9 +52,7 @@ def test_three_impacts_leave_about_as_much_as_springs_of_little_damping() -> Non
         for stiffness in (1e9, 1e10, 1e11):
             springy.append(rebound(friction, stiffness, 0.05))
             damped.append(rebound(friction, stiffness, 1.0))
-            print(
-                f"friction {friction:g}, {stiffness:g} Pa/m: 5 % of critical {springy[-1]:.3f}, critical {damped[-1]:.3f}"
-            )
+            print(f"friction {friction:g}, {stiffness:g} Pa/m: 5 % of critical {springy[-1]:.3f}, critical {damped[-1]:.3f}")
     print(f"three impacts {three:.3f}")
     assert max(damped) < 0.75 * three
     assert 0.65 * three < min(springy) < three < max(springy) < 1.25 * three

@@ -112,9 +112,7 @@ class Swept:
         if len(members):
             yield members, {n: np.concatenate(found) for n, found in rows.items()}
 
-    def column(
-        self, name: str, change: Callable[[np.ndarray], np.ndarray] = lambda rows: rows
-    ) -> np.ndarray | Streamed:
+    def column(self, name: str, change: Callable[[np.ndarray], np.ndarray] = lambda rows: rows) -> np.ndarray | Streamed:
         """One row of each member, changed; to be read from disk where the rows lie there."""
         if not self.on_disk:
             return change(self[name])
@@ -154,9 +152,7 @@ def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int
 class _Batches:
     """Finished rows, wherever they come from, and what is still to do."""
 
-    def __init__(
-        self, context: Context, name: str, job: Job, count: int, tell: Callable[[int], None], large: bool = False
-    ):
+    def __init__(self, context: Context, name: str, job: Job, count: int, tell: Callable[[int], None], large: bool = False):
         self.context, self.count, self.tell = context, count, tell
         self.kept = context.checkpoint
         #: first member -> rows, or where they lie
@@ -320,9 +316,7 @@ def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     try:
         from distributed import Client
     except ImportError:
-        raise Refused(
-            "a scheduler was given, but dask.distributed is not installed: pip install 'extrados[cluster]'", WHOLE
-        ) from None
+        raise Refused("a scheduler was given, but dask.distributed is not installed: pip install 'extrados[cluster]'", WHOLE) from None
     address = context.scheduler
     try:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
@@ -333,9 +327,7 @@ def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     except OSError:  # what distributed raises where the connection breaks within a call
         return _lost(batches, address)
     finally:
-        with contextlib.suppress(
-            OSError
-        ):  # a scheduler that is busy or gone says no goodbye in time; the rows are here
+        with contextlib.suppress(OSError):  # a scheduler that is busy or gone says no goodbye in time; the rows are here
             client.close(timeout=1.0)
 
 

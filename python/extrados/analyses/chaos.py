@@ -43,12 +43,12 @@ def perturbed() -> list[float]:
 
 def turning(outcome: str, others: Sequence[str]) -> float:
     """Least of NUDGES under which collapse turns into recovery or back, of the outcomes under `perturbed` motions; 0 where none does."""
-    return next(
-        (NUDGES[i // 2] for i, other in enumerate(others) if (other == "collapse") != (outcome == "collapse")), 0.0
-    )
+    return next((NUDGES[i // 2] for i, other in enumerate(others) if (other == "collapse") != (outcome == "collapse")), 0.0)
 
 
-def chaos_told(found: float, turns: float, parts: str = "the rotation", limit: str = "the critical one", advice: str = "use fragility") -> str:  # fmt: skip
+def chaos_told(
+    found: float, turns: float, parts: str = "the rotation", limit: str = "the critical one", advice: str = "use fragility"
+) -> str:
     """The violated condition of a chaotic run, from the growth of a perturbation and the least one that turns its outcome; `parts`:
     what differs, as a share of its `limit`."""
     if found <= CHAOTIC and turns > NUDGE:

@@ -28,9 +28,7 @@ class MotionDemand:
         self.context = context
         self.pulse, self.duration_s, self.amplitude_g = "", 0.0, 0.0
         motion = context.deck.motion
-        match (
-            None if motion is None or motion.floor is not None else motion
-        ):  # a floor turns a pulse into another motion
+        match None if motion is None or motion.floor is not None else motion:  # a floor turns a pulse into another motion
             case StepPulse() as m:
                 self.pulse, self.duration_s, self.amplitude_g = "step", m.duration, abs(m.amplitude) / GRAVITY
             case SinePulse() as m:
@@ -117,7 +115,9 @@ def assumptions_of(options: Analysis, deck: Building, building: Building) -> dic
             origin = "deck" if name in getattr(deck, table).model_fields_set else "default"
         differ = building.materials.values() if table == "material" else getattr(own, "types", [])
         found[key] = Assumption(
-            value=getattr(own, name), unit=unit_of(type(own), name), origin=origin,
+            value=getattr(own, name),
+            unit=unit_of(type(own), name),
+            origin=origin,
             exceptions=any(getattr(one, name, None) is not None for one in differ),
-        )  # fmt: skip
+        )
     return found

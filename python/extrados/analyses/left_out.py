@@ -13,9 +13,10 @@ from extrados.schema.table import Table
 from extrados.views.building import Building
 
 #: What bears on whether stones stand, however that is asked: worth a word where only some of a deck's analyses use it
-SHARED = frozenset(
-    f"joints.{name}" for name in ("friction", "cohesion", "tension", "compressive_strength", "worn_corners")
-) | {"material.compressive_strength", "supports.stiffness"}
+SHARED = frozenset(f"joints.{name}" for name in ("friction", "cohesion", "tension", "compressive_strength", "worn_corners")) | {
+    "material.compressive_strength",
+    "supports.stiffness",
+}
 
 #: The analyses that apply the rules of [code]
 BY_CODE = ("code-checks", "local-mechanism", "pushover", "frame-pushover", "sla", "assess")
@@ -56,9 +57,7 @@ def left_out(deck: Deck) -> list[Remark]:
                     words = f"{names[k]} does not use it{_known_to(name, deck.analyses)}"
                     found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
     if deck.code is not None and not any(getattr(o, "by", o.kind) in BY_CODE for o in deck.analyses):
-        found["", "code"] = Remark(
-            deck.complaint(None, ("code",), f"no analysis of this deck uses it; {', '.join(BY_CODE)} do"), 0
-        )
+        found["", "code"] = Remark(deck.complaint(None, ("code",), f"no analysis of this deck uses it; {', '.join(BY_CODE)} do"), 0)
     return list(found.values())
 
 

@@ -106,9 +106,7 @@ def source_of(context: Context, seed: int | None, duration: float | None = None)
             members = suite_members(model, folder)
             grounds = [_try(partial(suite_motion, model, m, folder), notes) for m in members]
             if all(isinstance(g, str) for g in grounds):
-                raise Refused(
-                    f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}", ("motion",)
-                )
+                raise Refused(f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}", ("motion",))
             context.warnings += shortened(notes)
             return ListSource(grounds, [member_name(m) for m in members]), len(grounds)
         return ListSource([context.motion.ground], ["motion"]), 1
@@ -138,7 +136,5 @@ def measures(grounds: list[Ground], sa: tuple[float, float] | None, threads: int
         for name in MEASURES:
             out[name][index] = getattr(found, name)
         if sa:
-            out["sa"][index] = core_motion.response_spectra(batch, step, [sa[0]], [sa[1]], threads=threads).psa.reshape(
-                len(index)
-            )
+            out["sa"][index] = core_motion.response_spectra(batch, step, [sa[0]], [sa[1]], threads=threads).psa.reshape(len(index))
     return out

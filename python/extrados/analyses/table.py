@@ -28,14 +28,10 @@ class Animated(Table):
     """Keys of the analyses whose answer moves."""
 
     animation: Literal["none", "gif", "mp4"] = key(
-        "none",
-        "also write the motion as a film, 1280 x 720, among the figures; mp4 needs ffmpeg or the package imageio-ffmpeg",
+        "none", "also write the motion as a film, 1280 x 720, among the figures; mp4 needs ffmpeg or the package imageio-ffmpeg"
     )
     animation_speed: float = key(
-        1.0,
-        "speed of the film: 1 is real time, 0.2 five times slower; results without a time last 8 s at 1",
-        gt=0,
-        le=10,
+        1.0, "speed of the film: 1 is real time, 0.2 five times slower; results without a time last 8 s at 1", gt=0, le=10
     )
 
     @model_validator(mode="after")

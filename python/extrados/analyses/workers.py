@@ -77,9 +77,7 @@ def processes(job: Any, count: int) -> Iterator[Elsewhere]:
             with theirs:
                 number = theirs.fileno()
                 command = python_command("extrados.analyses.workers", str(number))
-                started.append(
-                    Worker(subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[number], env=found), ours)
-                )
+                started.append(Worker(subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[number], env=found), ours))
             ours.send(job)
             free.put(started[-1])
         yield Elsewhere(free)

@@ -34,13 +34,16 @@ def written(deck: Deck) -> str:
         add(*_between(top, top - THIN * solids.size * upward), solids.joint_names[j], is_support=True)
     defaults = {"x": 0.0, "y": 0.0, "z": 0.0, "block": None, "is_support": False}
     graph = _object(
-        "compas.datastructures/Graph", attributes={}, default_node_attributes=defaults, default_edge_attributes={"interfaces": None},
-        node=nodes, edge={key: {} for key in nodes}, max_node=len(nodes) - 1,
-    )  # fmt: skip
-    title = deck.title or "extrados"
-    return (
-        json.dumps(_object("compas_assembly.datastructures/Assembly", attributes={"name": title}, graph=graph)) + "\n"
+        "compas.datastructures/Graph",
+        attributes={},
+        default_node_attributes=defaults,
+        default_edge_attributes={"interfaces": None},
+        node=nodes,
+        edge={key: {} for key in nodes},
+        max_node=len(nodes) - 1,
     )
+    title = deck.title or "extrados"
+    return json.dumps(_object("compas_assembly.datastructures/Assembly", attributes={"name": title}, graph=graph)) + "\n"
 
 
 def bodies(deck: Deck) -> Iterator[tuple[str, np.ndarray, list[tuple[int, ...]]]]:
@@ -71,21 +74,22 @@ def _between(one: np.ndarray, two: np.ndarray) -> tuple[np.ndarray, list[tuple[i
 
 def _node(vertices: np.ndarray, faces: Sequence[tuple[int, ...]], name: str, is_support: bool) -> dict[str, Any]:
     block = _object(
-        "compas_assembly.datastructures/Block", attributes={"name": name}, default_vertex_attributes=dict.fromkeys("xyz", 0.0),
-        default_edge_attributes={}, default_face_attributes={},
+        "compas_assembly.datastructures/Block",
+        attributes={"name": name},
+        default_vertex_attributes=dict.fromkeys("xyz", 0.0),
+        default_edge_attributes={},
+        default_face_attributes={},
         vertex={str(k): dict(zip("xyz", xyz, strict=True)) for k, xyz in enumerate(vertices.tolist())},
-        face={str(k): list(map(int, face)) for k, face in enumerate(faces)}, facedata={str(k): {} for k in range(len(faces))}, edgedata={},
-        max_vertex=len(vertices) - 1, max_face=len(faces) - 1,
-    )  # fmt: skip
+        face={str(k): list(map(int, face)) for k, face in enumerate(faces)},
+        facedata={str(k): {} for k in range(len(faces))},
+        edgedata={},
+        max_vertex=len(vertices) - 1,
+        max_face=len(faces) - 1,
+    )
     return {"block": block, "is_support": is_support, **dict(zip("xyz", vertices.mean(axis=0).tolist(), strict=True))}
 
 
 def _object(dtype: str, **data: Any) -> dict[str, Any]:
     """An object of COMPAS; its identity follows from what it holds, so that the same deck gives the same file."""
     content = json.dumps(data, sort_keys=True)
-    return {
-        "dtype": dtype,
-        "data": data,
-        "inheritance": [],
-        "guid": str(uuid.uuid5(uuid.NAMESPACE_OID, dtype + content)),
-    }
+    return {"dtype": dtype, "data": data, "inheritance": [], "guid": str(uuid.uuid5(uuid.NAMESPACE_OID, dtype + content))}

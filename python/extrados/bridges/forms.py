@@ -17,16 +17,8 @@ FORMS: dict[str, tuple[Callable[[Deck], str], str, str]] = {
     "compas": (compas.written, ".json", "the stones as an Assembly of compas_assembly"),
     "udec": (itasca.udec, ".dat", "the stones of a plane section as blocks of UDEC 7"),
     "3dec": (itasca.threedec, ".dat", "the stones in space as blocks of 3DEC 7"),
-    "opensees-frame": (
-        frame_script.macroelements,
-        ".tcl",
-        "the frame of macro-elements of a building for OpenSees with Macroelement3d",
-    ),
-    "frame-tables": (
-        frame_script.tables,
-        ".txt",
-        "the frame of macro-elements of a building as tables of text, as TREMURI orders them",
-    ),
+    "opensees-frame": (frame_script.macroelements, ".tcl", "the frame of macro-elements of a building for OpenSees with Macroelement3d"),
+    "frame-tables": (frame_script.tables, ".txt", "the frame of macro-elements of a building as tables of text, as TREMURI orders them"),
     "opensees": (opensees.written, ".py", "a rocking block, or else a mesh with dry joints, as a script of OpenSeesPy"),
 }
 #: Those that hold nothing but the geometry of blocks

@@ -31,9 +31,7 @@ def frame_of(deck: Deck) -> EquivalentFrame:
     tables = (getattr(analysis, "frame", None) for analysis in deck.analyses)
     found = deck.building.frame(next((one for one in tables if isinstance(one, FrameOptions)), FrameOptions()))
     if found.plan.foundation_stiffness is not None:
-        raise BadGeometry(
-            "frames are exported on rigid ground: leave it out of the deck", ("structure", "foundation_stiffness")
-        )
+        raise BadGeometry("frames are exported on rigid ground: leave it out of the deck", ("structure", "foundation_stiffness"))
     return found
 
 
@@ -48,12 +46,8 @@ def _material(frame: EquivalentFrame, k: int) -> dict[str, float]:
     elif element.shear == "none":
         shear_strength = STRONG
     else:
-        shear_strength = min(
-            (x for x in (element.cohesion, element.tension / element.slenderness) if x > 0.0), default=0.0
-        )
-    return {
-        "E": element.young, "G": shear, "fc": min(element.strength / 0.85, STRONG), "mu": element.friction, "c": shear_strength,
-    }  # fmt: skip
+        shear_strength = min((x for x in (element.cohesion, element.tension / element.slenderness) if x > 0.0), default=0.0)
+    return {"E": element.young, "G": shear, "fc": min(element.strength / 0.85, STRONG), "mu": element.friction, "c": shear_strength}
 
 
 def plain_name(text: str) -> str:
@@ -71,8 +65,7 @@ def _is_rod(frame: EquivalentFrame, k: int) -> bool:
 def _rod(frame: EquivalentFrame, k: int) -> str:
     link = frame.links[k]
     return (
-        f"# Not exported: tie rod, stiffness {link.stiffness:.6g} N/m, strength {link.strengths[1]:.6g} N, "
-        f"prestress {link.prestress:.6g} N"
+        f"# Not exported: tie rod, stiffness {link.stiffness:.6g} N/m, strength {link.strengths[1]:.6g} N, prestress {link.prestress:.6g} N"
     )
 
 
@@ -100,8 +93,13 @@ def macroelements(deck: Deck) -> str:
     lines = [
         f"# {title}: by extrados {VERSION}; N, m. Needs the OpenSees of EPFL (EESD) with Macroelement3d.",
         "# Walls stand side by side, each along X. Shear of the element: one Mohr-Coulomb law, c the least strength without pressure.",
-        "wipe", "model basic -ndm 3 -ndf 6", *_nodes(frame), *_elements(frame), *_links(frame), *_loads(frame),
-    ]  # fmt: skip
+        "wipe",
+        "model basic -ndm 3 -ndf 6",
+        *_nodes(frame),
+        *_elements(frame),
+        *_links(frame),
+        *_loads(frame),
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -204,8 +202,11 @@ def tables(deck: Deck) -> str:
     frame = frame_of(deck)
     _tell_rods(frame, "frame-tables")
     plan = frame.plan
-    text = [f"! {plain_name(' '.join(deck.title.split()) or deck.path)}: by extrados {VERSION}; N, m. Tables of a frame of macro-elements",
-            "/walls", "! number x0 y0 angle_rad name"]  # fmt: skip
+    text = [
+        f"! {plain_name(' '.join(deck.title.split()) or deck.path)}: by extrados {VERSION}; N, m. Tables of a frame of macro-elements",
+        "/walls",
+        "! number x0 y0 angle_rad name",
+    ]
     for w, wall in enumerate(plan.walls, 1):
         angle = float(np.arctan2(wall.direction[1], wall.direction[0]))
         text.append(f"{w} {wall.start[0]:.4f} {wall.start[1]:.4f} {angle:.6f} {plain_name(wall.name)}")
@@ -226,9 +227,7 @@ def tables(deck: Deck) -> str:
     text += ["/floors", "! level kind young thickness load walls"]
     for floor in plan.floors:
         names = ",".join(plain_name(plan.walls[w].name) for w, _, _ in plan.around(floor))
-        text.append(
-            f"{floor.storey} {floor.kind} {floor.young or 0:.6g} {floor.thickness or 0:.6g} {floor.load:.6g} {names}"
-        )
+        text.append(f"{floor.storey} {floor.kind} {floor.young or 0:.6g} {floor.thickness or 0:.6g} {floor.load:.6g} {names}")
     text += [_rod(frame, k).replace("#", "!", 1) for k in range(len(frame.links)) if _is_rod(frame, k)]
     text += ["/loads", "! node vertical_force moment"]
     for k, node in enumerate(frame.nodes, 1):

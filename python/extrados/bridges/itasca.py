@@ -10,11 +10,7 @@ from extrados.decks.reader import Deck
 
 def _head(deck: Deck, program: str) -> list[str]:
     title = " ".join(deck.title.split()) or deck.path
-    return [
-        f"; {title}",
-        f"; geometry for {program} by extrados {VERSION}; lengths in m; properties and supports are yours",
-        "model new",
-    ]
+    return [f"; {title}", f"; geometry for {program} by extrados {VERSION}; lengths in m; properties and supports are yours", "model new"]
 
 
 def udec(deck: Deck) -> str:
@@ -31,15 +27,10 @@ def threedec(deck: Deck) -> str:
     solids = deck.building.solids()
     lines = _head(deck, "3DEC 7")
     for part, owner in zip(solids.parts, solids.owner.tolist(), strict=True):
-        faces = (
-            " ".join(f"{x:.9g},{y:.9g},{z:.9g}" for x, y, z in part.vertices[list(face)][::-1]) for face in part.faces
-        )
+        faces = (" ".join(f"{x:.9g},{y:.9g},{z:.9g}" for x, y, z in part.vertices[list(face)][::-1]) for face in part.faces)
         lines.append(f"block create group {_name(solids.block_names[owner])} poly face " + " face ".join(faces))
     owners = solids.owner.tolist()
-    lines += [
-        f"block join range group {_name(solids.block_names[k])}"
-        for k in sorted({k for k in owners if owners.count(k) > 1})
-    ]
+    lines += [f"block join range group {_name(solids.block_names[k])}" for k in sorted({k for k in owners if owners.count(k) > 1})]
     return "\n".join(lines) + "\n"
 
 

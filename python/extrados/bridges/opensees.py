@@ -24,8 +24,13 @@ NO_SLIDING, HARD = 1e3, 1e6
 def written(deck: Deck) -> str:
     """A block where the building is one that rocks, else the mesh of the deck's first analysis that has one, else of the default size."""
     title = " ".join(deck.title.split()) or deck.path
-    lines = [f'"""{_words(title)}: by extrados {VERSION}; units N, m, kg, s. The model stands under its weight at the end."""', "",
-             "import openseespy.opensees as ops", "", "ops.wipe()"]  # fmt: skip
+    lines = [
+        f'"""{_words(title)}: by extrados {VERSION}; units N, m, kg, s. The model stands under its weight at the end."""',
+        "",
+        "import openseespy.opensees as ops",
+        "",
+        "ops.wipe()",
+    ]
     assert deck.structure is not None
     for what, key in deck.building.special_keys.items():
         raise BadGeometry(f"OpenSees is given no {what} here: leave it out of the deck", key)
@@ -43,10 +48,18 @@ def _words(text: str) -> str:
 
 
 _WEIGHT = [
-    "", "# The weight, in ten steps", 'ops.constraints("Transformation")', 'ops.numberer("RCM")', 'ops.system("UmfPack")',
-    'ops.test("NormDispIncr", 1e-10, 100)', 'ops.algorithm("Newton")', 'ops.integrator("LoadControl", 0.1)', 'ops.analysis("Static")',
-    "failed = ops.analyze(10)", 'ops.loadConst("-time", 0.0)',
-]  # fmt: skip
+    "",
+    "# The weight, in ten steps",
+    'ops.constraints("Transformation")',
+    'ops.numberer("RCM")',
+    'ops.system("UmfPack")',
+    'ops.test("NormDispIncr", 1e-10, 100)',
+    'ops.algorithm("Newton")',
+    'ops.integrator("LoadControl", 0.1)',
+    'ops.analysis("Static")',
+    "failed = ops.analyze(10)",
+    'ops.loadConst("-time", 0.0)',
+]
 
 
 def _block(deck: Deck) -> Iterator[str]:
@@ -101,13 +114,8 @@ def _mesh(mesh: Mesh) -> Iterator[str]:
             continue
         name = {"Q4": "quad", "T3": "tri31"}.get(group.kind)
         if name is None:
-            raise BadGeometry(
-                f'elements {group.kind} have no counterpart here; give mesh.element = "Q4" or "T3"',
-                ("analysis", "mesh"),
-            )
-        for nodes, thickness, material in zip(
-            group.connect, group.thickness.tolist(), group.material.tolist(), strict=True
-        ):
+            raise BadGeometry(f'elements {group.kind} have no counterpart here; give mesh.element = "Q4" or "T3"', ("analysis", "mesh"))
+        for nodes, thickness, material in zip(group.connect, group.thickness.tolist(), group.material.tolist(), strict=True):
             number += 1
             tags = ", ".join(str(n + 1) for n in nodes.tolist())
             yield f'ops.element("{name}", {number}, {tags}, {thickness!r}, "PlaneStress", {material + 1})'
@@ -136,9 +144,7 @@ def _weights(mesh: Mesh, group: ElementGroup) -> np.ndarray:
     from extrados.views.mesh.mesh import element_areas
 
     density = np.array([material.density for material in mesh.materials])[group.material]
-    each = (
-        element_areas(mesh.xy, group.kind, group.connect) * group.thickness * density * GRAVITY / group.connect.shape[1]
-    )
+    each = element_areas(mesh.xy, group.kind, group.connect) * group.thickness * density * GRAVITY / group.connect.shape[1]
     return np.bincount(group.connect.ravel(), np.repeat(each, group.connect.shape[1]), len(mesh.xy))
 
 

@@ -48,12 +48,7 @@ class DrawnWall:
 
 
 def deck_of_file(
-    drawing: Path,
-    walls: Sequence[str],
-    openings: Sequence[str],
-    thickness: float | None,
-    storeys: Sequence[float],
-    unit: str | None = None,
+    drawing: Path, walls: Sequence[str], openings: Sequence[str], thickness: float | None, storeys: Sequence[float], unit: str | None = None
 ) -> str:
     """`deck_of_plan` of a file; DeckError says what cannot be read."""
     try:
@@ -63,9 +58,8 @@ def deck_of_file(
 
 
 def deck_of_plan(
-    file: File, walls: Sequence[str], openings: Sequence[str], thickness: float | None, storeys: Sequence[float],
-    unit: str | None = None,
-) -> str:  # fmt: skip
+    file: File, walls: Sequence[str], openings: Sequence[str], thickness: float | None, storeys: Sequence[float], unit: str | None = None
+) -> str:
     """The text of a deck. walls, openings: layers of the drawing; thickness [m]: of walls that are drawn by their axes, None for
     walls drawn by their faces; storeys: heights [m]. BadGeometry says what cannot be read."""
     drawn = read_dxf(file, unit, [], {name: Layer("joints") for name in (*walls, *openings)})
@@ -153,7 +147,7 @@ def _between_faces(ends: np.ndarray, offset: np.ndarray) -> list[Strip]:
 
 def _along(
     d: np.ndarray, normal: np.ndarray, mid: float, thick: float, parts: list[tuple[float, float]], faces: np.ndarray
-) -> list[DrawnWall]:  # fmt: skip
+) -> list[DrawnWall]:
     """Walls of one axis. A gap in both faces up to WIDEST is an opening, in one face a wall that abuts; a wider one ends the wall."""
     merged: list[list[float]] = []
     for a, b in sorted(parts):
@@ -171,10 +165,7 @@ def _along(
         if not ((faces[:, 0] < middle) & (faces[:, 1] > middle)).any():
             walls[-1][1].append(gap)
         walls[-1][0][1] = b
-    return [
-        DrawnWall(a * d + mid * normal, b * d + mid * normal, thick, [(p - a, q - a) for p, q in gaps])
-        for (a, b), gaps in walls
-    ]
+    return [DrawnWall(a * d + mid * normal, b * d + mid * normal, thick, [(p - a, q - a) for p, q in gaps]) for (a, b), gaps in walls]
 
 
 def joined(walls: list[DrawnWall]) -> list[DrawnWall]:
@@ -241,26 +232,45 @@ def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name
             f"Not considered: {len(short)} pieces at most {LEAST:g} m longer than thick, such as ends of walls; the longest {max(short):.2f} m."
         )
     text = [
-        f'title = "Building of {title}"', "", "[structure]", 'kind = "building"',
+        f'title = "Building of {title}"',
+        "",
+        "[structure]",
+        'kind = "building"',
         f"storeys = [{', '.join(f'{h:g}' for h in storeys)}]",
         f"assumed = [{', '.join(_quoted(one) for one in said)}]",
-    ]  # fmt: skip
+    ]
     for k, wall in enumerate(walls, 1):
-        text += ["", "[[structure.walls]]", f'name = "wall {k}"', f"start = {_point(wall.a)}", f"end = {_point(wall.b)}",
-                 f"thickness = {wall.thickness:.3f}"]  # fmt: skip
+        text += [
+            "",
+            "[[structure.walls]]",
+            f'name = "wall {k}"',
+            f"start = {_point(wall.a)}",
+            f"end = {_point(wall.b)}",
+            f"thickness = {wall.thickness:.3f}",
+        ]
         if wall.openings:
             text.append("openings = [")
             for storey, height in enumerate(storeys, 1):
                 low, high = WINDOW if windows or storey > 1 else DOOR
                 high = min(high, height - 0.3)
-                text += [
-                    f"  {{ storey = {storey}, x = [{a:.3f}, {b:.3f}], z = [{low:g}, {high:g}] }},"
-                    for a, b in wall.openings
-                ]
+                text += [f"  {{ storey = {storey}, x = [{a:.3f}, {b:.3f}], z = [{low:g}, {high:g}] }}," for a, b in wall.openings]
             text.append("]")
-    text += ["", "[material]", "density = 1800", 'young = "1.5 GPa"', "poisson = 0.25", 'compressive_strength = "3 MPa"',
-             "", "[joints]", 'cohesion = "0.1 MPa"', "", "[[analysis]]", 'kind = "frame-pushover"',
-             'frame.diagonal_strength = "50 kPa"', ""]  # fmt: skip
+    text += [
+        "",
+        "[material]",
+        "density = 1800",
+        'young = "1.5 GPa"',
+        "poisson = 0.25",
+        'compressive_strength = "3 MPa"',
+        "",
+        "[joints]",
+        'cohesion = "0.1 MPa"',
+        "",
+        "[[analysis]]",
+        'kind = "frame-pushover"',
+        'frame.diagonal_strength = "50 kPa"',
+        "",
+    ]
     return "\n".join(text)
 
 

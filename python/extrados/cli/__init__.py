@@ -21,9 +21,7 @@ from extrados.cli.terminal import NOT_DONE, Commands
 
 app = Commands(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 #: In the order in which `extrados --help` lists them. What a command needs it imports as it is called.
-COMMANDS = (
-    run, motion, check, schema, explain, new, cases, report, compare, assess, plot, explore, export, import_plan, version,
-)  # fmt: skip
+COMMANDS = (run, motion, check, schema, explain, new, cases, report, compare, assess, plot, explore, export, import_plan, version)
 for command in COMMANDS:
     app.command()(command)
 

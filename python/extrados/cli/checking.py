@@ -16,8 +16,7 @@ MOST_PLACES = 40
 def check(
     decks: Annotated[list[Path], typer.Argument(help="decks to check")],
     out: Annotated[
-        Path | None,
-        typer.Option(help="folder for the picture and the list of a survey; default results/<deck name>-check"),
+        Path | None, typer.Option(help="folder for the picture and the list of a survey; default results/<deck name>-check")
     ] = None,
 ) -> None:
     """Check decks without running them: every complaint at once, and how the stones of a survey fit."""
@@ -77,7 +76,8 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
     grounded = int((inspection.contacts.b < 0).sum())
     out_console.say(
         f"{len(inspection.outlines)} stones, {len(inspection.contacts.a)} joints, {grounded} of them on the ground; "
-        f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance")  # fmt: skip
+        f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance"
+    )
     if not checked.places and not asked:
         return
     try:
@@ -119,9 +119,7 @@ def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
         return
     for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
         out_console.say(line)
-    out_console.say(
-        f"{len(solids.mass)} solids, {len(solids.a)} contacts, {int((solids.b < 0).sum())} of them on the ground"
-    )
+    out_console.say(f"{len(solids.mass)} solids, {len(solids.a)} contacts, {int((solids.b < 0).sum())} of them on the ground")
     if not asked:
         return
     try:

@@ -10,9 +10,7 @@ from extrados.cli.terminal import errors, out_console
 
 def explore(
     deck: Annotated[Path | None, typer.Argument(help="the deck to open; default a new arch")] = None,
-    port: Annotated[
-        int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")
-    ] = None,
+    port: Annotated[int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")] = None,
     browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
     classroom: Annotated[
         bool, typer.Option("--class", help="also start a classroom session; prints a link and a QR code for the pupils")
@@ -21,8 +19,7 @@ def explore(
         str, typer.Option(help="address of this machine on the local network, for --class; default: this machine alone")
     ] = "127.0.0.1",
     standalone: Annotated[
-        Path | None,
-        typer.Option(help="write a page without a server to this file instead: one size and the tilt on sliders"),
+        Path | None, typer.Option(help="write a page without a server to this file instead: one size and the tilt on sliders")
     ] = None,
     pupils: Annotated[int, typer.Option(min=1, max=60, help="most pupils at a time, for --class")] = 30,
 ) -> None:
@@ -66,10 +63,7 @@ def export(
     form: Annotated[
         str,
         typer.Option(
-            "--to",
-            help="compas, udec, 3dec, opensees, opensees-frame or frame-tables",
-            autocompletion=_forms,
-            show_default=False,
+            "--to", help="compas, udec, 3dec, opensees, opensees-frame or frame-tables", autocompletion=_forms, show_default=False
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="file; default results/<deck name>.<ending>")] = None,
@@ -94,19 +88,13 @@ def export(
 
 def import_plan(
     drawing: Annotated[Path, typer.Argument(help="the drawing, DXF")],
-    walls: Annotated[
-        list[str], typer.Option("--walls", help="layer of the walls; may be given again", show_default=False)
-    ],
-    openings: Annotated[
-        list[str] | None, typer.Option("--openings", help="layer of the openings; default: gaps in the walls")
-    ] = None,
+    walls: Annotated[list[str], typer.Option("--walls", help="layer of the walls; may be given again", show_default=False)],
+    openings: Annotated[list[str] | None, typer.Option("--openings", help="layer of the openings; default: gaps in the walls")] = None,
     thickness: Annotated[
         float | None, typer.Option("--thickness", help="of walls drawn by their axes [m]; default: lines are faces")
     ] = None,
     storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys, from the ground")] = "3.0",
-    unit: Annotated[
-        str | None, typer.Option("--unit", help="unit of a drawing that states none: m, cm, mm, in, ft")
-    ] = None,
+    unit: Annotated[str | None, typer.Option("--unit", help="unit of a drawing that states none: m, cm, mm, in, ft")] = None,
 ) -> None:
     """Print a deck of a building from the plan of a drawing: walls by their faces or axes, doors and windows by gaps or a layer."""
     from extrados.bridges.plan_drawing import deck_of_file

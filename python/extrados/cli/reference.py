@@ -29,9 +29,7 @@ def _words(begun: str) -> list[str]:
     return sorted({word for word in known if word.startswith(begun) and " " not in word})
 
 
-def schema(
-    results: Annotated[bool, typer.Option("--results", help="that of summary.json instead")] = False,
-) -> None:
+def schema(results: Annotated[bool, typer.Option("--results", help="that of summary.json instead")] = False) -> None:
     """Print the JSON Schema of decks, for editors, or of results."""
     if results:
         from extrados.results.explain import json_schema
@@ -51,9 +49,7 @@ def explain(
         ),
     ] = None,
     manual: Annotated[bool, typer.Option("--manual", help="the whole reference manual of decks in Markdown")] = False,
-    results: Annotated[
-        bool, typer.Option("--results", help="the whole reference manual of results in Markdown")
-    ] = False,
+    results: Annotated[bool, typer.Option("--results", help="the whole reference manual of results in Markdown")] = False,
 ) -> None:
     """Say what a deck key, a kind or a result means: unit, default, bounds, source; and where a thing is found."""
     told: Any
@@ -78,8 +74,7 @@ def explain(
 
 def new(
     kind: Annotated[
-        str | None,
-        typer.Argument(help="a kind of analysis, structure or motion; default lists them", autocompletion=_kinds),
+        str | None, typer.Argument(help="a kind of analysis, structure or motion; default lists them", autocompletion=_kinds)
     ] = None,
 ) -> None:
     """Print a commented starter deck that runs as it is."""
@@ -102,11 +97,7 @@ def new(
         raise typer.Exit(WRONG_DECK) from None
 
 
-def cases(
-    folder: Annotated[
-        Path | None, typer.Argument(help="folder; default ./cases, else the cases that are shipped")
-    ] = None,
-) -> None:
+def cases(folder: Annotated[Path | None, typer.Argument(help="folder; default ./cases, else the cases that are shipped")] = None) -> None:
     """List the decks below a folder with their titles."""
     from extrados.decks.reader import LARGEST
     from extrados.decks.toml import loads

@@ -72,12 +72,8 @@ def motion(
     out: Annotated[Path | None, typer.Option(help="results folder; default results/<file name>")] = None,
     time_step: Annotated[float | None, typer.Option(help="sampling step [s] where the file has none")] = None,
     unit: Annotated[str | None, typer.Option(help="unit where the file has none: g, m/s^2, cm/s^2 ...")] = None,
-    channel: Annotated[
-        str | None, typer.Option(help="channel of a file with several: number or part of its name")
-    ] = None,
-    columns: Annotated[
-        str | None, typer.Option(help="several columns without time: series or components (then give --channel)")
-    ] = None,
+    channel: Annotated[str | None, typer.Option(help="channel of a file with several: number or part of its name")] = None,
+    columns: Annotated[str | None, typer.Option(help="several columns without time: series or components (then give --channel)")] = None,
     baseline: Annotated[str, typer.Option(help="none, mean, linear, quadratic or cubic")] = "none",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,

@@ -14,12 +14,9 @@ def report(
     folder: Annotated[Path, typer.Argument(help="a results folder")],
     pdf: Annotated[bool | None, typer.Option(help="also report.pdf; default where the run holds an assessment")] = None,
     template: Annotated[
-        Path | None,
-        typer.Option(help="report.toml of an office: logo, colour, title block, order and choice of sections"),
+        Path | None, typer.Option(help="report.toml of an office: logo, colour, title block, order and choice of sections")
     ] = None,
-    language: Annotated[
-        str | None, typer.Option(help="en, it, es, fr or de; default that of the template, else of the deck")
-    ] = None,
+    language: Annotated[str | None, typer.Option(help="en, it, es, fr or de; default that of the template, else of the deck")] = None,
 ) -> None:
     """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF with its source report.typ."""
     from extrados.show.report import write_report
@@ -31,8 +28,7 @@ def report(
 def plot(
     folders: Annotated[list[Path], typer.Argument(help="results folders")],
     together: Annotated[
-        Path | None,
-        typer.Option(help="draw the capacity curves of all of them into this one picture (.png, and .svg beside it)"),
+        Path | None, typer.Option(help="draw the capacity curves of all of them into this one picture (.png, and .svg beside it)")
     ] = None,
 ) -> None:
     """Draw the figures and the report anew, and list the figures; or the capacity curves of several runs in one picture."""
@@ -74,9 +70,7 @@ def _together(folders: list[Path], picture: Path) -> None:
 def compare(
     old: Annotated[Path, typer.Argument(help="a results folder")],
     new: Annotated[Path, typer.Argument(help="another one")],
-    tolerance: Annotated[
-        float, typer.Option(min=0.0, help="relative difference up to which numbers are the same")
-    ] = 1e-9,
+    tolerance: Annotated[float, typer.Option(min=0.0, help="relative difference up to which numbers are the same")] = 1e-9,
     page: Annotated[Path | None, typer.Option(help="also write the comparison as an HTML page")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print it as JSON")] = False,
 ) -> None:

@@ -28,9 +28,7 @@ _MOST_THREADS = max(64, os.cpu_count() or 1)
 def real(name: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> npt.NDArray[np.float64]:
     """`value` as a finite float64 array of a shape in Fortran order; None in `shape`, as in (None, 2), leaves a length open."""
     array = np.asfortranarray(value, dtype=np.float64)
-    if array.ndim != len(shape) or any(
-        want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
-    ):
+    if array.ndim != len(shape) or any(want is not None and have != want for have, want in zip(array.shape, shape, strict=True)):
         raise ValueError(f"{name} has shape {array.shape}, expected {shape}")
     if not np.isfinite(array).all():
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
@@ -52,9 +50,7 @@ def indices(name: str, value: npt.ArrayLike, end: int, shape: tuple[int | None, 
     None in `shape`, as in (None, 2), leaves a length open.
     """
     array = np.asarray(value)
-    if array.ndim != len(shape) or any(
-        want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
-    ):
+    if array.ndim != len(shape) or any(want is not None and have != want for have, want in zip(array.shape, shape, strict=True)):
         raise ValueError(f"{name} has shape {array.shape}, expected {shape}")
     if array.size == 0:
         return np.zeros(array.shape, dtype=np.int32, order="F")

@@ -133,13 +133,18 @@ class Model(BodyModel[Run]):
 
     def _put_joints(self, bodies: Bodies) -> None:
         depth = bodies.depth
-        self._put_laws([
-            replace(
-                law, normal_stiffness=law.normal_stiffness * depth, shear_stiffness=law.shear_stiffness * depth,
-                cohesion=law.cohesion * depth, tension=law.tension * depth,
-            )
-            for law in bodies.laws
-        ])  # fmt: skip
+        self._put_laws(
+            [
+                replace(
+                    law,
+                    normal_stiffness=law.normal_stiffness * depth,
+                    shear_stiffness=law.shear_stiffness * depth,
+                    cohesion=law.cohesion * depth,
+                    tension=law.tension * depth,
+                )
+                for law in bodies.laws
+            ]
+        )
         if bodies.joints:
             pairs = indices("joints", np.transpose(list(bodies.joints)), self.count, (2, None))
             law = indices("joints", list(bodies.joints.values()), len(bodies.laws), (None,))
@@ -159,9 +164,8 @@ class Model(BodyModel[Run]):
     def _put_surroundings(self) -> None:
         o = self.options
         status = _core.api_dem.surroundings(
-            self.handle, real("gravity", o.gravity, (2,)), float(o.mass_damping), int(o.moving_base),
-            real("domain", o.domain, (4,)),
-        )  # fmt: skip
+            self.handle, real("gravity", o.gravity, (2,)), float(o.mass_damping), int(o.moving_base), real("domain", o.domain, (4,))
+        )
         check(status, "surroundings of the blocks")
 
     def _last_run(self, interrupted: bool) -> Run:
@@ -173,9 +177,12 @@ class Model(BodyModel[Run]):
         touching, contact, _, status = _core.api_dem.contacts(self.handle, int(closed))
         check(status, "contacts after the run")
         return Run(
-            **recorded, settled=settled.T, bounces=bounces, airborne=airborne,
+            **recorded,
+            settled=settled.T,
+            bounces=bounces,
+            airborne=airborne,
             contacts=Contacts(touching.T - 1, contact.T[:, :2], contact.T[:, 2:4], contact[4], contact[5]),
-        )  # fmt: skip
+        )
 
 
 def run(
@@ -194,8 +201,5 @@ def run(
     shift (n, 3): displacements of the bodies at the start [m], [m], [rad]; rate (n, 3): their velocities; times (frames):
     of output [s].
     """
-    with (
-        Model(bodies, options, shift=shift, rate=rate, moves=moves) as model,
-        as_motion_set([ground or STILL]) as motions,
-    ):
+    with Model(bodies, options, shift=shift, rate=rate, moves=moves) as model, as_motion_set([ground or STILL]) as motions:
         return model.run(motions, scale=scale, times=times)

@@ -99,16 +99,9 @@ class Model(BodyModel[Run]):
         principal, axes = np.linalg.eigh(np.where(mobile[:, None, None], solids.inertia, np.eye(3)))
         axes[np.linalg.det(axes) < 0.0, :, 2] *= -1.0
         owner = indices("owner", solids.owner, n, (parts,))
-        own = [
-            (np.asarray(v, dtype=float) - solids.centroid[k]) @ axes[k]
-            for v, k in zip(solids.vertices, solids.owner, strict=True)
-        ]
+        own = [(np.asarray(v, dtype=float) - solids.centroid[k]) @ axes[k] for v, k in zip(solids.vertices, solids.owner, strict=True)]
         first = np.cumsum([0, *map(len, own)])
-        loops = [
-            np.asarray(face) + start + 1
-            for faces, start in zip(solids.faces, first[:-1].tolist(), strict=True)
-            for face in faces
-        ]
+        loops = [np.asarray(face) + start + 1 for faces, start in zip(solids.faces, first[:-1].tolist(), strict=True) for face in faces]
         ends = np.cumsum([0, *(len(faces) for faces in solids.faces)])
         table = np.array([[*owner, 0], 1 + first, 1 + ends], dtype=np.int32, order="F")
         handle, status = _core.api_dem3.create(
@@ -132,13 +125,14 @@ class Model(BodyModel[Run]):
             status = _core.api_dem3.joints(self.handle, np.asfortranarray(joints + 1, dtype=np.int32))
             check(status, "joints")
             self._put_dowels(solids.dowels)
-            self._put_ties(
-                solids.ties, lambda place, body: np.einsum("ni,nij->nj", place - solids.centroid[body], axes[body])
-            )
+            self._put_ties(solids.ties, lambda place, body: np.einsum("ni,nij->nj", place - solids.centroid[body], axes[body]))
             status = _core.api_dem3.surroundings(
-                self.handle, real("gravity", options.gravity, (3,)), real("way", options.way, (3,)), float(options.domain),
+                self.handle,
+                real("gravity", options.gravity, (3,)),
+                real("way", options.way, (3,)),
+                float(options.domain),
                 real("rate", np.transpose(np.zeros((n, 6)) if rate is None else rate), (6, n)),
-            )  # fmt: skip
+            )
             check(status, "surroundings of the solids")
             self._put_options(settle=rate is None)
         except BaseException:
@@ -158,9 +152,12 @@ class Model(BodyModel[Run]):
             for values in (dowels.stiffness, dowels.strength, dowels.reach, np.full(n, dowels.damping))
         ]
         status = _core.api_dem3.dowels(
-            self.handle, body, real("place", np.transpose(dowels.place), (3, n)),
-            real("axis", np.transpose(dowels.axis), (3, n)), real("values", np.array(bounded), (4, n)),
-        )  # fmt: skip
+            self.handle,
+            body,
+            real("place", np.transpose(dowels.place), (3, n)),
+            real("axis", np.transpose(dowels.axis), (3, n)),
+            real("values", np.array(bounded), (4, n)),
+        )
         check(status, "dowels")
 
     def _last_run(self, interrupted: bool) -> Run:
@@ -174,9 +171,15 @@ class Model(BodyModel[Run]):
         axes = np.moveaxis(turn, (2, 3), (1, 0))  # (t, n, 3, 3): columns are the own axes
         start = np.swapaxes(self._axes, 1, 2)
         return Run(
-            **recorded, settled=settled.T, bounces=bounces, airborne=airborne, turn=axes @ start,
-            settled_turn=np.moveaxis(settled_turn, 2, 0) @ start, dowel_slip=slip, dowel_out=is_out.astype(bool),
-        )  # fmt: skip
+            **recorded,
+            settled=settled.T,
+            bounces=bounces,
+            airborne=airborne,
+            turn=axes @ start,
+            settled_turn=np.moveaxis(settled_turn, 2, 0) @ start,
+            dowel_slip=slip,
+            dowel_out=is_out.astype(bool),
+        )
 
 
 def run(

@@ -44,9 +44,7 @@ class Law:
 
     def __post_init__(self) -> None:
         if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
-            raise ValueError(
-                f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0"
-            )
+            raise ValueError(f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0")
         if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
             raise ValueError("friction, cohesion, tension and damping of a joint must not be negative")
 
@@ -94,9 +92,12 @@ class Effort:
     def with_(self, other: "Effort") -> "Effort":
         """Both runs together."""
         return Effort(
-            self.steps + other.steps, self.factors + other.factors, max(self.most_rounds, other.most_rounds),
-            self.open_steps + other.open_steps, *max((self.residual, self.worst), (other.residual, other.worst)),
-        )  # fmt: skip
+            self.steps + other.steps,
+            self.factors + other.factors,
+            max(self.most_rounds, other.most_rounds),
+            self.open_steps + other.open_steps,
+            *max((self.residual, self.worst), (other.residual, other.worst)),
+        )
 
 
 @dataclass(frozen=True)
@@ -127,9 +128,7 @@ class Ties:
         found = []
         for first, end, closed in zip(self.first, [*self.first[1:], len(points)], self.closed, strict=True):
             line = points[first:end]
-            found.append(
-                np.linalg.norm(np.diff(np.concatenate([line, line[:1]]) if closed else line, axis=0), axis=1).sum()
-            )
+            found.append(np.linalg.norm(np.diff(np.concatenate([line, line[:1]]) if closed else line, axis=0), axis=1).sum())
         return np.array(found)
 
 
@@ -202,18 +201,17 @@ class BodyModel(Owner, ABC, Generic[Found]):
         local = place(ties.place[on], ties.body[on])
         own[on, : local.shape[1]] = local
         most = np.finfo(float).max
-        values = [
-            ties.stiffness,
-            ties.lengths(),
-            ties.prestress,
-            np.maximum(ties.least, -most),
-            np.minimum(ties.most, most),
-        ]
+        values = [ties.stiffness, ties.lengths(), ties.prestress, np.maximum(ties.least, -most), np.minimum(ties.most, most)]
         status = _core.api_dem_run.ties(
-            self.handle, self.count, real("ties", np.array(values), (5, n)), integers("points", np.append(ties.first, ties.point.max() + 1) + 1),
-            integers("closed", np.asarray(ties.closed, dtype=np.int32), n), bodies, integers("points", ties.point + 1, anchors),
+            self.handle,
+            self.count,
+            real("ties", np.array(values), (5, n)),
+            integers("points", np.append(ties.first, ties.point.max() + 1) + 1),
+            integers("closed", np.asarray(ties.closed, dtype=np.int32), n),
+            bodies,
+            integers("points", ties.point + 1, anchors),
             real("places of ties", own.T, (3, anchors)),
-        )  # fmt: skip
+        )
         check(status, "ties: stiffness above 0, prestress between the least and the greatest tension")
         self._ties = n
 
@@ -232,10 +230,21 @@ class BodyModel(Owner, ABC, Generic[Found]):
         if not (o.end_time > 0.0 and o.output_step > 0.0 and 0.0 < o.fraction <= 1.0):
             raise ValueError("end time, output step and the fraction of the critical step must be positive")
         status = _core.api_dem_run.options(
-            self.handle, o.end_time, o.step, o.fraction, o.settle_tolerance, o.settlement, o.collapse, o.residual_limit,
-            o.settle_damping, o.collapse_turn, o.collapse_drop, int(o.settle_steps) if settle else 0, int(o.stop_at_rest),
+            self.handle,
+            o.end_time,
+            o.step,
+            o.fraction,
+            o.settle_tolerance,
+            o.settlement,
+            o.collapse,
+            o.residual_limit,
+            o.settle_damping,
+            o.collapse_turn,
+            o.collapse_drop,
+            int(o.settle_steps) if settle else 0,
+            int(o.stop_at_rest),
             thread_count(o.threads),
-        )  # fmt: skip
+        )
         check(status, "options of the run")
         status = _core.api_dem_run.rigid(self.handle, int(o.rigid), int(o.quasi_static), float(o.rebound))
         check(status, "rebound of rigid contacts")
@@ -338,12 +347,25 @@ class BodyModel(Owner, ABC, Generic[Found]):
         took, measures, status = _core.api_dem_run.effort(self.handle)
         check(status, "effort of the run")
         return {
-            "reason": REASONS[reason], "blamed": [k - 1 for k in (first, second) if k > 0], "time": when, "place": place.T,
-            "rate": rate.T, "energy": dict(zip(ENERGIES, energy, strict=True)), "stop_time": stop_time, "steps": steps,
-            "settling_steps": settling, "searches": searches, "most_pairs": pairs, "step": least_step,
-            "critical_step": critical_step, "residual": residual, "interrupted": interrupted, "tension": tension.T, "extreme": extreme.T,
+            "reason": REASONS[reason],
+            "blamed": [k - 1 for k in (first, second) if k > 0],
+            "time": when,
+            "place": place.T,
+            "rate": rate.T,
+            "energy": dict(zip(ENERGIES, energy, strict=True)),
+            "stop_time": stop_time,
+            "steps": steps,
+            "settling_steps": settling,
+            "searches": searches,
+            "most_pairs": pairs,
+            "step": least_step,
+            "critical_step": critical_step,
+            "residual": residual,
+            "interrupted": interrupted,
+            "tension": tension.T,
+            "extreme": extreme.T,
             "effort": Effort(*(int(n) for n in took), *(float(value) for value in measures)),
-        }  # fmt: skip
+        }
 
 
 def state_words(state: np.ndarray) -> np.ndarray:

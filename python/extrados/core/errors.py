@@ -30,9 +30,14 @@ class CoreIndexError(CoreError, IndexError):
 
 
 _KINDS: dict[str, type[CoreError]] = {
-    "cancelled": Cancelled, "out_of_memory": CoreMemoryError, "bad_index": CoreIndexError,
-    "closed_handle": HandleError, "wrong_handle": HandleError, "busy": HandleError, "not_ready": HandleError,
-}  # fmt: skip
+    "cancelled": Cancelled,
+    "out_of_memory": CoreMemoryError,
+    "bad_index": CoreIndexError,
+    "closed_handle": HandleError,
+    "wrong_handle": HandleError,
+    "busy": HandleError,
+    "not_ready": HandleError,
+}
 
 
 @cache

@@ -68,11 +68,27 @@ class MacroElement:
         """As the core takes them."""
         area, (ct, beta) = self.depth * self.thickness, self.damage
         return [
-            *self.offsets, self.length, self.depth, self.thickness, self.young, self.strength, RESIDUAL, self.shear_stiffness,
-            self.cohesion, self.friction, self.tension, self.slenderness, ct * self.length / area, beta,
-            max(self.cohesion, 1e-300) * ct * self.length, *self.drifts, self.kept,
-            self.young * self.thickness * self.depth**3 / 12.0, 0.0, self.moment,
-        ]  # fmt: skip
+            *self.offsets,
+            self.length,
+            self.depth,
+            self.thickness,
+            self.young,
+            self.strength,
+            RESIDUAL,
+            self.shear_stiffness,
+            self.cohesion,
+            self.friction,
+            self.tension,
+            self.slenderness,
+            ct * self.length / area,
+            beta,
+            max(self.cohesion, 1e-300) * ct * self.length,
+            *self.drifts,
+            self.kept,
+            self.young * self.thickness * self.depth**3 / 12.0,
+            0.0,
+            self.moment,
+        ]
 
 
 @dataclass(frozen=True)
@@ -119,16 +135,12 @@ class Frame(Owner):
 
     what = "frame of macro-elements"
 
-    def __init__(
-        self, elements: Sequence[MacroElement], links: Sequence[Link], linear: np.ndarray, weight: np.ndarray, mass: np.ndarray
-    ):  # fmt: skip
+    def __init__(self, elements: Sequence[MacroElement], links: Sequence[Link], linear: np.ndarray, weight: np.ndarray, mass: np.ndarray):
         self.n, self.count = len(weight), len(elements)
         handle, status = _core.api_frame.new_frame(self.n)
         check(status, "frame")
         super().__init__(handle)
-        freedom = indices(
-            "freedoms", np.array([e.freedoms for e in elements]).reshape(-1, 6).T + 1, self.n + 1, (6, None)
-        )
+        freedom = indices("freedoms", np.array([e.freedoms for e in elements]).reshape(-1, 6).T + 1, self.n + 1, (6, None))
         choice = np.asfortranarray(np.array([e.choices for e in elements], dtype=np.int32).reshape(-1, 6).T)
         values = real("elements", np.array([e.properties for e in elements]).reshape(-1, 24).T, (24, None))
         check(_core.api_frame.elements(handle, self.n, choice, freedom - np.int32(1), values), "elements of a frame")
@@ -149,9 +161,7 @@ class Frame(Owner):
         check(status, "equilibrium under the weight")
         return Rest(displacement, force.T, tangent)
 
-    def push(
-        self, pattern: np.ndarray, control: np.ndarray, target: float, steps: int = 200, drop: float = 0.5, most: int = 2000
-    ) -> Path:  # fmt: skip
+    def push(self, pattern: np.ndarray, control: np.ndarray, target: float, steps: int = 200, drop: float = 0.5, most: int = 2000) -> Path:
         """Push by a growing multiple of `pattern` (n) [N] until control . d (beyond that at rest) is `target` [m] or the
         multiple falls below `drop` of its greatest."""
         room_for(self.n + 5 * self.count, most)
@@ -161,9 +171,7 @@ class Frame(Owner):
         )
         check(status, "pushover of a frame")
         kept = slice(0, int(count))
-        return Path(
-            STOPS[int(stop)], displacement.T[kept], force.T[kept], drift.T[kept], state.T[kept], curve[0, kept], curve[1, kept]
-        )  # fmt: skip
+        return Path(STOPS[int(stop)], displacement.T[kept], force.T[kept], drift.T[kept], state.T[kept], curve[0, kept], curve[1, kept])
 
     def move(self, unit: np.ndarray, acceleration: np.ndarray, step: float, damping: tuple[float, float]) -> Path:
         """Motion relative to the ground under its acceleration [m/s^2] at steps of `step` seconds; unit (n): displacements of a
@@ -176,9 +184,7 @@ class Frame(Owner):
         )
         check(status, "motion of a frame")
         kept = slice(0, int(count))
-        return Path(
-            STOPS[int(stop)], displacement.T[kept], force.T[kept], drift.T[kept], state.T[kept], shear=shear[kept]
-        )  # fmt: skip
+        return Path(STOPS[int(stop)], displacement.T[kept], force.T[kept], drift.T[kept], state.T[kept], shear=shear[kept])
 
 
 def section_forces(

@@ -80,9 +80,7 @@ def core_links(linkage: Links) -> tuple[Any, ...]:
 
 def table(linkage: Links) -> Table:
     """Tabulate the mechanism from rest to past its collapse; CoreError where gravity does not hold it shut."""
-    numbers, facts, status = _core.api_mechanism.tabulate(
-        *core_links(linkage), int(linkage.side), int(_core.api_mechanism.table_length())
-    )
+    numbers, facts, status = _core.api_mechanism.tabulate(*core_links(linkage), int(linkage.side), int(_core.api_mechanism.table_length()))
     check(status, "motion of the mechanism")
     return Table(numbers, *(float(x) for x in facts))
 

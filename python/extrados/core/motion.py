@@ -35,9 +35,7 @@ def _batch(motions: npt.ArrayLike) -> np.ndarray:
 def envelope(kind: str, parameters: npt.ArrayLike, points: int, step: float) -> np.ndarray:
     """Envelope at 0, step, ... (points). parameters: start, duration [s] and two of the kind, see c/quake/envelope.c."""
     room_for(points)
-    value, status = _core.api_motion.envelope(
-        ENVELOPES[kind], real("parameters", parameters, (4,)), int(points), _step(step)
-    )
+    value, status = _core.api_motion.envelope(ENVELOPES[kind], real("parameters", parameters, (4,)), int(points), _step(step))
     check(status, f"{kind} envelope")
     return value
 
@@ -51,9 +49,7 @@ def line_spectrum(
     """
     intensity, frequency = real("intensity", intensity, (None,)), real("frequency", frequency, (None,))
     table = real("amplitude", np.asarray(amplitude).T, (frequency.size, intensity.size))
-    value, status = _core.api_motion.line_spectrum(
-        intensity, frequency, table, float(wanted), real("lines", lines, (None,))
-    )
+    value, status = _core.api_motion.line_spectrum(intensity, frequency, table, float(wanted), real("lines", lines, (None,)))
     check(status, f"spectrum of intensity {wanted:g}")
     return value
 
@@ -65,9 +61,7 @@ def line_widths(lines: npt.ArrayLike, spacing: str) -> np.ndarray:
     return width
 
 
-def line_amplitudes(
-    value: npt.ArrayLike, width: npt.ArrayLike, scaling: str, factor: float, duration: float
-) -> np.ndarray:
+def line_amplitudes(value: npt.ArrayLike, width: npt.ArrayLike, scaling: str, factor: float, duration: float) -> np.ndarray:
     """Amplitudes (n) of the sines [unit of value / s] from value and width (n) [Hz] of each line; duration: integral of
     the squared envelope [s]. Thesis Eq. 6.6."""
     value = real("value", value, (None,))
@@ -87,14 +81,7 @@ def phases(seed: int, index: int, count: int) -> np.ndarray:
 
 
 def generate(
-    lines: npt.ArrayLike,
-    amplitude: npt.ArrayLike,
-    window: npt.ArrayLike,
-    step: float,
-    seed: int,
-    first: int,
-    count: int,
-    threads: int = 1,
+    lines: npt.ArrayLike, amplitude: npt.ArrayLike, window: npt.ArrayLike, step: float, seed: int, first: int, count: int, threads: int = 1
 ) -> np.ndarray:
     """Motions first .. first + count - 1 of the set `seed` (count, points), thesis Eqs 6.6 to 6.8.
 
@@ -107,9 +94,16 @@ def generate(
     room_for(window.size, count)
     room_for(window.size, 2 * lines.size)
     motions, status = long_call(
-        _core.api_motion.generate, lines, real("amplitude", amplitude, lines.shape), _step(step), window,
-        int(seed), int(first), int(count), thread_count(threads),
-    )  # fmt: skip
+        _core.api_motion.generate,
+        lines,
+        real("amplitude", amplitude, lines.shape),
+        _step(step),
+        window,
+        int(seed),
+        int(first),
+        int(count),
+        thread_count(threads),
+    )
     check(status, "generated motions")
     return motions.T
 
@@ -157,9 +151,7 @@ def response_spectra(
     if periods.min() * 4096 < points_per_cycle * _step(step):
         raise ValueError(f"period {periods.min():g} s is too short for a time step of {step:g} s")
     room_for(3, periods.size, dampings.size, batch.shape[1])
-    peak, status = long_call(
-        _core.api_motion.spectra, batch, _step(step), periods, dampings, int(points_per_cycle), thread_count(threads)
-    )
+    peak, status = long_call(_core.api_motion.spectra, batch, _step(step), periods, dampings, int(points_per_cycle), thread_count(threads))
     check(status, "response spectra")
     peak = np.moveaxis(peak, (0, 1, 2, 3), (0, 3, 2, 1))
     if np.ndim(motions) == 1:

@@ -42,9 +42,7 @@ class Law:
         return [self.stiffness, self.prestress, self.most, self.least, float(self.slack), self.viscous, self.power]
 
 
-def paths(
-    linkage: Links, sort: npt.ArrayLike, ends: npt.ArrayLike, points: npt.ArrayLike, reach: npt.ArrayLike
-) -> np.ndarray:
+def paths(linkage: Links, sort: npt.ArrayLike, ends: npt.ArrayLike, points: npt.ArrayLike, reach: npt.ArrayLike) -> np.ndarray:
     """Paths of a mechanism as the core keeps them; CoreError where its hinges part before the last rotation.
 
     sort (n): LENGTH or TURN; ends (n, 2): parts at both ends, 0 the ground; points (n, 2, 2): x, y of both ends at rest
@@ -82,11 +80,12 @@ def restrained_body(
     if bool(laws) != (tables is not None):
         raise ValueError("laws and their paths go together")
     numbers = [
-        [bare.kind, len(bare.parameters)], bare.parameters, [float(side) for side in open_sides], rebound, [len(laws)],
-        *(law.numbers for law in laws), *(tables or ()),
-    ]  # fmt: skip
-    return Body(
-        lists.number("rocking_body", "restrained"),
-        np.concatenate([np.asarray(x, dtype=float) for x in numbers]),
-        len(laws),
-    )
+        [bare.kind, len(bare.parameters)],
+        bare.parameters,
+        [float(side) for side in open_sides],
+        rebound,
+        [len(laws)],
+        *(law.numbers for law in laws),
+        *(tables or ()),
+    ]
+    return Body(lists.number("rocking_body", "restrained"), np.concatenate([np.asarray(x, dtype=float) for x in numbers]), len(laws))

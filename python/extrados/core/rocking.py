@@ -32,7 +32,7 @@ __all__ = [
     "history",
     "limits",
     "watched_body",
-]  # fmt: skip
+]
 
 #: Outcomes by their number, from 0; events by theirs.
 #: End of a motion, and its words in the order of the core
@@ -58,10 +58,7 @@ def arch_body(mechanism: FourHinge, restitution: float) -> Body:
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
     hinge, (mass, x, y, inertia) = mechanism.links()
     centroid = np.vstack([x, y])
-    return Body(
-        lists.number("rocking_body", "arch"),
-        np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]),
-    )
+    return Body(lists.number("rocking_body", "arch"), np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]))
 
 
 def block_body(
@@ -112,9 +109,13 @@ def _demand(numbers: np.ndarray) -> JointDemand:
 
 
 def watched_body(
-    bare: Body, values: tuple[np.ndarray, np.ndarray], critical: tuple[float, float], friction: np.ndarray, tolerance: float,
+    bare: Body,
+    values: tuple[np.ndarray, np.ndarray],
+    critical: tuple[float, float],
+    friction: np.ndarray,
+    tolerance: float,
     slides: tuple[float, float] = (np.inf, np.inf),
-) -> Body:  # fmt: skip
+) -> Body:
     """A structure whose joints are watched while it rocks (fortran/rocking/watch.f90).
 
     values (steps + 1, joints, 3, 3), rocking to +x and to -x, at equal steps from rest to the `critical` rotation [rad]: forces
@@ -128,14 +129,12 @@ def watched_body(
         raise ValueError(f"values have shapes {values[0].shape} and {values[1].shape}")
     most = np.finfo(float).max
     numbers = [
-        [bare.kind, len(bare.parameters)], bare.parameters,
-        np.minimum([tolerance, *slides, joints, steps, *critical, *friction], most), *(v.transpose(0, 2, 3, 1).ravel() for v in values),
-    ]  # fmt: skip
-    return Body(
-        lists.number("rocking_body", "watched"),
-        np.concatenate([np.asarray(x, dtype=float) for x in numbers]),
-        bare.restraints,
-    )
+        [bare.kind, len(bare.parameters)],
+        bare.parameters,
+        np.minimum([tolerance, *slides, joints, steps, *critical, *friction], most),
+        *(v.transpose(0, 2, 3, 1).ravel() for v in values),
+    ]
+    return Body(lists.number("rocking_body", "watched"), np.concatenate([np.asarray(x, dtype=float) for x in numbers]), bare.restraints)
 
 
 class BodyList(Owner):

@@ -36,9 +36,7 @@ from extrados.core.sla_parts import (
     Springs,
     Stop,
 )
-from extrados.core.sla_parts import (
-    Group as Group,
-)  # fmt: skip
+from extrados.core.sla_parts import Group as Group
 
 __all__ = [
     "CONTINUATIONS",
@@ -75,12 +73,29 @@ __all__ = [
     "memory_limit",
     "shell_axes",
     "teeth",
-]  # fmt: skip
+]
 
 REPORT = (
-    "strain_n", "strain_s", "strain_ns", "stress_n", "stress_s", "stress_ns", "cos", "sin", "ratio_n", "ratio_s",
-    "tooth_n", "tooth_s", "lambda_lo", "lambda_hi", "volume", "crush_n", "crush_s", "shut", "band",
-)  # fmt: skip
+    "strain_n",
+    "strain_s",
+    "strain_ns",
+    "stress_n",
+    "stress_s",
+    "stress_ns",
+    "cos",
+    "sin",
+    "ratio_n",
+    "ratio_s",
+    "tooth_n",
+    "tooth_s",
+    "lambda_lo",
+    "lambda_hi",
+    "volume",
+    "crush_n",
+    "crush_s",
+    "shut",
+    "band",
+)
 MOST_TEETH = 4096
 #: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
 #: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
@@ -133,9 +148,7 @@ def intervals(alpha: float, beta: float, a: npt.ArrayLike, b: npt.ArrayLike) -> 
     return lo, hi
 
 
-def body_force(
-    kind: str, points: tuple[int, int], xy: npt.ArrayLike, connect: npt.ArrayLike, density: npt.ArrayLike
-) -> np.ndarray:
+def body_force(kind: str, points: tuple[int, int], xy: npt.ArrayLike, connect: npt.ArrayLike, density: npt.ArrayLike) -> np.ndarray:
     """Consistent nodal forces (nodes, 2) [N] of a density (elements, 2): force per wall area [N/m^2].
 
     xy (nodes, 2) [m]; connect (elements, nodes of one), from 0.
@@ -216,11 +229,15 @@ class Model(Owner):
         self.moved = int(freedoms.moved)
         handle, status = _core.api_sla_model.create(
             place,
-            indices("equation", equation.T + 1, equations + 1, (self.freedoms, self.nodes)) - np.int32(1), self.moved,
+            indices("equation", equation.T + 1, equations + 1, (self.freedoms, self.nodes)) - np.int32(1),
+            self.moved,
             real("factor", np.transpose(freedoms.factor), (self.freedoms, self.nodes)),
-            CRACKING[behaviour.cracking], retention, int(behaviour.closure), int(behaviour.most_changes),
+            CRACKING[behaviour.cracking],
+            retention,
+            int(behaviour.closure),
+            int(behaviour.most_changes),
             float(behaviour.floor),
-        )  # fmt: skip
+        )
         check(status, "model")
         super().__init__(handle)
         try:
@@ -229,9 +246,8 @@ class Model(Owner):
             metis = equations > 3000 if ordering is None else ordering == "metis"
             limit = memory_limit() if memory is None else memory
             sizes, status = long_call(
-                _core.api_sla_model.prepare, self.handle, int(metis), limit // 8, int(algorithm == "refactor"),
-                thread_count(threads),
-            )  # fmt: skip
+                _core.api_sla_model.prepare, self.handle, int(metis), limit // 8, int(algorithm == "refactor"), thread_count(threads)
+            )
             self.equations, self.points, self.factor_values = (int(x) for x in sizes)
             if status == status_code("too_large"):
                 raise MemoryError(
@@ -251,9 +267,7 @@ class Model(Owner):
         reach = group.reach if isinstance(group, Plane) else None
         rows: list[tuple[float, ...]] = []
         tension = _softenings(group.tension, count)
-        bedded = [
-            law is not None and bed is not None for law, bed in zip(tension, _beddings(group, count), strict=True)
-        ]
+        bedded = [law is not None and bed is not None for law, bed in zip(tension, _beddings(group, count), strict=True)]
         plain = [None if b else law for b, law in zip(bedded, tension, strict=True)]
         if reach is None:
             number, ladder = _one_band(plain, young, band, rows), np.zeros((2, count), dtype=np.int32)
@@ -289,10 +303,7 @@ class Model(Owner):
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        per = (
-            np.shape(group.connect)[1] if isinstance(group, Bars)
-            else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
-        )  # fmt: skip
+        per = np.shape(group.connect)[1] if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
         young = _each("young", group.young, count)
@@ -300,10 +311,12 @@ class Model(Owner):
         if isinstance(group, Bars):
             gradient, length = group.strains(self.xy)
             bad, status = _core.api_sla_model.bars(
-                self.handle, connect, real("gradient", np.transpose(gradient, (2, 1, 0)), (self.xy.shape[1], per, count)),
+                self.handle,
+                connect,
+                real("gradient", np.transpose(gradient, (2, 1, 0)), (self.xy.shape[1], per, count)),
                 _rows(_each("area", group.area, count) * length, young),
                 _rows(*tables, np.full(count, BEARS[group.bears], dtype=np.int32)),
-            )  # fmt: skip
+            )
             what = "bar"
         elif isinstance(group, Joints):
             bad, status = self._add_joints(group, connect, tables)
@@ -312,23 +325,35 @@ class Model(Owner):
             axis = np.broadcast_to(np.asarray(group.axis, dtype=float), (count,))
             given = np.isfinite(axis)
             properties = _rows(
-                _each("thickness", group.thickness, count), young, _each("nu", group.nu, count),
-                _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
-                _each("confinement", group.confinement, count), *_bed_rows(group, count),
-            )  # fmt: skip
+                _each("thickness", group.thickness, count),
+                young,
+                _each("nu", group.nu, count),
+                _each("lateral", group.lateral, count),
+                np.where(given, axis, 0.0),
+                _each("confinement", group.confinement, count),
+                *_bed_rows(group, count),
+            )
             choices = _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32))
             if isinstance(group, Shells):
                 bad, status = _core.api_shell.shells(
-                    self.handle, ELEMENTS[group.kind],
+                    self.handle,
+                    ELEMENTS[group.kind],
                     integers("section", [THROUGH[group.through], group.layers, int(group.bends), int(group.selective)], 4),
                     real("frames", np.transpose(group.frames, (1, 2, 0)), (3, 3, self.nodes)),
-                    integers("flat", np.asarray(group.flat).astype(int), self.nodes), connect, properties, choices,
-                )  # fmt: skip
+                    integers("flat", np.asarray(group.flat).astype(int), self.nodes),
+                    connect,
+                    properties,
+                    choices,
+                )
             else:
                 bad, status = _core.api_sla_model.plane(
-                    self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3),
-                    connect, properties, choices,
-                )  # fmt: skip
+                    self.handle,
+                    ELEMENTS[group.kind],
+                    integers("points", [*group.points, int(group.selective)], 3),
+                    connect,
+                    properties,
+                    choices,
+                )
             what = "element"
         if not isinstance(group, Bars):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
@@ -341,10 +366,13 @@ class Model(Owner):
         count = connect.shape[1]
         friction = np.broadcast_to(np.asarray(group.friction, dtype=float), (count,))
         properties = _rows(
-            *real("area", np.transpose(group.area), (2, count)), _each("normal stiffness", group.normal_stiffness, count),
-            _each("shear stiffness", group.shear_stiffness, count), np.where(np.isnan(friction), -1.0, friction),
-            _each("small", group.small, count), *real("normal", np.transpose(group.normal), (2, count)),
-        )  # fmt: skip
+            *real("area", np.transpose(group.area), (2, count)),
+            _each("normal stiffness", group.normal_stiffness, count),
+            _each("shear stiffness", group.shear_stiffness, count),
+            np.where(np.isnan(friction), -1.0, friction),
+            _each("small", group.small, count),
+            *real("normal", np.transpose(group.normal), (2, count)),
+        )
         dry = np.broadcast_to(np.asarray(group.dry, dtype=np.int32), (count,))
         choices, ripple = _rows(*tables, dry), float(group.ripple)
         if isinstance(group, ShellJoints):
@@ -358,9 +386,11 @@ class Model(Owner):
         node = indices("node of a spring", np.asarray(group.node).T + 1, self.nodes + 1, (2, count)) - np.int32(1)
         direction = np.where(ground, 0, np.asarray(group.direction))
         status = _core.api_sla_model.springs(
-            self.handle, node, indices("direction of a spring", direction.T, self.freedoms, (2, count)),
+            self.handle,
+            node,
+            indices("direction of a spring", direction.T, self.freedoms, (2, count)),
             real("stiffness", group.stiffness, (count,)),
-        )  # fmt: skip
+        )
         check(status, "springs")
 
     def factorise(self) -> float:
@@ -398,9 +428,7 @@ class Model(Owner):
 
     def supports(self, constant: npt.ArrayLike, rate: npt.ArrayLike) -> None:
         """Displacements (moved) [m] of the supports that move, constant and their rate per multiplier; before the loads."""
-        moved = np.asfortranarray(
-            np.column_stack([real("constant", constant, (self.moved,)), real("rate", rate, (self.moved,))])
-        )
+        moved = np.asfortranarray(np.column_stack([real("constant", constant, (self.moved,)), real("rate", rate, (self.moved,))]))
         check(_core.api_sla.supports(self.handle, moved), "supports that move")
 
     def reactions(self) -> np.ndarray:
@@ -409,9 +437,7 @@ class Model(Owner):
         check(status, "forces of supports")
         return np.array(force)
 
-    def run(
-        self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None, *, variant: str = VARIANTS[0]
-    ) -> Events:
+    def run(self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None, *, variant: str = VARIANTS[0]) -> Events:
         """Up to `room` events; the last one recorded is chosen but not applied until the next call.
 
         variant: "load-unload", where no multiplier suits all points the constant loads stay and the greatest lower limit
@@ -425,19 +451,29 @@ class Model(Owner):
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
-        direction = indices(
-            "direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape
-        )
+        direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape)
         status = _core.api_sla.stop_at(
-            self.handle, lists.numbers("sla_variant")[variant], min(stop.load, huge), min(stop.displacement, huge),
-            stop.fraction, stop.compliance, int(stop.refuse_overload), stop.target, stop.side, stop.already,
+            self.handle,
+            lists.numbers("sla_variant")[variant],
+            min(stop.load, huge),
+            min(stop.displacement, huge),
+            stop.fraction,
+            stop.compliance,
+            int(stop.refuse_overload),
+            stop.target,
+            stop.side,
+            stop.already,
             min(stop.far, huge),
-        )  # fmt: skip
+        )
         check(status, "where the events end")
         counts, reals, ints, watched, cracked, released, status = long_call(
-            _core.api_sla.run, self.handle, int(room), first, _rows(node, direction),
+            _core.api_sla.run,
+            self.handle,
+            int(room),
+            first,
+            _rows(node, direction),
             real("share", np.concatenate([m.share for m in monitors]), node.shape),
-        )  # fmt: skip
+        )
         interrupted = status == status_code("cancelled")
         if not interrupted:
             check(status, "events")
@@ -446,12 +482,29 @@ class Model(Owner):
         reals, ints = reals[:, :count].copy(), ints[:, :count].copy()
         load, limit_t, limit_c, stored, external, lost, crack, compliance, residual, scale, pull = reals
         return Events(
-            load, limit_t, limit_c, stored, external, lost, crack, compliance, residual, scale, pull,
-            point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
-            monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
-            interrupted=interrupted, crack_total=float(cracked), solutions=solved,
+            load,
+            limit_t,
+            limit_c,
+            stored,
+            external,
+            lost,
+            crack,
+            compliance,
+            residual,
+            scale,
+            pull,
+            point=ints[0] - 1,
+            code=ints[1],
+            number=ints[2],
+            equilibrium=ints[3].astype(bool),
+            monitors=watched[:, :count].T.copy(),
+            reason=STOPS[reason],
+            guard=(checks, solutions, factors),
+            interrupted=interrupted,
+            crack_total=float(cracked),
+            solutions=solved,
             released=float(released),
-        )  # fmt: skip
+        )
 
     def follow(self, how: str | None, longest: float, least: float, unit: float) -> None:
         """How the next batches go on where events find no equilibrium under the constant loads: by equilibrium iterations in
@@ -483,9 +536,10 @@ class Model(Owner):
         points = 0 if histories is None else self.points
         histories = np.zeros((HISTORIES, 0)) if histories is None else histories
         status = _core.api_sla.go_on(
-            self.handle, real("displacement", np.transpose(displacement), (self.freedoms, self.nodes)),
+            self.handle,
+            real("displacement", np.transpose(displacement), (self.freedoms, self.nodes)),
             real("histories", histories, (HISTORIES, points)),
-        )  # fmt: skip
+        )
         check(status, "continuation")
         self.iterates = True
 

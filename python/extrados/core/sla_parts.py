@@ -39,10 +39,7 @@ class Softening:
 
     def row(self, young: float, band: float) -> list[float]:
         """The line of the core's tooth tables."""
-        return [
-            LAWS[self.law], young, self.strength, self.energy, band, self.ripple, float(self.exact),
-            float(self.overshoot),
-        ]  # fmt: skip
+        return [LAWS[self.law], young, self.strength, self.energy, band, self.ripple, float(self.exact), float(self.overshoot)]
 
 
 @dataclass(frozen=True)
@@ -123,9 +120,7 @@ class Hill:
 
     def __post_init__(self) -> None:
         if not (self.ratio > 0.0 and self.shear > 0.0 and abs(self.coupling) < 2.0):
-            raise ValueError(
-                "Hill's criterion needs a ratio and a shear factor above 0 and a coupling between -2 and 2"
-            )
+            raise ValueError("Hill's criterion needs a ratio and a shear factor above 0 and a coupling between -2 and 2")
 
 
 @dataclass(frozen=True)
@@ -269,9 +264,7 @@ class ShellJoints(Joints):
     row: np.ndarray = field(default_factory=lambda: np.empty((0, 2, 3, 24)))
 
     @staticmethod
-    def rows(
-        normal: np.ndarray, along: np.ndarray, out: np.ndarray, height: np.ndarray, frames: np.ndarray
-    ) -> np.ndarray:
+    def rows(normal: np.ndarray, along: np.ndarray, out: np.ndarray, height: np.ndarray, frames: np.ndarray) -> np.ndarray:
         """The vectors (elements, 2, 3, 24). normal, along, out: (elements, 3) unit vectors across the joint, along it in the
         plane of the wall, and of the wall's normal; height (elements) of the layer over the middle [m]; frames (elements, 4,
         3, 3) axes of the rotations of its nodes, columns."""
@@ -328,10 +321,7 @@ class Freedoms:
 
     @staticmethod
     def make(
-        nodes: int,
-        held: Iterable[tuple[int, int]] = (),
-        ties: Sequence[Sequence[tuple[int, int, float]]] = (),
-        of_node: int = 2,
+        nodes: int, held: Iterable[tuple[int, int]] = (), ties: Sequence[Sequence[tuple[int, int, float]]] = (), of_node: int = 2
     ) -> "Freedoms":
         """held: (node, direction) pairs; ties: lists of (node, direction, factor) that move as one; `of_node` freedoms."""
         held = list(held)
@@ -423,15 +413,16 @@ class Events:
     def join(parts: Sequence["Events"]) -> "Events":
         """Batches one behind the other."""
         last = parts[-1]
-        columns = {
-            name: np.concatenate([getattr(p, name) for p in parts])
-            for name in Events.__dataclass_fields__
-            if name not in ONCE
-        }
+        columns = {name: np.concatenate([getattr(p, name) for p in parts]) for name in Events.__dataclass_fields__ if name not in ONCE}
         return Events(
-            **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total,
-            solutions=last.solutions, released=last.released,
-        )  # fmt: skip
+            **columns,
+            reason=last.reason,
+            guard=last.guard,
+            interrupted=last.interrupted,
+            crack_total=last.crack_total,
+            solutions=last.solutions,
+            released=last.released,
+        )
 
 
 #: What events have once, not each

@@ -33,9 +33,18 @@ class SoftBase:
     def numbers(self) -> np.ndarray:
         """The flat list (9,) of the core, SI."""
         return np.array(
-            [self.mass, self.inertia, self.height, self.toe_left, self.toe_right, self.stiffness, self.damping,
-             float(self.edges), float(self.linear)]
-        )  # fmt: skip
+            [
+                self.mass,
+                self.inertia,
+                self.height,
+                self.toe_left,
+                self.toe_right,
+                self.stiffness,
+                self.damping,
+                float(self.edges),
+                float(self.linear),
+            ]
+        )
 
     @classmethod
     def of(cls, body: Body) -> "SoftBase":
@@ -108,9 +117,7 @@ class SoftBaseResponse:
     interrupted: bool = False
 
 
-def base_contact(
-    base: SoftBase, rotation: float, sinking: float, rate: float = 0.0, sinking_rate: float = 0.0
-) -> BaseContact:
+def base_contact(base: SoftBase, rotation: float, sinking: float, rate: float = 0.0, sinking_rate: float = 0.0) -> BaseContact:
     """What the base does in a state: rotation [rad], sinking [m] and their rates."""
     values, status = _core.api_soft_base.contact(
         real("base", base.numbers, (9,)), real("state", [rotation, sinking, rate, sinking_rate], (4,))
@@ -123,9 +130,7 @@ def base_contact(
 def base_held(base: SoftBase, rotation: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The block held at each rotation (n) [rad] and free to sink under its weight: how far it sinks [m], the energy of weight and
     springs [J], and the moment that turns it back from a rotation to +x [N m]."""
-    values, status = _core.api_soft_base.held(
-        real("base", base.numbers, (9,)), real("rotation", np.atleast_1d(rotation), (None,))
-    )
+    values, status = _core.api_soft_base.held(real("base", base.numbers, (9,)), real("rotation", np.atleast_1d(rotation), (None,)))
     check(status, "statics of a compliant base")
     return values[0], values[1], values[2]
 
@@ -136,9 +141,16 @@ def soft_base_start(base: SoftBase, rotation: float) -> tuple[float, float, floa
 
 
 def soft_base_history(
-    base: SoftBase, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
-    start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
-) -> SoftBaseResponse:  # fmt: skip
+    base: SoftBase,
+    ground: Ground,
+    end_time: float,
+    output_step: float,
+    *,
+    scale: float = 1.0,
+    tolerance: float = 1e-8,
+    start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0),
+    room: int = 20000,
+) -> SoftBaseResponse:
     """Rock the block under `ground` times `scale` until collapse or `end_time` [s]; start (4,): rotation [rad], sinking [m]
     and their rates; output_step [s]; room: most events that are kept."""
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
@@ -150,9 +162,16 @@ def soft_base_history(
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
     with MotionSet([ground]) as motions:
         counts, measures, state, kinds, event, status = long_call(
-            _core.api_soft_base.history, real("base", base.numbers, (9,)), motions.handle, 1,
-            np.array([scale, end_time, tolerance], dtype=float), real("start", start, (4,)), times, rows, int(room),
-        )  # fmt: skip
+            _core.api_soft_base.history,
+            real("base", base.numbers, (9,)),
+            motions.handle,
+            1,
+            np.array([scale, end_time, tolerance], dtype=float),
+            real("start", start, (4,)),
+            times,
+            rows,
+            int(room),
+        )
     interrupted = status == status_code("cancelled")
     if not interrupted:
         check(status, "rocking on a compliant base")
@@ -163,8 +182,29 @@ def soft_base_history(
     found = min(events, room)
     turn, sunk, stop, *end = (float(x) for x in measures)
     return SoftBaseResponse(
-        OUTCOMES[outcome], (left, right), half_cycles, (turn, sunk), stop, steps, np.array(end[:4]), times[:points], s[:, 0], s[:, 1],
-        s[:, 2], s[:, 3], s[:, 4], s[:, 5], s[:, 6], s[:, 7], s[:, 8], s[:, 9:11], s[:, 11:13], s[:, 13],
-        [(EVENTS[int(k)], float(t), int(e)) for k, (t, e) in zip(kinds[:found], event.T[:found], strict=True)], events,
-        end[4], end[5], interrupted,
-    )  # fmt: skip
+        OUTCOMES[outcome],
+        (left, right),
+        half_cycles,
+        (turn, sunk),
+        stop,
+        steps,
+        np.array(end[:4]),
+        times[:points],
+        s[:, 0],
+        s[:, 1],
+        s[:, 2],
+        s[:, 3],
+        s[:, 4],
+        s[:, 5],
+        s[:, 6],
+        s[:, 7],
+        s[:, 8],
+        s[:, 9:11],
+        s[:, 11:13],
+        s[:, 13],
+        [(EVENTS[int(k)], float(t), int(e)) for k, (t, e) in zip(kinds[:found], event.T[:found], strict=True)],
+        events,
+        end[4],
+        end[5],
+        interrupted,
+    )

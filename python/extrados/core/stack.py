@@ -63,9 +63,16 @@ class StackResponse:
 
 
 def stack_history(
-    stack: Stack, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
-    start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
-) -> StackResponse:  # fmt: skip
+    stack: Stack,
+    ground: Ground,
+    end_time: float,
+    output_step: float,
+    *,
+    scale: float = 1.0,
+    tolerance: float = 1e-8,
+    start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0),
+    room: int = 20000,
+) -> StackResponse:
     """Rock the stack under `ground` times `scale` until collapse or `end_time` [s]; start (4,): rotations [rad]
     of the lower and the upper block, then their rates [rad/s]; output_step [s]; room: most events that are kept."""
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
@@ -77,9 +84,16 @@ def stack_history(
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
     with MotionSet([ground]) as motions:
         counts, measures, state, kinds, event, status = long_call(
-            _core.api_stack.history, real("stack", stack.numbers, (9,)), motions.handle, 1,
-            np.array([scale, end_time, tolerance], dtype=float), real("start", start, (4,)), times, rows, int(room),
-        )  # fmt: skip
+            _core.api_stack.history,
+            real("stack", stack.numbers, (9,)),
+            motions.handle,
+            1,
+            np.array([scale, end_time, tolerance], dtype=float),
+            real("start", start, (4,)),
+            times,
+            rows,
+            int(room),
+        )
     interrupted = status == status_code("cancelled")
     if not interrupted:
         check(status, "rocking of two blocks")
@@ -90,11 +104,27 @@ def stack_history(
     found = min(events, room)
     first, second, stop, work, loss = (float(x) for x in measures)
     return StackResponse(
-        OUTCOMES[outcome], (low, high), (first, second), stop, steps, bool(settled), times[:points], s[:, 0:2], s[:, 2:4],
-        s[:, 4], s[:, 5], s[:, 6], s[:, 7], s[:, 8], s[:, 9:11].astype(int), s[:, 11:15].reshape(-1, 2, 2),
+        OUTCOMES[outcome],
+        (low, high),
+        (first, second),
+        stop,
+        steps,
+        bool(settled),
+        times[:points],
+        s[:, 0:2],
+        s[:, 2:4],
+        s[:, 4],
+        s[:, 5],
+        s[:, 6],
+        s[:, 7],
+        s[:, 8],
+        s[:, 9:11].astype(int),
+        s[:, 11:15].reshape(-1, 2, 2),
         [(EVENTS[int(k)], float(t), int(c)) for k, (t, c) in zip(kinds[:found], event.T[:found], strict=True)],
-        work, loss, interrupted,
-    )  # fmt: skip
+        work,
+        loss,
+        interrupted,
+    )
 
 
 def stack_impact(
@@ -106,8 +136,11 @@ def stack_impact(
     closing (2): 1 where the contact closes.
     """
     after, rates, status = _core.api_stack.impact(
-        real("stack", stack.numbers, (9,)), np.asarray(pivots, dtype=np.int32), real("rotation", rotation, (2,)),
-        real("rate", rate, (2,)), np.asarray(closing, dtype=np.int32),
-    )  # fmt: skip
+        real("stack", stack.numbers, (9,)),
+        np.asarray(pivots, dtype=np.int32),
+        real("rotation", rotation, (2,)),
+        real("rate", rate, (2,)),
+        np.asarray(closing, dtype=np.int32),
+    )
     check(status, "impact of two blocks")
     return after, rates

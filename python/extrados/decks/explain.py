@@ -21,8 +21,13 @@ PLAIN: dict[str, type[Table]] = {"material": Material, "joints": Joints, "suppor
 def sections() -> dict[str, dict[str, type[Table]]]:
     """Section -> kind -> table; a section without kinds has one table, under no name."""
     found = {name: {kind: kinds.table(name, kind) for kind in there} for name, there in kinds.TABLES.items()}
-    return {"structure": found["structure"], **{n: {"": m} for n, m in {**PLAIN, **PLURAL}.items()},
-            "motion": found["motion"], "code": {"": Code}, "analysis": found["analysis"]}  # fmt: skip
+    return {
+        "structure": found["structure"],
+        **{n: {"": m} for n, m in {**PLAIN, **PLURAL}.items()},
+        "motion": found["motion"],
+        "code": {"": Code},
+        "analysis": found["analysis"],
+    }
 
 
 def json_schema() -> dict[str, Any]:
@@ -84,9 +89,7 @@ def _properties(model: type[Table]) -> dict[str, dict[str, Any]]:
     return model.model_json_schema()["properties"]
 
 
-def _keys(
-    schema: dict[str, Any], definitions: dict[str, Any] | None = None, depth: int = 0
-) -> dict[str, dict[str, Any]]:
+def _keys(schema: dict[str, Any], definitions: dict[str, Any] | None = None, depth: int = 0) -> dict[str, dict[str, Any]]:
     """All keys of a table and, dotted, of the tables within it; each says whether it is `required`."""
     definitions = schema.get("$defs", {}) if definitions is None else definitions
     found: dict[str, dict[str, Any]] = {}
@@ -154,8 +157,13 @@ def _length(about: dict[str, Any]) -> str:
 
 def facts() -> list[TableFacts]:
     """All that the tables say of themselves, in the order of the manual."""
-    top = TableFacts("deck", "The top of a deck", "", "Texts that stand before the first table.",
-                     {word: KeyFacts(about, "", "text", "") for word, about in WORDS.items()})  # fmt: skip
+    top = TableFacts(
+        "deck",
+        "The top of a deck",
+        "",
+        "Texts that stand before the first table.",
+        {word: KeyFacts(about, "", "text", "") for word, about in WORDS.items()},
+    )
     tables = ((section, kind, model) for section, there in sections().items() for kind, model in there.items())
     return [top, *(table_facts(*table) for table in tables)]
 
@@ -211,10 +219,18 @@ def starter(kind: str) -> str:
 
 #: Values of required keys in starter decks.
 _STARTER = {
-    "radius": "5.0", "thickness": '"90 cm"', "embrace": "170.0", "voussoirs": "34", "amplitude": '"1.0 g"',
-    "duration": "0.2", "period": "0.5", "frequency": "2.0", "file": '"extrados:el-centro-1940"',
-    "width": "1.0", "height": "4.0",
-}  # fmt: skip
+    "radius": "5.0",
+    "thickness": '"90 cm"',
+    "embrace": "170.0",
+    "voussoirs": "34",
+    "amplitude": '"1.0 g"',
+    "duration": "0.2",
+    "period": "0.5",
+    "frequency": "2.0",
+    "file": '"extrados:el-centro-1940"',
+    "width": "1.0",
+    "height": "4.0",
+}
 
 
 def _section(model: type[Table], header: str, kind: str = "", starter: Mapping[str, str] | None = None) -> list[str]:

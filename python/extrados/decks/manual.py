@@ -53,11 +53,7 @@ def explain(word: str, tables: Sequence[TableFacts]) -> str:
             head = f'[{table.section}] kind = "{table.kind}"' if table.kind else table.header
             found.append(f"{head}: {table.summary}\n" + "\n".join(rows))
         asked = [name for name in table.keys if word in _called(table, name)]
-        found += [
-            _entry(table, name)
-            for name in table.keys
-            if any(name == one or name.startswith(f"{one}.") for one in asked)
-        ]
+        found += [_entry(table, name) for name in table.keys if any(name == one or name.startswith(f"{one}.") for one in asked)]
     found += [_pointed(line, tables) for line in synonyms.meanings(word)]
     foreign: dict[str, list[str]] = {}
     for language, term in glossary.translated(word):
@@ -107,12 +103,7 @@ def _entry(table: TableFacts, name: str) -> str:
 
 def manual(tables: Sequence[TableFacts]) -> str:
     """The reference manual of all deck keys, in Markdown."""
-    lines = [
-        "# Deck reference",
-        "",
-        "Generated from the deck tables by `extrados explain --manual`.",
-        "",
-    ]
+    lines = ["# Deck reference", "", "Generated from the deck tables by `extrados explain --manual`.", ""]
     section = ""
     for table in tables:
         if table.section != section:

@@ -26,8 +26,7 @@ MOVED: dict[tuple[str, str], str] = {
     ("structure", "initial_rotation_ratio"): "[initial] rotation_ratio",
     ("structure", "form"): "form in the [[analysis]] table",
     ("structure", "mesh"): _mesh("pattern"),
-    **{("structure", name): _mesh(name)
-       for name in ("size", "element", "seed", "refine", "lines_x", "lines_y", "selective")},
+    **{("structure", name): _mesh(name) for name in ("size", "element", "seed", "refine", "lines_x", "lines_y", "selective")},
     ("analysis", "friction"): _joint("friction"),
     ("analysis", "cohesion"): _joint("cohesion"),
     ("analysis", "tension"): _joint("tension"),
@@ -46,4 +45,4 @@ MOVED: dict[tuple[str, str], str] = {
     ("analysis", "restitution"): _joint("restitution"),
     ("analysis", "support_movements"): "[[initial.movements]]",
     ("analysis", "initial_rotation_ratio"): f"[initial] rotation_ratio (or, {_FOR_ONE.format('initial')})",
-}  # fmt: skip
+}

@@ -106,9 +106,7 @@ class Deck:
         "analysis"; as they are where `at` is empty."""
         if not at:
             return what
-        own = next(
-            (table for a, table in zip(self.analyses, self.tables, strict=False) if a is analysis), ("analysis",)
-        )
+        own = next((table for a, table in zip(self.analyses, self.tables, strict=False) if a is analysis), ("analysis",))
         override = getattr(analysis, str(at[0]), None) if at[0] in OVERRIDES else None
         if at[0] == "analysis":
             at = (*own, *at[1:])
@@ -173,9 +171,7 @@ def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -
         raise DeckError([f"{name}:{line}: {what}"]) from None
     except ValueError as error:  # too deep, or integers of more digits than Python converts
         raise DeckError([f"{name}: {error}"]) from None
-    return _Checker(Positions(name, key_lines(text), data)).deck(
-        data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest()
-    )
+    return _Checker(Positions(name, key_lines(text), data)).deck(data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest())
 
 
 def make_deck(data: dict[str, Any], folder: Path | None = None) -> Deck:
@@ -284,10 +280,12 @@ class _Checker:
                 self.complain(("structure",), f"unknown material '{part.material}'; [materials] holds {known}")
         many: dict[str, Any] = {name: self.named(name, data.get(name, [])) for name in PLURAL}
         return Building(
-            structure, materials={n: m for n, m in named.items() if m}, folder=folder,
+            structure,
+            materials={n: m for n, m in named.items() if m},
+            folder=folder,
             **many,
             **{name: table for name, table in own.items() if table},
-        )  # fmt: skip
+        )
 
     def named(self, section: str, tables: Any) -> tuple[Any, ...]:
         """The ties, dampers or hinges of the deck, each with a name; what is wrong in them is complained of."""
@@ -368,10 +366,7 @@ class _Checker:
                 at, text = (*at, *inner), text.partition(": ")[2]
             elif not place:  # a rule over several keys: shown at the first one that it names
                 given = problem["input"]
-                found = (
-                    (re.search(rf"\b{re.escape(key)}\b", text), key)
-                    for key in (given if isinstance(given, dict) else {})
-                )
+                found = ((re.search(rf"\b{re.escape(key)}\b", text), key) for key in (given if isinstance(given, dict) else {}))
                 named = min(((match.start(), key) for match, key in found if match), default=None)
                 at = (*path, named[1]) if named else at
             self.complain(at, text)
@@ -396,11 +391,7 @@ class _Checker:
             lacks = kinds.STRUCTURES[shape].lacks if known else {}
             if known and wanted is not None and shape not in wanted:
                 self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
-            elif (
-                analysis.view in lacks
-                and not (analysis.solid and "solids" not in lacks)
-                and shape not in analysis.shells
-            ):
+            elif analysis.view in lacks and not (analysis.solid and "solids" not in lacks) and shape not in analysis.shells:
                 self.complain(path, f"{kind} cannot analyse a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")

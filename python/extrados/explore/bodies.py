@@ -49,31 +49,46 @@ def of_solids(assembly: SolidAssembly) -> Drawn:
     found = {name: array.numbers for name, array in scene_arrays(assembly).items()}
     vertex = found["solid_vertex"]
     words = {
-        "sort": "space", "of": "solids", "blocks": len(assembly.mass), "joints": len(assembly.a), "measures": assembly.measures,
-        "weight_N": GRAVITY * float(assembly.mass.sum() + assembly.fill[:, 1].sum()), "size_m": np.ptp(vertex, axis=0).tolist(),
+        "sort": "space",
+        "of": "solids",
+        "blocks": len(assembly.mass),
+        "joints": len(assembly.a),
+        "measures": assembly.measures,
+        "weight_N": GRAVITY * float(assembly.mass.sum() + assembly.fill[:, 1].sum()),
+        "size_m": np.ptp(vertex, axis=0).tolist(),
         "warnings": [*assembly.remarks, *assembly.notes],
-    }  # fmt: skip
+    }
     return words, {
-        "vertex": vertex, "face": found["solid_face"], "face_start": found["solid_face_start"],
-        "face_body": found["solid_face_block"], "body_centre": found["solid_centroid"],
-    }  # fmt: skip
+        "vertex": vertex,
+        "face": found["solid_face"],
+        "face_start": found["solid_face_start"],
+        "face_body": found["solid_face_block"],
+        "body_centre": found["solid_centroid"],
+    }
 
 
 def of_shells(mesh: ShellMesh) -> Drawn:
     """Walls and floors by their elements: as `of_solids`, with `face_tone` of TONES and `bar` (n, 2, 3) [m]."""
     floors, walls = ({part.name for part in mesh.parts if part.bends is bends} for bends in (False, True))
     words = {
-        "sort": "space", "of": "walls", "walls": len(walls), "floors": len(floors), "elements": mesh.elements(),
-        "weight_N": GRAVITY * float(mesh.mass().sum()), "size_m": np.ptp(mesh.xyz, axis=0).tolist(),
+        "sort": "space",
+        "of": "walls",
+        "walls": len(walls),
+        "floors": len(floors),
+        "elements": mesh.elements(),
+        "weight_N": GRAVITY * float(mesh.mass().sum()),
+        "size_m": np.ptp(mesh.xyz, axis=0).tolist(),
         "warnings": mesh.warnings,
-    }  # fmt: skip
+    }
     faces = [row for part in mesh.parts for row in part.connect]
     tone = [np.full(len(part.connect), TONES["wall" if part.bends else "floor"]) for part in mesh.parts]
     return words, {
-        "vertex": mesh.xyz, "face": np.concatenate(faces), "face_start": np.cumsum([0, *map(len, faces)]),
+        "vertex": mesh.xyz,
+        "face": np.concatenate(faces),
+        "face_start": np.cumsum([0, *map(len, faces)]),
         "face_tone": np.concatenate(tone).astype(np.uint8),
         "bar": np.array([mesh.xyz[list(bar.nodes)] for bar in mesh.bars]).reshape(-1, 2, 3),
-    }  # fmt: skip
+    }
 
 
 def of_elements(mesh: Mesh) -> Drawn:
@@ -82,9 +97,13 @@ def of_elements(mesh: Mesh) -> Drawn:
     groups = [g.connect[:, : len(EDGES[g.kind])] for g in mesh.groups if g.law is None]
     count = sum(map(len, groups))
     words = {
-        "sort": "elements", "of": "elements", "elements": count, "nodes": len(mesh.xy), "size_m": np.ptp(mesh.xy, axis=0).tolist(),
+        "sort": "elements",
+        "of": "elements",
+        "elements": count,
+        "nodes": len(mesh.xy),
+        "size_m": np.ptp(mesh.xy, axis=0).tolist(),
         "warnings": mesh.warnings,
-    }  # fmt: skip
+    }
     if count > MOST_ELEMENTS:
         words["warnings"] = [*mesh.warnings, f"{count} elements are too many to be drawn"]
         groups = []
@@ -92,6 +111,11 @@ def of_elements(mesh: Mesh) -> Drawn:
     faces = [mesh.xy[row] for group in groups for row in group]
     none, corners = np.empty((0, 2)), np.concatenate([mesh.xy[:0], *faces])
     return words, {
-        "outline": corners, "outline_start": np.cumsum([0, *map(len, faces)]), "centroid": none, "joint_p": none, "joint_q": none,
-        "joint_block": np.empty((0, 2), dtype=int), "held": mesh.xy[np.unique(np.concatenate([*held, np.empty(0, dtype=int)]))],
-    }  # fmt: skip
+        "outline": corners,
+        "outline_start": np.cumsum([0, *map(len, faces)]),
+        "centroid": none,
+        "joint_p": none,
+        "joint_q": none,
+        "joint_block": np.empty((0, 2), dtype=int),
+        "held": mesh.xy[np.unique(np.concatenate([*held, np.empty(0, dtype=int)]))],
+    }

@@ -135,9 +135,7 @@ class Pupil(Session):
     def check(self) -> None:
         """DeckError if the deck at hand is too large for a class."""
         deck, wrong = self.there().deck, []
-        counts = (
-            [] if deck.structure is None else [v for v in deck.structure.model_dump().values() if isinstance(v, int)]
-        )
+        counts = [] if deck.structure is None else [v for v in deck.structure.model_dump().values() if isinstance(v, int)]
         if max(counts, default=0) > MOST_BLOCKS or _blocks(self) > MOST_BLOCKS:
             wrong.append(f"a structure has at most {MOST_BLOCKS} blocks in a class")
         lasting = [getattr(deck.motion, name, None) for name in ("duration", "period")]
@@ -160,12 +158,7 @@ def thumbnail(reply: Reply) -> dict[str, Any]:
     """The drawing of a scene as a path of SVG with its box, the tilt [g], and whether it stands."""
     scene, title = reply.words["scene"], reply.words.get("deck", {}).get("title") or ""
     outline, start = reply.arrays.get("outline"), reply.arrays.get("outline_start")
-    seen = {
-        "title": title[:80],
-        "gamma": scene.get("gamma"),
-        "falls": scene.get("falls"),
-        "capacity": scene.get("capacity"),
-    }
+    seen = {"title": title[:80], "gamma": scene.get("gamma"), "falls": scene.get("falls"), "capacity": scene.get("capacity")}
     if outline is None or start is None or not len(outline):
         return seen
     low, high = outline.min(axis=0), outline.max(axis=0)
@@ -187,9 +180,7 @@ class Teacher(Session):
 
     def answer(self, message: Message) -> Generator[Reply, None, None]:
         """Replies to a message; those of the class are {class}, {send}, {pause} and {peek}."""
-        act = {"class": self._class, "send": self._send, "pause": self._pause, "peek": self._peek}.get(
-            str(message.get("do"))
-        )
+        act = {"class": self._class, "send": self._send, "pause": self._pause, "peek": self._peek}.get(str(message.get("do")))
         if act is None:
             for reply in super().answer(message):
                 if "presets" in reply.words:

@@ -81,10 +81,12 @@ class Desk:
         live = self.there()
         deck = live.deck
         told: dict[str, Any] = {
-            "title": deck.title, "note": deck.note, "analyses": live.names,
+            "title": deck.title,
+            "note": deck.note,
+            "analyses": live.names,
             "structure": None if deck.structure is None else {"kind": deck.structure.kind, "word": deck.structure.word},
             "motion": None,
-        }  # fmt: skip
+        }
         if deck.motion is not None:
             plain = {k: v for k, v in deck.motion.model_dump().items() if isinstance(v, str | int | float)}
             told["motion"] = plain | {"pulse": rocking.pulse_of(deck.motion)}

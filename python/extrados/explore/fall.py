@@ -79,15 +79,16 @@ def _pieces(model: Model, gamma: float, rate: np.ndarray) -> Iterator[Piece]:
     smallest = float(np.sqrt(min(abs(signed_area(outline)) for outline in model.assembly.outlines)))
     step = float(np.sqrt(2.0 * smallest / GRAVITY)) / STEPS
     options = dem.Options(
-        end_time=DURATION, step=step, rigid=True, domain=(low[0], high[0], low[1], high[1]), residual_limit=np.inf,
+        end_time=DURATION,
+        step=step,
+        rigid=True,
+        domain=(low[0], high[0], low[1], high[1]),
+        residual_limit=np.inf,
         gravity=(GRAVITY * np.sin(theta), -GRAVITY * np.cos(theta)),
-    )  # fmt: skip
+    )
     values = replace(model.values, friction=np.minimum(model.values.friction, FRICTION))
     begin, shown = time.monotonic(), 0
-    with (
-        dem.Model(model.bodies(values), options, shift=np.zeros_like(rate), rate=rate) as bodies,
-        as_motion_set([STILL]) as motions,
-    ):
+    with dem.Model(model.bodies(values), options, shift=np.zeros_like(rate), rate=rate) as bodies, as_motion_set([STILL]) as motions:
         times = np.arange(round(DURATION * RATE) + 1) / RATE
         for run, whole in bodies.run_pieces(motions, times, round(PIECE / step)):
             late = not whole and time.monotonic() - begin > PATIENCE

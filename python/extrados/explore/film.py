@@ -77,9 +77,7 @@ def _gif(pictures: list[bytes], rate: int) -> bytes:
 def _mp4(pictures: list[bytes], rate: int) -> bytes:
     program = ffmpeg()
     if program is None:
-        raise BadFilm(
-            "mp4 needs the program ffmpeg, which is not here (pip install imageio-ffmpeg brings one); gif needs nothing"
-        )
+        raise BadFilm("mp4 needs the program ffmpeg, which is not here (pip install imageio-ffmpeg brings one); gif needs nothing")
     for size in {_size(p) for p in pictures}:
         if min(size) < 2:
             raise BadFilm("pictures are too small")
@@ -87,12 +85,35 @@ def _mp4(pictures: list[bytes], rate: int) -> bytes:
         target = Path(folder) / "film.mp4"
         done = subprocess.run(
             [
-                program, "-y", "-loglevel", "error", "-f", "image2pipe", "-c:v", "mjpeg", "-framerate", str(rate), "-i", "-",
-                "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20",
-                "-movflags", "+faststart", str(target),
+                program,
+                "-y",
+                "-loglevel",
+                "error",
+                "-f",
+                "image2pipe",
+                "-c:v",
+                "mjpeg",
+                "-framerate",
+                str(rate),
+                "-i",
+                "-",
+                "-vf",
+                "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+                "-c:v",
+                "libx264",
+                "-pix_fmt",
+                "yuv420p",
+                "-crf",
+                "20",
+                "-movflags",
+                "+faststart",
+                str(target),
             ],
-            input=b"".join(pictures), capture_output=True, timeout=300, check=False,
-        )  # fmt: skip
+            input=b"".join(pictures),
+            capture_output=True,
+            timeout=300,
+            check=False,
+        )
         if done.returncode or not target.exists():
             raise BadFilm(f"ffmpeg could not make it: {done.stderr.decode(errors='replace')[-300:]}")
         return target.read_bytes()

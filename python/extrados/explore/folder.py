@@ -57,9 +57,7 @@ class Folder:
         for here, folders, names in os.walk(self.root):
             count += 1
             depth = len(Path(here).relative_to(self.root).parts)
-            folders[:] = (
-                sorted(f for f in folders if not f.startswith(".") and f not in SKIPPED) if depth < DEEP else []
-            )
+            folders[:] = sorted(f for f in folders if not f.startswith(".") and f not in SKIPPED) if depth < DEEP else []
             yield Path(here), names
             if count >= MOST_FOLDERS:
                 return
@@ -90,11 +88,7 @@ class Folder:
         if target.suffix != ".toml":
             raise NotThere(f"{path}: a deck ends in .toml")
         try:
-            return (
-                files.read(target.relative_to(self.root).as_posix(), LARGEST, self.root).content,
-                target.parent,
-                target.name,
-            )
+            return (files.read(target.relative_to(self.root).as_posix(), LARGEST, self.root).content, target.parent, target.name)
         except files.BadFile as error:
             raise NotThere(str(error)) from None
 
@@ -119,9 +113,12 @@ class Folder:
                     continue
                 structure = data.get("structure") or {}
                 found.append(
-                    {"name": path.relative_to(CASES).with_suffix("").as_posix(), "title": str(data.get("title", "")),
-                     "kind": str(structure.get("kind", ""))}
-                )  # fmt: skip
+                    {
+                        "name": path.relative_to(CASES).with_suffix("").as_posix(),
+                        "title": str(data.get("title", "")),
+                        "kind": str(structure.get("kind", "")),
+                    }
+                )
             _presets = found
         return _presets
 
@@ -154,11 +151,7 @@ class Folder:
     def run(self, path: str) -> Stored:
         """A stored run; StoreError where it is damaged or too large for a page."""
         target = self.inside(path)
-        size = (
-            sum(f.stat().st_size for f in target.glob("*") if f.is_file() and not f.is_symlink())
-            if target.is_dir()
-            else 0
-        )
+        size = sum(f.stat().st_size for f in target.glob("*") if f.is_file() and not f.is_symlink()) if target.is_dir() else 0
         if size > LARGEST_RUN:
             raise StoreError(f"{path}: holds {size / 1e6:.0f} MB, more than a page is shown ({LARGEST_RUN / 1e6:g} MB)")
         return read(target)
@@ -186,9 +179,14 @@ class Folder:
         the end ("", True). What is left of it is ended when nobody listens any more."""
         target = self.inside(deck)
         child = subprocess.Popen(
-            python_command("extrados", "run", str(target.relative_to(self.root))), cwd=self.root, env=environment(),
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
-        )  # fmt: skip
+            python_command("extrados", "run", str(target.relative_to(self.root))),
+            cwd=self.root,
+            env=environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
         lines: queue.Queue[str | None] = queue.Queue()
 
         def pump() -> None:

@@ -29,10 +29,15 @@ def forms_of(deck: Deck) -> list[dict[str, Any]]:
             sorts = {b.get("type") for b in branches}
             found.append(
                 {
-                    "section": section, "key": key, "value": given.get(key, getattr(table, key)), "given": key in given,
-                    "unit": next((b["unit"] for b in branches if "unit" in b), ""), "choices": choices,
+                    "section": section,
+                    "key": key,
+                    "value": given.get(key, getattr(table, key)),
+                    "given": key in given,
+                    "unit": next((b["unit"] for b in branches if "unit" in b), ""),
+                    "choices": choices,
                     "sort": "choice" if choices and not sorts & {"number", "integer"} else "yes" if "boolean" in sorts else "text",
-                    "about": about.get("description", ""), "number": bool(sorts & {"number", "integer"}),
+                    "about": about.get("description", ""),
+                    "number": bool(sorts & {"number", "integer"}),
                 }
-            )  # fmt: skip
+            )
     return found

@@ -121,12 +121,7 @@ class Guard:
         if sum(len(name) + len(value) for name, value in scope["headers"]) > LARGEST_HEADS:
             return 431, "the heads of the request are too long"
         lengths = heads.get(b"content-length", [b"0"])
-        if (
-            len(lengths) != 1
-            or not lengths[0].isdigit()
-            or len(lengths[0]) > MOST_DIGITS
-            or int(lengths[0]) > LARGEST_BODY
-        ):
+        if len(lengths) != 1 or not lengths[0].isdigit() or len(lengths[0]) > MOST_DIGITS or int(lengths[0]) > LARGEST_BODY:
             return 413, "too much is sent"
         door = next((door for door in self.doors if _opens(door, scope)), None)
         if door is None:
@@ -153,9 +148,7 @@ def _is_near(scope: dict[str, Any]) -> bool:
         return False
 
 
-async def _refuse(
-    scope: dict[str, Any], receive: Callable[..., Any], send: Callable[..., Any], status: int, why: str
-) -> None:
+async def _refuse(scope: dict[str, Any], receive: Callable[..., Any], send: Callable[..., Any], status: int, why: str) -> None:
     if scope["type"] == "websocket":
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": why[:120]})

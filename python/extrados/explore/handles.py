@@ -91,9 +91,16 @@ def _key(name: str) -> Callable[[Any], Changes]:
 
 
 def _length(
-    name: str, label: str, x: float, y: float, value: float, value_at: Callable[[float, float], float], along: str = "x",
-    holds: bool = False, changes: Callable[[Any], Changes] | None = None,
-) -> Handle:  # fmt: skip
+    name: str,
+    label: str,
+    x: float,
+    y: float,
+    value: float,
+    value_at: Callable[[float, float], float],
+    along: str = "x",
+    holds: bool = False,
+    changes: Callable[[Any], Changes] | None = None,
+) -> Handle:
     return Handle(name, label, "m", x, y, value, value_at, changes or _key(name), along, holds)
 
 
@@ -118,31 +125,17 @@ def _arch(s: Any, _: Assembly) -> Iterator[Handle]:
         radius = (0.25 * span**2 + rise**2) / (2.0 * rise)
         return {"structure.radius": radius, "structure.embrace": math.degrees(4.0 * math.atan2(2.0 * rise, span))}
 
-    yield _length(
-        "thickness",
-        "Thickness",
-        0.0,
-        r + 0.5 * t,
-        s.thickness,
-        lambda x, y: 2.0 * (y - r) / s.thickness_factor,
-        "y",
-        True,
-    )
+    yield _length("thickness", "Thickness", 0.0, r + 0.5 * t, s.thickness, lambda x, y: 2.0 * (y - r) / s.thickness_factor, "y", True)
     at = -0.5 * half
-    yield _length(
-        "radius", "Radius of the centre line", r * math.sin(at), r * math.cos(at), r, lambda x, y: math.hypot(x, y), "both",
-        True,
-    )  # fmt: skip
+    yield _length("radius", "Radius of the centre line", r * math.sin(at), r * math.cos(at), r, lambda x, y: math.hypot(x, y), "both", True)
     outer = r + 0.5 * t
     yield _angle("embrace", "Angle of embrace", outer * math.sin(half), outer * math.cos(half), s.embrace, (0.0, 0.0))
     yield _length(
-        "span", "Span of the centre line", -r * math.sin(half), low, span, lambda x, y: -2.0 * x, "x", False,
-        lambda value: by(value, rise),
-    )  # fmt: skip
+        "span", "Span of the centre line", -r * math.sin(half), low, span, lambda x, y: -2.0 * x, "x", False, lambda value: by(value, rise)
+    )
     yield _length(
-        "rise", "Rise of the centre line", 0.0, r - 0.5 * t, rise, lambda x, y: y + 0.5 * t - low, "y", False,
-        lambda value: by(span, value),
-    )  # fmt: skip
+        "rise", "Rise of the centre line", 0.0, r - 0.5 * t, rise, lambda x, y: y + 0.5 * t - low, "y", False, lambda value: by(span, value)
+    )
 
 
 def _vault(s: Any, assembly: Assembly) -> Iterator[Handle]:
@@ -150,17 +143,13 @@ def _vault(s: Any, assembly: Assembly) -> Iterator[Handle]:
     outer = r + 0.5 * t
     base = float(_ground(s, assembly)[1])
     start = s.face if s.width_from == "face" else outer * math.sin(half)
-    yield _length(
-        "buttress_width", "Width of the buttresses", start + s.buttress_width, base, s.buttress_width,
-        lambda x, y: x - start,
-    )  # fmt: skip
+    yield _length("buttress_width", "Width of the buttresses", start + s.buttress_width, base, s.buttress_width, lambda x, y: x - start)
     yield _length("thickness", "Thickness of the vault", 0.0, outer, t, lambda x, y: 2.0 * (y - r), "y", True)
     at = -0.4 * half
     yield _length(
-        "radius", "Radius of the vault's centre line", r * math.sin(at), r * math.cos(at), r, lambda x, y: math.hypot(x, y),
-        "both", True,
-    )  # fmt: skip
-    yield _angle("embrace", "Angle of embrace of the vault", outer * math.sin(half), outer * math.cos(half), s.embrace, (0.0, 0.0))  # fmt: skip
+        "radius", "Radius of the vault's centre line", r * math.sin(at), r * math.cos(at), r, lambda x, y: math.hypot(x, y), "both", True
+    )
+    yield _angle("embrace", "Angle of embrace of the vault", outer * math.sin(half), outer * math.cos(half), s.embrace, (0.0, 0.0))
     top = outer * math.cos(half) if s.height_to == "extrados" else 0.0
     across = -(start + 0.5 * s.buttress_width) if s.height_to == "extrados" else 0.0
     yield _length("height", "Height above the ground", across, top, s.height, lambda x, y: y - base, "y")
@@ -176,9 +165,8 @@ def _church(s: Any, _: Assembly) -> Iterator[Handle]:
     yield _length("thickness", "Thickness of the nave vault", 0.0, c + outer, t, lambda x, y: 2.0 * (y - c - r), "y")
     at = -side * 0.45 * half
     yield _length(
-        "radius", "Radius of the nave's centre line", r * math.sin(at), c + r * math.cos(at), r,
-        lambda x, y: math.hypot(x, y - c), "both",
-    )  # fmt: skip
+        "radius", "Radius of the nave's centre line", r * math.sin(at), c + r * math.cos(at), r, lambda x, y: math.hypot(x, y - c), "both"
+    )
     yield _length("springing", "Height of the nave's centre", 0.0, c, c, lambda x, y: y, "y")
     yield _length("pier_width", "Width of the piers", -side * back, 0.0, s.pier_width, lambda x, y: -side * x - inner)
     yield _length("pier_top", "Height of the piers", -side * 0.5 * (inner + back), top, top, lambda x, y: y, "y")
@@ -189,47 +177,27 @@ def _church(s: Any, _: Assembly) -> Iterator[Handle]:
     middle, end = side * (back + 0.5 * span), back + span
     low = s.aisle_springing
     yield _length(
-        "aisle_thickness", "Thickness of the aisle vaults", middle, low + 0.5 * span + s.aisle_thickness, s.aisle_thickness,
-        lambda x, y: y - low - 0.5 * span, "y",
-    )  # fmt: skip
+        "aisle_thickness",
+        "Thickness of the aisle vaults",
+        middle,
+        low + 0.5 * span + s.aisle_thickness,
+        s.aisle_thickness,
+        lambda x, y: y - low - 0.5 * span,
+        "y",
+    )
     yield _length("aisle_springing", "Height of the aisle vaults' centres", middle, low, low, lambda x, y: y, "y")
     if s.aisle_span is not None:
         yield _length("aisle_span", "Clear span of the aisles", side * end, 0.0, span, lambda x, y: side * x - back)
-        yield _length(
-            "buttress_width",
-            "Width of the outer buttresses",
-            side * (end + width),
-            0.0,
-            width,
-            lambda x, y: side * x - end,
-        )
+        yield _length("buttress_width", "Width of the outer buttresses", side * (end + width), 0.0, width, lambda x, y: side * x - end)
     else:
-        yield _length(
-            "half_width",
-            "From the axis to the outer faces",
-            side * s.half_width,
-            0.0,
-            s.half_width,
-            lambda x, y: side * x,
-        )
-        yield _length(
-            "buttress_width",
-            "Width of the outer buttresses",
-            side * end,
-            0.0,
-            width,
-            lambda x, y: s.half_width - side * x,
-        )
+        yield _length("half_width", "From the axis to the outer faces", side * s.half_width, 0.0, s.half_width, lambda x, y: side * x)
+        yield _length("buttress_width", "Width of the outer buttresses", side * end, 0.0, width, lambda x, y: s.half_width - side * x)
     aisle_outer = 0.5 * span + s.aisle_thickness
     high = s.buttress_top or low + aisle_outer * math.cos(0.5 * math.radians(s.aisle_embrace))
-    yield _length(
-        "buttress_top", "Height of the outer buttresses", side * (end + 0.5 * width), high, high, lambda x, y: y, "y"
-    )
+    yield _length("buttress_top", "Height of the outer buttresses", side * (end + 0.5 * width), high, high, lambda x, y: y, "y")
     if s.flyer is not None:
         for name, label, x in (("head", "Head of the flyers", back), ("foot", "Foot of the flyers", end)):
-            yield _length(
-                f"flyer.{name}", label, side * x, getattr(s.flyer, name), getattr(s.flyer, name), lambda x, y: y, "y"
-            )
+            yield _length(f"flyer.{name}", label, side * x, getattr(s.flyer, name), getattr(s.flyer, name), lambda x, y: y, "y")
 
 
 def _block(s: Any, _: Assembly) -> Iterator[Handle]:
@@ -254,30 +222,20 @@ def _openings(openings: list[Any]) -> Iterator[Handle]:
             for k, word in enumerate(words):
                 x, y = (ends[k], middle[1]) if axis == "x" else (middle[0], ends[k])
                 yield _length(
-                    f"openings.{i}.{axis}.{k}", f"{word} edge{number or ' of the opening'}", x, y, ends[k],
-                    (lambda x, y: x) if axis == "x" else (lambda x, y: y), axis,
-                )  # fmt: skip
+                    f"openings.{i}.{axis}.{k}",
+                    f"{word} edge{number or ' of the opening'}",
+                    x,
+                    y,
+                    ends[k],
+                    (lambda x, y: x) if axis == "x" else (lambda x, y: y),
+                    axis,
+                )
 
 
 def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     wide, high = s.units * s.unit_length, s.courses * s.unit_height
-    yield _length(
-        "unit_length",
-        "Length of a unit, by that of the wall",
-        wide,
-        0.5 * high,
-        s.unit_length,
-        lambda x, y: x / s.units,
-    )
-    yield _length(
-        "unit_height",
-        "Height of a unit, by that of the wall",
-        0.5 * wide,
-        high,
-        s.unit_height,
-        lambda x, y: y / s.courses,
-        "y",
-    )
+    yield _length("unit_length", "Length of a unit, by that of the wall", wide, 0.5 * high, s.unit_length, lambda x, y: x / s.units)
+    yield _length("unit_height", "Height of a unit, by that of the wall", 0.5 * wide, high, s.unit_height, lambda x, y: y / s.courses, "y")
     yield from _openings(s.openings)
 
 
@@ -296,12 +254,8 @@ def _stack(s: Any, assembly: Assembly) -> Iterator[Handle]:
     for name, outline in zip(("lower", "upper"), assembly.outlines, strict=True):
         (x0, y0), (x1, y1) = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
         middle = 0.5 * (x0 + x1)
-        yield _length(
-            f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, partial(_width_about, middle)
-        )  # fmt: skip
-        yield _length(
-            f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, partial(_height_above, y0), "y"
-        )
+        yield _length(f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, partial(_width_about, middle))
+        yield _length(f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, partial(_height_above, y0), "y")
 
 
 def _frame(s: Any, assembly: Assembly) -> Iterator[Handle]:
@@ -309,28 +263,11 @@ def _frame(s: Any, assembly: Assembly) -> Iterator[Handle]:
     *columns, lintel = assembly.outlines
     middle, first = (0.5 * float(o[:, 0].min() + o[:, 0].max()) for o in (columns[-1], columns[0]))
     top = float(lintel[:, 1].max())
-    yield _length(
-        "width",
-        "Width of the columns",
-        middle + 0.5 * s.width,
-        0.5 * s.height,
-        s.width,
-        lambda x, y: 2.0 * (x - middle),
-    )
+    yield _length("width", "Width of the columns", middle + 0.5 * s.width, 0.5 * s.height, s.width, lambda x, y: 2.0 * (x - middle))
     yield _length("height", "Height of the columns", first, s.height, s.height, lambda x, y: y, "y")
-    yield _length(
-        "lintel_height",
-        "Height of the lintel",
-        0.5 * (first + middle),
-        top,
-        s.lintel_height,
-        lambda x, y: y - s.height,
-        "y",
-    )
+    yield _length("lintel_height", "Height of the lintel", 0.5 * (first + middle), top, s.lintel_height, lambda x, y: y - s.height, "y")
     share = (middle - 0.5 * (first + middle)) / s.spacing  # the drawing is centred
-    yield _length(
-        "spacing", "Spacing of the columns", middle, 0.0, s.spacing, lambda x, y: (x - 0.5 * (first + middle)) / share
-    )
+    yield _length("spacing", "Spacing of the columns", middle, 0.0, s.spacing, lambda x, y: (x - 0.5 * (first + middle)) / share)
 
 
 def _column(s: Any, assembly: Assembly) -> Iterator[Handle]:
@@ -347,9 +284,14 @@ def _pointed(s: Any, _: Assembly) -> Iterator[Handle]:
     yield _length("thickness", "Thickness", 0.5 * s.span + s.thickness, 0.0, s.thickness, lambda x, y: x - 0.5 * s.span)
     yield _length("span", "Clear span", -0.5 * s.span, 0.0, s.span, lambda x, y: -2.0 * x)
     yield _length(
-        "radius", "Radius of the intrados, by its rise", 0.0, rise, s.radius,
-        lambda x, y: (max(y, 0.0) ** 2 + 0.25 * s.span**2) / s.span, "y",
-    )  # fmt: skip
+        "radius",
+        "Radius of the intrados, by its rise",
+        0.0,
+        rise,
+        s.radius,
+        lambda x, y: (max(y, 0.0) ** 2 + 0.25 * s.span**2) / s.span,
+        "y",
+    )
 
 
 def _elliptical(s: Any, _: Assembly) -> Iterator[Handle]:
@@ -378,9 +320,7 @@ def _bridge(s: Any, assembly: Assembly) -> Iterator[Handle]:
             ("rise", "Rise", p, lambda x, y, p=p, v=span.rise: v + y - float(p[1])),
             ("thickness", "Thickness at the crown", q, lambda x, y, q=q, v=span.thickness: v + y - float(q[1])),
         ):
-            yield _length(
-                f"spans.{i}.{name}", label + number, float(at[0]), float(at[1]), getattr(span, name), along, "y"
-            )
+            yield _length(f"spans.{i}.{name}", label + number, float(at[0]), float(at[1]), getattr(span, name), along, "y")
 
 
 def _vertices(s: Any, _: Assembly) -> Iterator[Handle]:
@@ -399,10 +339,7 @@ def _vertices(s: Any, _: Assembly) -> Iterator[Handle]:
             point = [float(v) for v in value]
             return {f"structure.block.{b}.points.{v}": point for b, v in places}
 
-        yield Handle(
-            f"vertex-{i}-{k}", f"Vertex of {names}", "m", x, y, [x, y], lambda px, py: [px, py], changes, "both",
-            least=-math.inf,
-        )  # fmt: skip
+        yield Handle(f"vertex-{i}-{k}", f"Vertex of {names}", "m", x, y, [x, y], lambda px, py: [px, py], changes, "both", least=-math.inf)
 
 
 ARCH, VAULT = KindHandles(_arch, _centre_of_springings), KindHandles(_vault, _ground)
@@ -442,13 +379,8 @@ def load_handles(loads: list[Any], name: str, surfaces: list[tuple[float, float]
         def force_change(value: Any, key: str = key) -> Changes:
             return {f"{key}.force": value}
 
-        yield Handle(
-            f"load-{i}-x", f"Place of load{number}", "m", x, y, load.x, lambda px, py: px, place, "x", least=-math.inf
-        )
-        yield Handle(
-            f"load-{i}-force", f"Weight of load{number}", "N", x, y + scale * load.force, load.force,
-            force_at, force_change, "y",
-        )  # fmt: skip
+        yield Handle(f"load-{i}-x", f"Place of load{number}", "m", x, y, load.x, lambda px, py: px, place, "x", least=-math.inf)
+        yield Handle(f"load-{i}-force", f"Weight of load{number}", "N", x, y + scale * load.force, load.force, force_at, force_change, "y")
 
 
 def tie_handles(ties: list[Tie], assembly: Assembly) -> Iterator[Handle]:
@@ -462,10 +394,7 @@ def tie_handles(ties: list[Tie], assembly: Assembly) -> Iterator[Handle]:
 
         def moved(start: list[float], end: list[float], i: int = i, tie: Tie = tie, far: str = far) -> Changes:
             made: Changes = {}
-            for which, place, before, stone in (
-                ("start", start, tie.start, "start_stone"),
-                (far, end, tie.far, "end_stone"),
-            ):
+            for which, place, before, stone in (("start", start, tie.start, "start_stone"), (far, end, tie.far, "end_stone")):
                 if place == before:
                     continue
                 made[f"ties.{i}.{which}"] = place
@@ -473,24 +402,13 @@ def tie_handles(ties: list[Tie], assembly: Assembly) -> Iterator[Handle]:
                     made[f"ties.{i}.{stone}"] = found
             return made or {f"ties.{i}.start": start}
 
-        def level(
-            value: float, a: float = y0, b: float = y1, xs: tuple[float, float] = (x0, x1), put: Any = moved
-        ) -> Changes:
+        def level(value: float, a: float = y0, b: float = y1, xs: tuple[float, float] = (x0, x1), put: Any = moved) -> Changes:
             rise = value - 0.5 * (a + b)
             return put([xs[0], a + rise], [xs[1], b + rise])
 
         middle = 0.5 * (y0 + y1)
         yield Handle(
-            f"tie-{i}-level",
-            f"Height of {name}",
-            "m",
-            0.5 * (x0 + x1),
-            middle,
-            middle,
-            lambda x, y: y,
-            level,
-            "y",
-            least=-math.inf,
+            f"tie-{i}-level", f"Height of {name}", "m", 0.5 * (x0 + x1), middle, middle, lambda x, y: y, level, "y", least=-math.inf
         )
         for which, place in (("start", tie.start), ("end", tie.far)):
 
@@ -499,9 +417,17 @@ def tie_handles(ties: list[Tie], assembly: Assembly) -> Iterator[Handle]:
                 return put(point, tie.far) if which == "start" else put(tie.start, point)
 
             yield Handle(
-                f"tie-{i}-{which}", f"{which.capitalize()} of {name}", "m", place[0], place[1], list(place), lambda x, y: [x, y], led, "both",
+                f"tie-{i}-{which}",
+                f"{which.capitalize()} of {name}",
+                "m",
+                place[0],
+                place[1],
+                list(place),
+                lambda x, y: [x, y],
+                led,
+                "both",
                 least=-math.inf,
-            )  # fmt: skip
+            )
 
 
 def _anchorage(assembly: Assembly, place: list[float], given: str | None) -> str | None:

@@ -46,25 +46,37 @@ def history(
     response = run_history(context, fine, rocker.body, end, 12, rocker.start_rotation)
     conditions = of_one(rocker, response)
     words: dict[str, Any] = {
-        "outcome": response.outcome, "settled": response.settled, "half_cycles": response.half_cycles,
-        "impacts": response.impacts, "impact_times_s": [t for kind, t, _ in response.events if kind == "impact"][:400],
-        "peak_rotation_rad": response.peak, "peak_rotation_ratio": response.peak_ratio,
-        "critical_rad": list(rocker.critical), "uplift_g": rocker.uplift, "restitution": rocker.restitution,
-        "peak_ground_g": motion.peak / GRAVITY, "stop_time_s": response.stop_time, "end_time_s": end, "word": rocker.word,
+        "outcome": response.outcome,
+        "settled": response.settled,
+        "half_cycles": response.half_cycles,
+        "impacts": response.impacts,
+        "impact_times_s": [t for kind, t, _ in response.events if kind == "impact"][:400],
+        "peak_rotation_rad": response.peak,
+        "peak_rotation_ratio": response.peak_ratio,
+        "critical_rad": list(rocker.critical),
+        "uplift_g": rocker.uplift,
+        "restitution": rocker.restitution,
+        "peak_ground_g": motion.peak / GRAVITY,
+        "stop_time_s": response.stop_time,
+        "end_time_s": end,
+        "word": rocker.word,
         "answer": answer(context, response, f"The {rocker.word}", "collapses", rocker.uplift),
-        "violated": conditions.violated, "warnings": [*told(conditions), *rocker.warnings, *motion.notes],
-    }  # fmt: skip
+        "violated": conditions.violated,
+        "warnings": [*told(conditions), *rocker.warnings, *motion.notes],
+    }
     moving = np.flatnonzero(response.rotation)
     last = float(response.time[moving[-1]]) if len(moving) else 0.0
-    words["active_s"] = min(
-        max(1.05 * last, 1.2 * min(motion.end, end)), float(response.time[-1]) if len(response.time) else end
-    )
+    words["active_s"] = min(max(1.05 * last, 1.2 * min(motion.end, end)), float(response.time[-1]) if len(response.time) else end)
     shown = min(int(np.searchsorted(response.time, words["active_s"])) + 1, len(response.time))
     keep = slice(0, shown, max(1, -(-shown // MOST_POINTS)))
     arrays = {
-        "time": response.time[keep], "rotation": response.rotation[keep], "ground": response.ground[keep] / GRAVITY,
-        "kinetic": response.kinetic[keep], "potential": response.potential[keep], "ledger": response.ledger[keep],
-    }  # fmt: skip
+        "time": response.time[keep],
+        "rotation": response.rotation[keep],
+        "ground": response.ground[keep] / GRAVITY,
+        "kinetic": response.kinetic[keep],
+        "potential": response.potential[keep],
+        "ledger": response.ledger[keep],
+    }
     if still or not len(response.time):
         return words, arrays
     index = np.arange(0, shown, max(1, -(-shown // MOST_PICTURES)))
@@ -97,9 +109,7 @@ def _outlines(piers: Assembly, anchor: np.ndarray) -> dict[str, np.ndarray]:
     }
 
 
-def _in_two(
-    context: Context, building: Building, options: Rocking, anchor: np.ndarray
-) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+def _in_two(context: Context, building: Building, options: Rocking, anchor: np.ndarray) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """What rocks in two coordinates, by the analysis itself: stacked blocks, and a block on a base that gives way."""
     result = run_one(context, options.model_copy(update={"animation": "gif"}), building)
     if result.status != "ok":
@@ -110,13 +120,25 @@ def _in_two(
     moving = np.flatnonzero(np.abs(get["rotation"]) > 1e-3 * np.abs(get["rotation"]).max(initial=0.0))
     end = float(time[-1]) if len(time) else 1.0
     words: dict[str, Any] = {
-        "outcome": r.outcome, "settled": r.settled, "half_cycles": r.half_cycles, "impacts": r.impacts,
-        "impact_times_s": get["impact_time"].tolist()[:400], "peak_rotation_rad": r.peak_rotation_rad,
-        "peak_rotation_ratio": r.peak_rotation_ratio, "critical_rad": [r.critical_rotation_rad] * 2,
-        "uplift_g": r.uplift_acceleration_g, "restitution": r.restitution, "peak_ground_g": r.peak_ground_acceleration_g,
-        "stop_time_s": end, "end_time_s": end, "word": building.require_structure().word, "answer": result.answer,
-        "violated": r.judged(MotionDemand(context)).violated, "warnings": result.warnings, "active_s": min(1.05 * float(time[moving[-1]]), end) if len(moving) else end,
-    }  # fmt: skip
+        "outcome": r.outcome,
+        "settled": r.settled,
+        "half_cycles": r.half_cycles,
+        "impacts": r.impacts,
+        "impact_times_s": get["impact_time"].tolist()[:400],
+        "peak_rotation_rad": r.peak_rotation_rad,
+        "peak_rotation_ratio": r.peak_rotation_ratio,
+        "critical_rad": [r.critical_rotation_rad] * 2,
+        "uplift_g": r.uplift_acceleration_g,
+        "restitution": r.restitution,
+        "peak_ground_g": r.peak_ground_acceleration_g,
+        "stop_time_s": end,
+        "end_time_s": end,
+        "word": building.require_structure().word,
+        "answer": result.answer,
+        "violated": r.judged(MotionDemand(context)).violated,
+        "warnings": result.warnings,
+        "active_s": min(1.05 * float(time[moving[-1]]), end) if len(moving) else end,
+    }
     keep = slice(0, None, max(1, -(-len(time) // MOST_POINTS)))
     arrays = {name: get[name][keep] for name in ("time", "rotation", "kinetic", "potential", "ledger")}
     arrays["ground"] = get["ground"][keep] / GRAVITY
@@ -140,13 +162,14 @@ def impulse(context: Context, building: Building) -> dict[str, Any]:
     if result.status != "ok":
         return {"refused": result.reason}
     found: dict[str, Any] = result.results.as_json()
-    return {"answer": result.answer, "numbers": {k: v for k, v in found.items() if not isinstance(v, dict | list)},
-            "impulses": found.get("impulses", [])}  # fmt: skip
+    return {
+        "answer": result.answer,
+        "numbers": {k: v for k, v in found.items() if not isinstance(v, dict | list)},
+        "impulses": found.get("impulses", []),
+    }
 
 
-def domain(
-    context: Context, building: Building, options: FailureDomain
-) -> Iterator[tuple[dict[str, Any], dict[str, np.ndarray]]]:
+def domain(context: Context, building: Building, options: FailureDomain) -> Iterator[tuple[dict[str, Any], dict[str, np.ndarray]]]:
     """The map of pulses, coarse first: codes (durations, amplitudes), 255 where nothing has been run yet.
 
     `part` tells a reply amid a round, for structures that take long: so that a hand is answered between. It shows the round
@@ -157,15 +180,18 @@ def domain(
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     mapper = Mapper(
-        rocker.body, options.pulse, durations.tolist(), 40.0 * unit, context.threads, rocker.start_rotation,
-        astray=astray_of(rocker),
-    )  # fmt: skip
+        rocker.body, options.pulse, durations.tolist(), 40.0 * unit, context.threads, rocker.start_rotation, astray=astray_of(rocker)
+    )
     seen: list[dict[str, np.ndarray]] = []
     codes = np.full((len(durations), len(amplitudes)), 255, dtype=np.uint8)
     words: dict[str, Any] = {
-        "pulse": options.pulse, "conditions": [], "uplift_g": rocker.uplift, "mode_I": MODE_I, "word": rocker.word,
+        "pulse": options.pulse,
+        "conditions": [],
+        "uplift_g": rocker.uplift,
+        "mode_I": MODE_I,
+        "word": rocker.word,
         "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses in the first half cycle (Mode II)"],
-    }  # fmt: skip
+    }
     axes = {"duration": durations, "amplitude": amplitudes / GRAVITY}
     drawn, count = (STRIDES[0], codes), CELLS if building.supports.stiffness is None else FEW
     last = time.perf_counter()

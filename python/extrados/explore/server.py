@@ -29,18 +29,7 @@ from extrados import interrupts
 from extrados.explore.classroom import THREADS, Classroom, Teacher
 from extrados.explore.film import BadFilm, film
 from extrados.explore.frames import Reply
-from extrados.explore.guard import (
-    BURST,
-    BURST_BYTES,
-    LARGEST_BODY,
-    LARGEST_MESSAGE,
-    MOST_PAGES,
-    RATE,
-    RATE_BYTES,
-    Bucket,
-    Door,
-    Guard,
-)
+from extrados.explore.guard import BURST, BURST_BYTES, LARGEST_BODY, LARGEST_MESSAGE, MOST_PAGES, RATE, RATE_BYTES, Bucket, Door, Guard
 from extrados.explore.session import Session
 from extrados.schema.files import confine
 
@@ -49,13 +38,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 STATIC = Path(__file__).parent / "static"
-TYPES = {
-    ".html": "text/html",
-    ".css": "text/css",
-    ".js": "text/javascript",
-    ".svg": "image/svg+xml",
-    ".json": "application/json",
-}
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml", ".json": "application/json"}
 #: Messages that wait; a page that sends more without waiting for answers is cut off
 MOST_WAITING = 200
 #: Seconds for which a page may leave unread what it is sent
@@ -246,17 +229,10 @@ def application(doors: list[Door], folder: Path, deck: str | None = None, room: 
     """The ASGI application for a working folder; `deck`: the path, within the folder, of what pages open first; room: the
     class whose pupils come in by the second door."""
     files = {
-        path.relative_to(STATIC).as_posix(): (path.read_bytes(), TYPES[path.suffix])
-        for path in STATIC.rglob("*")
-        if path.suffix in TYPES
+        path.relative_to(STATIC).as_posix(): (path.read_bytes(), TYPES[path.suffix]) for path in STATIC.rglob("*") if path.suffix in TYPES
     }
 
-    routes = [
-        Route("/film", _film, methods=["POST"]),
-        WebSocketRoute("/live", _page),
-        Route("/", _file),
-        Route("/{name:path}", _file),
-    ]
+    routes = [Route("/film", _film, methods=["POST"]), WebSocketRoute("/live", _page), Route("/", _file), Route("/{name:path}", _file)]
     app = Starlette(routes=routes)
     app.state.files, app.state.pages, app.state.filming = files, 0, False
     app.state.room, app.state.threads = room, None if room is None else ThreadPoolExecutor(THREADS, "class")
@@ -382,9 +358,7 @@ class Class:
     most: int
 
 
-def configured(
-    sock: socket.socket, token: str, folder: Path, deck: str | None = None, pupils: Class | None = None
-) -> "uvicorn.Config":
+def configured(sock: socket.socket, token: str, folder: Path, deck: str | None = None, pupils: Class | None = None) -> "uvicorn.Config":
     """How uvicorn serves pages on a listening socket, and a class on another: bounded in all that a stranger could send."""
     import uvicorn
 
@@ -394,17 +368,27 @@ def configured(
         room = Classroom(pupils.most)
     browsers = 1 if room is None else 2 + room.most // 4  # each opens up to six connections at once
     return uvicorn.Config(
-        application(doors, folder, deck, room), log_level="warning", access_log=False, server_header=False,
-        ws=_socket_protocol(), ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, ws_ping_interval=20.0,
-        ws_ping_timeout=60.0, limit_concurrency=64 * browsers, timeout_keep_alive=10, timeout_graceful_shutdown=1,
-        h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http=_http_protocol(MOST_IDLE * browsers),
+        application(doors, folder, deck, room),
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        ws=_socket_protocol(),
+        ws_max_size=LARGEST_MESSAGE,
+        ws_per_message_deflate=False,
+        ws_ping_interval=20.0,
+        ws_ping_timeout=60.0,
+        limit_concurrency=64 * browsers,
+        timeout_keep_alive=10,
+        timeout_graceful_shutdown=1,
+        h11_max_incomplete_event_size=16_384,
+        lifespan="off",
+        proxy_headers=False,
+        http=_http_protocol(MOST_IDLE * browsers),
         loop="asyncio",
-    )  # fmt: skip
+    )
 
 
-def serve(
-    sock: socket.socket, token: str, folder: Path, deck: str | None = None, pupils: Class | None = None
-) -> None:  # fmt: skip
+def serve(sock: socket.socket, token: str, folder: Path, deck: str | None = None, pupils: Class | None = None) -> None:
     """Serve pages on a listening socket, and a class on another, until a signal ends it."""
     import uvicorn
 

@@ -13,11 +13,30 @@ from extrados.explore.messages import TOLD, BadMessage, Message
 log = logging.getLogger(__name__)
 #: What a message asks for -> what answers it
 ANSWERS: dict[str, Callable[[Desk, Message], Iterator[Reply]]] = {
-    "hello": decks.hello, "list": decks.list_folder, "open": decks.open_deck, "drop": decks.drop, "blocks": decks.blocks,
-    "analysis": decks.analysis, "save": decks.save, "drag": changes.drag, "set": changes.set_keys, "rest": changes.rest,
-    "show": views.show, "push": views.push, "fall": views.fall, "standalone": standalone.standalone, "rocking": motion.response, "impulse": motion.impulse, "domain": motion.domain,
-    "run": results.stored_run, "compute": results.compute, "figures": results.figures, "needed": needed.needed, "sheet": sheet.sheet, "draw": sheet.draw,
-}  # fmt: skip
+    "hello": decks.hello,
+    "list": decks.list_folder,
+    "open": decks.open_deck,
+    "drop": decks.drop,
+    "blocks": decks.blocks,
+    "analysis": decks.analysis,
+    "save": decks.save,
+    "drag": changes.drag,
+    "set": changes.set_keys,
+    "rest": changes.rest,
+    "show": views.show,
+    "push": views.push,
+    "fall": views.fall,
+    "standalone": standalone.standalone,
+    "rocking": motion.response,
+    "impulse": motion.impulse,
+    "domain": motion.domain,
+    "run": results.stored_run,
+    "compute": results.compute,
+    "figures": results.figures,
+    "needed": needed.needed,
+    "sheet": sheet.sheet,
+    "draw": sheet.draw,
+}
 
 
 class Session(Desk):

@@ -81,10 +81,16 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     chains = assembly.chains
     chain = view.chain if view.chain in chains else first_chain(assembly)
     words: dict[str, Any] = {
-        "blocks": len(assembly.mass), "joints": len(assembly.a), "depth_m": assembly.depth, "chains": list(chains),
-        "chain": chain, "weight_N": float(assembly.mass.sum()) * 9.80665, "size_m": assembly.size, "gamma": view.gamma,
+        "blocks": len(assembly.mass),
+        "joints": len(assembly.a),
+        "depth_m": assembly.depth,
+        "chains": list(chains),
+        "chain": chain,
+        "weight_N": float(assembly.mass.sum()) * 9.80665,
+        "size_m": assembly.size,
+        "gamma": view.gamma,
         "measures": assembly.measures,
-    }  # fmt: skip
+    }
     made = Picture(words, geometry(assembly, anchor), assembly)
     if building.ties:
         made.arrays["ties"] = building.anchored().point.reshape(-1, 2) - anchor
@@ -157,10 +163,13 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
                 joint = view.through[0]
                 at = shown.points(assembly)[joint] - anchor
                 words["through"] = {
-                    "joint": joint, "name": assembly.joint_names[joint], "wanted": view.through[1],
-                    "reached": float(shown.position[joint]), "at": at.tolist(),
+                    "joint": joint,
+                    "name": assembly.joint_names[joint],
+                    "wanted": view.through[1],
+                    "reached": float(shown.position[joint]),
+                    "at": at.tolist(),
                     "thrust_N": thrust_of(assembly, shown, chains[chain], told),
-                }  # fmt: skip
+                }
             elif view.thrust is not None and "through" in view.lines:
                 low, high = words["least_N"], words["most_N"]
                 share = min(max((view.thrust - low) / (high - low), 0.0), 1.0) if high > low else 0.0
@@ -171,9 +180,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
             words["remark"] = str(error)
     shown = shown or governing
     words["reactions"] = _reactions(assembly, shown, anchor)
-    words["reactions_of"] = (
-        "through" if "through" in words or "chosen" in words else "least" if shown is not governing else way
-    )
+    words["reactions_of"] = "through" if "through" in words or "chosen" in words else "least" if shown is not governing else way
     _polygon(made, shown, chain)
     return made
 
@@ -236,7 +243,7 @@ def _hinges(assembly: Assembly, mechanism: Mechanism, anchor: np.ndarray) -> lis
         point = assembly.p[j] + pivot[j] * (assembly.q[j] - assembly.p[j])
         found.append(
             {"name": assembly.joint_names[j], "side": side, "where": place_of(assembly, j, point), "at": (point - anchor).tolist()}
-        )  # fmt: skip
+        )
     return found
 
 

@@ -44,15 +44,12 @@ class ClassOptions:
         except ValueError:
             raise BadAddress(f"{self.address}: expected an IPv4 address of this machine, such as 192.168.1.5") from None
         if found.is_unspecified or not (found.is_private or found.is_link_local):
-            raise BadAddress(
-                f"{self.address}: a class is held on one address of a private network, not on all or on the internet"
-            )
+            raise BadAddress(f"{self.address}: a class is held on one address of a private network, not on all or on the internet")
 
 
 def explore(
-    folder: Path, deck: str | None, port: int | None, browser: bool, say: Callable[[str], None],
-    pupils: ClassOptions | None = None,
-) -> int:  # fmt: skip
+    folder: Path, deck: str | None, port: int | None, browser: bool, say: Callable[[str], None], pupils: ClassOptions | None = None
+) -> int:
     """Serve pages on a working folder, and a class if wanted, until Ctrl-C; the exit code."""
     token = server.new_token()
     with contextlib.ExitStack() as stack:
@@ -67,9 +64,7 @@ def explore(
             try:
                 sockets.append(stack.enter_context(server.listen(PORT + 1, address=pupils.address)))
             except OSError as error:
-                say(
-                    f"{pupils.address} is no address of this machine that a class can be held at: {error.strerror or error}"
-                )
+                say(f"{pupils.address} is no address of this machine that a class can be held at: {error.strerror or error}")
                 return 3
             second = (sockets[1].fileno(), server.new_token(), pupils.pupils)
             _say_class(f"http://{pupils.address}:{sockets[1].getsockname()[1]}/{second[1]}/", pupils, say)

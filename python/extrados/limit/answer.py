@@ -61,8 +61,7 @@ class Answer:
     def gap(self) -> float:
         """Greatest difference between the bounds from equilibrium and from the mechanism, both ways."""
         return max(
-            abs(self.collapse_state.gamma - self.mechanism.upper_bound),
-            abs(self.back_state.gamma - self.back_mechanism.upper_bound),
+            abs(self.collapse_state.gamma - self.mechanism.upper_bound), abs(self.back_state.gamma - self.back_mechanism.upper_bound)
         )
 
     @property
@@ -155,18 +154,23 @@ def assess(
     if not isinstance(limit.system, Sparse):
         # The structure stands: that no line is found now is a matter of rounding too.
         rounding = (NoAnswer, NoEquilibrium)
-        drawn = (
-            beside("the most central course of the line at collapse", lambda: limit.recentred(state, moving), rounding)
-            or state
-        )
+        drawn = beside("the most central course of the line at collapse", lambda: limit.recentred(state, moving), rounding) or state
         start = [state for pair in ends.values() for state in pair]
         central = beside("the most central line upright", lambda: limit.central(start=start), rounding)
     upright, part = central or (None, np.nan)
     return Answer(
-        assembly, limit.loads, drawn, mechanism, back, back_mechanism,
-        {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()},
-        upright, part, tuple(warnings),
-    )  # fmt: skip
+        assembly,
+        limit.loads,
+        drawn,
+        mechanism,
+        back,
+        back_mechanism,
+        {name: pair[0] for name, pair in ends.items()},
+        {name: pair[1] for name, pair in ends.items()},
+        upright,
+        part,
+        tuple(warnings),
+    )
 
 
 def cannot_stand(limit: LimitAnalysis) -> CannotStand:
@@ -179,9 +183,7 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
         try:
             upright = [limit.collapse(direction)[1].upper_bound for direction in (1, -1)]
         except NoEquilibrium:
-            return CannotStand(
-                f"{why_not(limit)}; certificate: planes outside the curves of strength already leave no forces"
-            )
+            return CannotStand(f"{why_not(limit)}; certificate: planes outside the curves of strength already leave no forces")
         if upright[0] < 0.0 or upright[1] > 0.0:
             return CannotStand(
                 f"{why_not(limit)}; certificate: the work of loads and crushing in the mechanism that this load sets in motion"
@@ -194,8 +196,7 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
     velocity[:, :2] *= assembly.size
     fastest = assembly.block_names[int(np.hypot(velocity[:, 0], velocity[:, 1]).argmax())]
     return CannotStand(
-        f"{why_not(limit)}; certificate: a motion, fastest at {fastest}, by which the loads do work that no joint takes",
-        velocity,
+        f"{why_not(limit)}; certificate: a motion, fastest at {fastest}, by which the loads do work that no joint takes", velocity
     )
 
 

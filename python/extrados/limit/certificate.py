@@ -38,7 +38,7 @@ class Certificate:
 
 def certify(
     assembly: Assembly, loads: Loads, friction: float | np.ndarray, state: State, mechanism: Mechanism, strength: float | None
-) -> Certificate:  # fmt: skip
+) -> Certificate:
     """Equilibrium, the laws of the joints and the zero gap of a state and its mechanism, apart from any programme.
 
     The gap sum(N u_n + s u_t + mu N |u_t|) of a state in equilibrium is -dead.v - gamma live.v + mu sum N |u_t|, each
@@ -96,9 +96,17 @@ def certify(
 
 
 def certify_solids(
-    assembly: SolidAssembly, friction: np.ndarray, dead: np.ndarray, live: np.ndarray, gamma: float, force: np.ndarray, keyed: np.ndarray, motion: np.ndarray,
-    strands: Sequence[Strand] = (), tension: np.ndarray | None = None,
-) -> Certificate:  # fmt: skip
+    assembly: SolidAssembly,
+    friction: np.ndarray,
+    dead: np.ndarray,
+    live: np.ndarray,
+    gamma: float,
+    force: np.ndarray,
+    keyed: np.ndarray,
+    motion: np.ndarray,
+    strands: Sequence[Strand] = (),
+    tension: np.ndarray | None = None,
+) -> Certificate:
     """The same of solids, from their geometry.
 
     friction (corners); dead, live (nb, 6): forces [N] and moments about the centroids [N m]; force (corners, 3): compression

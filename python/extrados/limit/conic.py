@@ -62,11 +62,7 @@ def collapse_of_crushing(
     for sign, bound in zip((1.0, -1.0), bounds, strict=True):
         bounded = np.flatnonzero(np.isfinite(bound))
         column = 3 * joints + bounded
-        parts.append(
-            sparse.csr_array(
-                (np.full(len(bounded), -sign), (np.arange(len(bounded)), column)), (len(bounded), unknowns)
-            )
-        )
+        parts.append(sparse.csr_array((np.full(len(bounded), -sign), (np.arange(len(bounded)), column)), (len(bounded), unknowns)))
         right.append(-sign * bound[bounded])
         cones.append(clarabel.NonnegativeConeT(len(bounded)))
     # (n + b, n - b, 2 N sqrt(b c)) in the cone is n >= c N^2, for any b > 0
@@ -96,12 +92,7 @@ def collapse_of_crushing(
     motion = (system.corner_matrix.T @ twist).reshape(-1, 3)
     corners = x[: 3 * joints].reshape(-1, 3)
     return ConicCollapse(
-        sense * float(x[-1]),
-        corners,
-        x[3 * joints : -1],
-        twist.reshape(-1, 3),
-        motion,
-        work_of_joints(motion, friction, crush),
+        sense * float(x[-1]), corners, x[3 * joints : -1], twist.reshape(-1, 3), motion, work_of_joints(motion, friction, crush)
     )
 
 

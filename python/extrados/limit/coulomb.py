@@ -108,9 +108,14 @@ class CoulombProblem(CollapseProblem):
             return None
         (gamma, corners, share, u), residuals = min(ended, key=lambda one: one[0][0])
         return CoulombState(
-            self.sense * gamma, corners, share, u.reshape(-1, 3), self.motion(u), residuals,
+            self.sense * gamma,
+            corners,
+            share,
+            u.reshape(-1, 3),
+            self.motion(u),
+            residuals,
             tuple(self.sense * state[0] for state, _ in ended),
-        )  # fmt: skip
+        )
 
     def neutral(self, stone: int) -> CoulombState | None:
         """The state at rest in which a stone slides down under its own weight against all that friction holds, whatever the
@@ -129,9 +134,7 @@ class CoulombProblem(CollapseProblem):
             return None
         return CoulombState(0.0, corners, share, u.reshape(-1, 3), motion, residuals, (0.0,), stone)
 
-    def _descent(
-        self, u: np.ndarray | None, gives: Gives, scatter: np.random.Generator, at_least: float
-    ) -> Found | None:
+    def _descent(self, u: np.ndarray | None, gives: Gives, scatter: np.random.Generator, at_least: float) -> Found | None:
         """The state to which alternate programmes lead from a motion, or from where it gives way if it is known to
         rounding only; None where no forces go with that."""
         best = None
@@ -193,9 +196,7 @@ class CoulombProblem(CollapseProblem):
             held = held + scatter.uniform(0.1, 0.6) * (normal - held)
         return None
 
-    def _least_forces(
-        self, gives: Gives, at_least: float, at_most: float = INFINITY
-    ) -> tuple[Forces, np.ndarray] | None:
+    def _least_forces(self, gives: Gives, at_least: float, at_most: float = INFINITY) -> tuple[Forces, np.ndarray] | None:
         """Least load of forces that are zero where ends part, and at their limit where joints slide or ties yield.
 
         Also, for each end and sense that gives way (4, joints), by how much the load would fall per force gained if it did
@@ -207,8 +208,7 @@ class CoulombProblem(CollapseProblem):
         equations = self._forces
         cones = [
             sparse.csr_array(
-                (np.concatenate([self.friction, self.friction, sign * one]), (np.tile(j, 3), columns)),
-                shape=(m, equations.shape[1]),
+                (np.concatenate([self.friction, self.friction, sign * one]), (np.tile(j, 3), columns)), shape=(m, equations.shape[1])
             )
             for sign in (-1.0, 1.0)
         ]
@@ -239,13 +239,15 @@ class CoulombProblem(CollapseProblem):
         m, n = self.joints, self.system.equations
         one, none = sparse.eye_array(m, format="csr"), sparse.csr_array((m, m))
         turned = self.corner_t
-        rows = sparse.vstack([
-            sparse.hstack([turned[0::3], -one, none, none, none]),
-            sparse.hstack([turned[1::3], none, -one, none, none]),
-            sparse.hstack([turned[2::3], none, none, one, -one]),
-            sparse.hstack([sparse.csr_array(self.live[None, :]), sparse.csr_array((1, 4 * m))]),
-            sparse.hstack([self.answers_t, sparse.csr_array((len(share), 4 * m))]),
-        ])  # fmt: skip
+        rows = sparse.vstack(
+            [
+                sparse.hstack([turned[0::3], -one, none, none, none]),
+                sparse.hstack([turned[1::3], none, -one, none, none]),
+                sparse.hstack([turned[2::3], none, none, one, -one]),
+                sparse.hstack([sparse.csr_array(self.live[None, :]), sparse.csr_array((1, 4 * m))]),
+                sparse.hstack([self.answers_t, sparse.csr_array((len(share), 4 * m))]),
+            ]
+        )
         # Forces that answer do no work within their bounds, at the greatest only against the motion, at the least only with it.
         above_least, below_greatest = SIDES * (share - self.bounds) > ACTIVE
         lower = np.concatenate([np.zeros(3 * m), [1.0], np.where(below_greatest, 0.0, -INFINITY)])

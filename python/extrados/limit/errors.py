@@ -23,9 +23,7 @@ class CannotStand(Exception):
     "restraints" and "passive pressure" where it neglects those.
     """
 
-    def __init__(
-        self, text: str, motion: np.ndarray | None = None, neglects: tuple[str, ...] = ("cohesion", "tension")
-    ):
+    def __init__(self, text: str, motion: np.ndarray | None = None, neglects: tuple[str, ...] = ("cohesion", "tension")):
         super().__init__(text)
         self.motion, self.neglects = motion, neglects
 

@@ -47,9 +47,7 @@ class FaceLaw:
         self.faces = len(one.a)
         first, second = one.tangents
         self.frames = np.stack([one.normal, first, second], axis=1)
-        self.middle, self.axes, self.sides = (
-            np.stack(part) for part in zip(*map(self._rectangle, range(self.faces)), strict=True)
-        )
+        self.middle, self.axes, self.sides = (np.stack(part) for part in zip(*map(self._rectangle, range(self.faces)), strict=True))
         self.mu = limit.mu[np.unique(one.corner_joint, return_index=True)[1]]
 
     def _rectangle(self, j: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -77,9 +75,7 @@ class FaceLaw:
             gamma, normal = self._solve(dead, live, centre, distance)
             found.append(gamma)
             total = np.bincount(one.corner_joint, normal, self.faces)
-            moment = np.stack(
-                [np.bincount(one.corner_joint, normal * one.corner[:, k], self.faces) for k in range(3)], axis=1
-            )
+            moment = np.stack([np.bincount(one.corner_joint, normal * one.corner[:, k], self.faces) for k in range(3)], axis=1)
             presses = total > CARRIES * self.limit.weight.sum() / self.limit.scale
             at = np.where(presses[:, None], moment / np.where(presses, total, 1.0)[:, None], centre)
             off = np.abs(np.einsum("jx,jkx->jk", at - self.middle, self.axes))
@@ -88,26 +84,16 @@ class FaceLaw:
             distance += DAMPED * (mean_distance(*pressed.T) - distance)
         low, high = min(found[-LAST:]), max(found[-LAST:])
         if high - low > SETTLED * abs(low):
-            raise NoAnswer(
-                f"the iteration of the face law did not converge: its last values vary from {low:.4f} to {high:.4f} g"
-            )
+            raise NoAnswer(f"the iteration of the face law did not converge: its last values vary from {low:.4f} to {high:.4f} g")
         return FaceLoad(low, high - low)
 
-    def _solve(
-        self, dead: np.ndarray, live: np.ndarray, centre: np.ndarray, distance: np.ndarray
-    ) -> tuple[float, np.ndarray]:
+    def _solve(self, dead: np.ndarray, live: np.ndarray, centre: np.ndarray, distance: np.ndarray) -> tuple[float, np.ndarray]:
         """Greatest multiplier and compressions of the corners, with shears at given centres and torsion over given distances."""
         limit, one = self.limit, self.limit.assembly
         corners, faces = len(limit.mu), self.faces
         keyed = limit.matrix[:, 3 * corners :]
         matrix = sparse.hstack(
-            [
-                limit.matrix[:, 0 : 3 * corners : 3],
-                self._shears(centre, distance),
-                keyed,
-                limit.pulls,
-                sparse.csc_array(live[:, None]),
-            ]
+            [limit.matrix[:, 0 : 3 * corners : 3], self._shears(centre, distance), keyed, limit.pulls, sparse.csc_array(live[:, None])]
         )
         n = matrix.shape[1]
         each = sparse.eye_array(n, format="csr")
@@ -116,10 +102,7 @@ class FaceLaw:
         share = sparse.csr_array((mu, (one.corner_joint, np.arange(corners))), shape=(faces, n))
         rows = sparse.vstack([share[slides], *(each[corners + 3 * slides + k] for k in range(3))])
         order = np.arange(4 * len(slides)).reshape(4, len(slides)).T.ravel()
-        blocks, right = (
-            [matrix, -each[:corners], -rows.tocsr()[order]],
-            [-dead, np.zeros(corners), np.zeros(4 * len(slides))],
-        )
+        blocks, right = ([matrix, -each[:corners], -rows.tocsr()[order]], [-dead, np.zeros(corners), np.zeros(4 * len(slides))])
         cones = [clarabel.ZeroConeT(len(dead)), clarabel.NonnegativeConeT(corners)]
         cones += [clarabel.SecondOrderConeT(4)] * len(slides)
         if one.keys is not None:
@@ -141,9 +124,7 @@ class FaceLaw:
         settings.max_threads = 1
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
         nothing = sparse.csc_array((n, n))
-        found = clarabel.DefaultSolver(
-            nothing, cost, sparse.vstack(blocks).tocsc(), np.concatenate(right), cones, settings
-        ).solve()
+        found = clarabel.DefaultSolver(nothing, cost, sparse.vstack(blocks).tocsc(), np.concatenate(right), cones, settings).solve()
         if "Solved" not in str(found.status):
             raise NoAnswer(f"the conic solver gave up on the face law: {found.status}")
         x = np.array(found.x)

@@ -36,9 +36,13 @@ def passive_pressure(earth: Earth, depth: float, centroid: np.ndarray) -> Resist
     moment = -np.bincount(index, force * arm, len(side)) * side[:, 1]
     block, count = side[:, 0].astype(int), len(side)
     return Resistance(
-        np.arange(count), block, np.column_stack([push, np.zeros(count), moment]),
-        np.column_stack([centroid[block, 0], -moment / push]), np.zeros(count), np.ones(count),
-    )  # fmt: skip
+        np.arange(count),
+        block,
+        np.column_stack([push, np.zeros(count), moment]),
+        np.column_stack([centroid[block, 0], -moment / push]),
+        np.zeros(count),
+        np.ones(count),
+    )
 
 
 def under_load(earth: Earth, count: int, x: float, force: float, length: float) -> np.ndarray:

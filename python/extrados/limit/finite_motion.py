@@ -82,11 +82,7 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
 
 
 def _correct(
-    pose: np.ndarray,
-    target: np.ndarray,
-    contacts: tuple[np.ndarray, np.ndarray, np.ndarray, int],
-    driver: int | None,
-    size: float,
+    pose: np.ndarray, target: np.ndarray, contacts: tuple[np.ndarray, np.ndarray, np.ndarray, int], driver: int | None, size: float
 ) -> np.ndarray:
     """One Newton step, of least size, towards closed hinges and the prescribed rotation.
 

@@ -89,9 +89,7 @@ def fractured_collapse(
     outline = assembly.outlines[block]
     tall = float(outline[:, 1].max()) - foot
     inner_face = outline[np.isclose(outline[:, 0], _ends(assembly, block, base, 0.0, direction)[0][0])]
-    limit = min(
-        [float(inner_face[:, 1].max()), *(min(assembly.p[j, 1], assembly.q[j, 1]) for j in others)]
-    ) - foot  # fmt: skip
+    limit = min([float(inner_face[:, 1].max()), *(min(assembly.p[j, 1], assembly.q[j, 1]) for j in others)]) - foot
 
     def at(height: float) -> tuple[float, Fracture]:
         cracked = crack(assembly, block, height, direction) if height > 0.0 else assembly

@@ -61,9 +61,7 @@ def funicular(assembly: Assembly, loads: Loads, state: State, joints: list[int])
     rays = force_polygon(assembly, state, joints)
     corners = [points[0]]
     for i in range(len(joints) - 1):
-        shared = {int(assembly.a[joints[i]]), int(assembly.b[joints[i]])} & {
-            int(assembly.a[joints[i + 1]]), int(assembly.b[joints[i + 1]])
-        }  # fmt: skip
+        shared = {int(assembly.a[joints[i]]), int(assembly.b[joints[i]])} & {int(assembly.a[joints[i + 1]]), int(assembly.b[joints[i + 1]])}
         block = next(iter(shared - {GROUND}), None)
         middle = 0.5 * (points[i] + points[i + 1])
         if block is not None:
@@ -114,7 +112,5 @@ def section_forces(
     total[:, 0] -= side * weight
     total[:, 1] += weight
     total[:, 2] += first + side * second
-    x = np.divide(
-        total[:, 2] + levels * total[:, 0], total[:, 1], out=np.full(len(levels), np.nan), where=total[:, 1] != 0.0
-    )
+    x = np.divide(total[:, 2] + levels * total[:, 0], total[:, 1], out=np.full(len(levels), np.nan), where=total[:, 1] != 0.0)
     return total[:, :2], x

@@ -62,9 +62,7 @@ class Residuals:
     @property
     def worst(self) -> float:
         """The greatest of them."""
-        return max(
-            self.equilibrium, self.friction, self.tension, self.overlap, self.complementarity, self.work
-        )  # fmt: skip
+        return max(self.equilibrium, self.friction, self.tension, self.overlap, self.complementarity, self.work)
 
 
 @dataclass
@@ -91,11 +89,18 @@ class Point:
     def moved(self, step: "Point", force: float, motion: float) -> "Point":
         """The iterate after a step, lengthened by one factor for forces and one for motions."""
         return Point(
-            self.n + force * step.n, self.s + force * step.s, self.v + force * step.v, self.w + force * step.w,
-            self.o + motion * step.o, self.slip + motion * step.slip, self.u + motion * step.u,
-            self.gamma + force * step.gamma, self.share + force * step.share, self.room + force * step.room,
+            self.n + force * step.n,
+            self.s + force * step.s,
+            self.v + force * step.v,
+            self.w + force * step.w,
+            self.o + motion * step.o,
+            self.slip + motion * step.slip,
+            self.u + motion * step.u,
+            self.gamma + force * step.gamma,
+            self.share + force * step.share,
+            self.room + force * step.room,
             self.hold + motion * step.hold,
-        )  # fmt: skip
+        )
 
     @property
     def gap(self) -> float:
@@ -120,9 +125,7 @@ class CollapseProblem:
     bound. dilates: sliding opens the joint by the friction it overcomes.
     """
 
-    def __init__(
-        self, system: Sparse, friction: np.ndarray, sense: int, crush: np.ndarray | None = None, *, dilates: bool
-    ):
+    def __init__(self, system: Sparse, friction: np.ndarray, sense: int, crush: np.ndarray | None = None, *, dilates: bool):
         self.system, self.friction, self.sense, self.dilates = system, friction, sense, dilates
         self.crush = np.zeros(len(friction)) if crush is None else crush
         self.crushes = crush is not None
@@ -179,14 +182,10 @@ class CollapseProblem:
         v = np.maximum(n - (self.crush * normal**2)[:, None], 0.1 * n)
         w = np.repeat((friction * normal)[:, None], 2, axis=1)
         # In the middle of its bounds, or one whole away from the only one.
-        low, high = np.where(
-            self.bounded, self.bounds, np.where(self.bounded[::-1], self.bounds[::-1], 0.0) + 2.0 * -SIDES
-        )
+        low, high = np.where(self.bounded, self.bounds, np.where(self.bounded[::-1], self.bounds[::-1], 0.0) + 2.0 * -SIDES)
         share = 0.5 * (low + high)
         room = np.where(self.bounded, SIDES * (share - self.bounds), 1.0)
-        return Point(
-            n, np.zeros(m), v, w, o, slip, np.zeros(self.system.equations), 0.0, share, room, self.bounded.astype(float)
-        )
+        return Point(n, np.zeros(m), v, w, o, slip, np.zeros(self.system.equations), 0.0, share, room, self.bounded.astype(float))
 
     def _rest(self, x: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point:
         """What is left of the equations, each under the name of the unknown it would fix."""
@@ -215,9 +214,7 @@ class CollapseProblem:
                 continue
         return None
 
-    def _step(
-        self, x: Point, rest: Point, friction: np.ndarray, dilatancy: np.ndarray, soft: float, shift: float
-    ) -> Point:
+    def _step(self, x: Point, rest: Point, friction: np.ndarray, dilatancy: np.ndarray, soft: float, shift: float) -> Point:
         """The next iterate; RuntimeError where the matrix has no factor."""
         stiff = x.slip / x.w
         both = _sums(stiff)
@@ -228,12 +225,7 @@ class CollapseProblem:
         bend = 2.0 * self.crush * _sums(x.n)
         curve = 2.0 * self.crush * _sums(x.o)
         # Inverse of the joint's law: openings to normal forces, a 2 x 2 without cancellation; slip to shear.
-        t_p, t_q, far, level = (
-            press[:, 0] + soft,
-            press[:, 1] + soft,
-            1.0 - bend,
-            curve + dilatancy * friction * between,
-        )
+        t_p, t_q, far, level = (press[:, 0] + soft, press[:, 1] + soft, 1.0 - bend, curve + dilatancy * friction * between)
         det = (1.0 - 2.0 * bend) ** 2 * t_p * t_q + level * (t_p + t_q)
         give = np.empty((self.joints, 2, 2))
         give[:, 0, 0] = (far**2 * t_q + bend**2 * t_p + level) / det
@@ -344,9 +336,7 @@ class CollapseProblem:
             friction=max(0.0, float((np.abs(shear) - limit).max())),
             tension=max(0.0, float(-room.min()), float(beyond.max(initial=0.0))),
             overlap=max(0.0, float(-opening.min())),
-            complementarity=max(
-                0.0, float(held.max()), float(np.minimum(room, np.abs(opening)).max()), float(inner.max(initial=0.0))
-            ),
+            complementarity=max(0.0, float(held.max()), float(np.minimum(room, np.abs(opening)).max()), float(inner.max(initial=0.0))),
             work=abs(forced - taken) / max(abs(forced), abs(dead), 1e-300),
         )
 

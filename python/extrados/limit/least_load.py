@@ -108,9 +108,7 @@ class LeastLoad:
         cut[-1] += 1.0
         for room in rooms:
             linear = sparse.vstack([self.linear, sparse.csr_array(cut[None])])
-            x, _ = self._solve(
-                1.0, linear, np.append(self.least, taken - room * max(1.0, abs(taken))), self.cone, p.grip[own]
-            )
+            x, _ = self._solve(1.0, linear, np.append(self.least, taken - room * max(1.0, abs(taken))), self.cone, p.grip[own])
             if x is not None:
                 force, share = x[: -1 - p.answers.shape[1]].reshape(-1, d), x[len(x) - 1 - p.answers.shape[1] : -1]
                 return float(x[-1]), force, share, abs(float(cut @ x) - taken)

@@ -52,9 +52,8 @@ def thrust_paths(assembly: Assembly, loads: Loads, state: State, sway: float = 1
 
 
 def _through(
-    assembly: Assembly, loads: Loads, state: State, block: int, joints: list[int], points: np.ndarray, force: np.ndarray,
-    sway: float,
-) -> list[tuple[np.ndarray, float]]:  # fmt: skip
+    assembly: Assembly, loads: Loads, state: State, block: int, joints: list[int], points: np.ndarray, force: np.ndarray, sway: float
+) -> list[tuple[np.ndarray, float]]:
     """Lines through one stone and their forces, from its loaded joints."""
     if not joints:
         return []
@@ -80,9 +79,16 @@ def _through(
 
 
 def _down(
-    assembly: Assembly, loads: Loads, state: State, block: int, base: int, above: list[int], points: np.ndarray,
-    force: np.ndarray, sway: float,
-) -> list[tuple[np.ndarray, float]]:  # fmt: skip
+    assembly: Assembly,
+    loads: Loads,
+    state: State,
+    block: int,
+    base: int,
+    above: list[int],
+    points: np.ndarray,
+    force: np.ndarray,
+    sway: float,
+) -> list[tuple[np.ndarray, float]]:
     """The line down a tall stone on level sections, and the lines that meet it from its other joints; nothing where
     no section is pressed."""
     order = sorted(above, key=lambda j: -float(points[j, 1]))

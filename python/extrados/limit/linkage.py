@@ -96,9 +96,7 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     fastest = float(np.hypot(*mechanism.velocity[:, :2].T).max())
     slides = [j for j in _moving(mechanism) if abs(mechanism.slip[j]) > SLIPS * fastest]
     if slides:
-        raise CannotRock(
-            f"the mechanism slides along {_listed(names, slides)}: a rocking mechanism rotates about hinges without sliding"
-        )
+        raise CannotRock(f"the mechanism slides along {_listed(names, slides)}: a rocking mechanism rotates about hinges without sliding")
     crushes = [j for j in _moving(mechanism) if ends[:2, j].min() < -SLIPS * fastest]
     if crushes:
         raise CannotRock(f"the stone crushes at {_listed(names, crushes)}: the hinges that rock are sharp edges")
@@ -117,9 +115,7 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     driver = _driver(assembly, joint, joined, point, spin, side)
     parted = f", for it parts all along {_listed(names, mechanism.sliding)}" if mechanism.sliding else ""
     row = _independent(centroid, joined, point, assembly.size, driver, parted)
-    made = Linkage(
-        side, part, mass, centroid, inertia, joint, joined, point, row, driver, 1 if spin[driver - 1] > 0.0 else -1
-    )
+    made = Linkage(side, part, mass, centroid, inertia, joint, joined, point, row, driver, 1 if spin[driver - 1] > 0.0 else -1)
     _same_motion(made, assembly, mechanism, spin, fastest)
     return made
 
@@ -156,9 +152,7 @@ def _mass(assembly: Assembly, part: np.ndarray, count: int) -> tuple[np.ndarray,
     return mass, centroid, inertia
 
 
-def _driver(
-    assembly: Assembly, joint: np.ndarray, joined: np.ndarray, point: np.ndarray, spin: np.ndarray, side: int
-) -> int:
+def _driver(assembly: Assembly, joint: np.ndarray, joined: np.ndarray, point: np.ndarray, spin: np.ndarray, side: int) -> int:
     """The part whose rotation is the coordinate, see `linkage`."""
     turning = np.append(0.0, np.abs(spin)) > TURNS * np.abs(spin).max(initial=0.0)
     order = np.argsort(side * point[:, 0], kind="stable")
@@ -183,9 +177,7 @@ def _jacobian(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size:
     return rows.reshape(2 * len(joined), -1)
 
 
-def _independent(
-    centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float, driver: int, parted: str
-) -> np.ndarray:
+def _independent(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float, driver: int, parted: str) -> np.ndarray:
     """Hinge and axis, from 1, of the equations that with the prescribed rotation of the driver fix the motion.
 
     CannotRock where they do not; `parted` ends the sentence.
@@ -206,8 +198,7 @@ def _independent(
     if len(basis) < rows.shape[1]:
         free = rows.shape[1] - len(basis) + 1
         raise CannotRock(
-            f"its {len(centroid)} moving parts on {len(joined)} hinges have {free} degrees of freedom: they do not move as one"
-            f"{parted}"
+            f"its {len(centroid)} moving parts on {len(joined)} hinges have {free} degrees of freedom: they do not move as one{parted}"
         )
     kept_rows = np.array(kept)
     return np.column_stack([kept_rows // 2 + 1, kept_rows % 2 + 1])
@@ -220,9 +211,7 @@ def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: 
     k = made.part[moving] - 1
     velocity = mechanism.velocity[moving]
     arm = made.centroid[k] - assembly.centroid[moving]
-    of_block = np.column_stack(
-        [velocity[:, 0] - velocity[:, 2] * arm[:, 1], velocity[:, 1] + velocity[:, 2] * arm[:, 0], velocity[:, 2]]
-    )
+    of_block = np.column_stack([velocity[:, 0] - velocity[:, 2] * arm[:, 1], velocity[:, 1] + velocity[:, 2] * arm[:, 0], velocity[:, 2]])
     field = np.zeros((len(made.mass), 3))
     field[k] = of_block
     field[:, :2] /= assembly.size

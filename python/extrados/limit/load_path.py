@@ -24,11 +24,7 @@ GAINS, IDLE = 0.7, 6  # of the forces left over: iterations that gain less, and 
 FIRST, ELASTIC_LOAD, GROWTH = 20.0, 1e-3, 1.15  # the first step, in steps of the elastic response to that multiplier
 FLAT, FLAT_STEPS = 1e-7, 6  # relative change of the multiplier per step, in so many steps, where it is constant
 MEETS = 1e-6  # of the fastest point: open contacts that approach faster will carry again
-PROXIMAL, EASED, STIFFENED = (
-    0.05,
-    0.4,
-    5.0,
-)  # of the normal stiffness: elastic hold to the last iterate, and its changes
+PROXIMAL, EASED, STIFFENED = (0.05, 0.4, 5.0)  # of the normal stiffness: elastic hold to the last iterate, and its changes
 NEARLY_FREE, LOOSE = 5e-3, 1e-7  # holds below which a step without it is tried, and that count as none
 HOLDS = 60
 SHRUNK = 1e-3  # of the first step: no smaller step is tried
@@ -68,9 +64,13 @@ class LoadPath:
         p = self.points
         nothing = np.zeros(len(p.dead))
         state = _State(
-            nothing, 0.0, np.zeros((len(p.friction), p.dimension)), np.zeros((len(p.friction), p.dimension)),
-            np.zeros(p.answers.shape[1]), np.zeros(p.answers.shape[1]),
-        )  # fmt: skip
+            nothing,
+            0.0,
+            np.zeros((len(p.friction), p.dimension)),
+            np.zeros((len(p.friction), p.dimension)),
+            np.zeros(p.answers.shape[1]),
+            np.zeros(p.answers.shape[1]),
+        )
         bonded = self._factor(self._bonded(), 0.0, border=False)
         upright = self._held(state, bonded.solve(p.dead), 0.0, None)
         if upright is None:
@@ -122,9 +122,7 @@ class LoadPath:
                 return None
         return None
 
-    def _newton(
-        self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray
-    ) -> _State | None:
+    def _newton(self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray) -> _State | None:
         """The state in equilibrium after a step, with springs `hold` to the displacements `about`; None without one."""
         if self.solves > self.effort:
             raise NoAnswer(f"the load path ended at {gamma:.4f} g: it took more than {self.effort} linear systems")
@@ -132,9 +130,7 @@ class LoadPath:
 
         def left(u: np.ndarray, gamma: float) -> tuple[_State, np.ndarray, float, float]:
             state = self._forces(old, u, gamma)
-            rest = (
-                p.matrix @ state.force.ravel() + p.answers @ state.share + p.dead + gamma * p.live - hold * (u - about)
-            )
+            rest = p.matrix @ state.force.ravel() + p.answers @ state.share + p.dead + gamma * p.live - hold * (u - about)
             short = 0.0 if work is None else work - float(p.live @ (u - old.u))
             return state, rest, short, float(np.sqrt(rest @ rest + short * short))
 

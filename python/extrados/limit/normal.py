@@ -103,9 +103,7 @@ class NormalMatrix:
         width = int((row - column).max())
         return (3 * order[:, None] + np.arange(3)).ravel(), lower, column * (width + 1) + row - column, width
 
-    def factor(
-        self, spring: np.ndarray, answer: np.ndarray, shift: float, *, symmetric: bool, positive: bool
-    ) -> Factor:
+    def factor(self, spring: np.ndarray, answer: np.ndarray, shift: float, *, symmetric: bool, positive: bool) -> Factor:
         """The factor of the matrix of springs (joints, 3, 3), `answer` (forces) and `shift` on the diagonal; RuntimeError where
         it has none. symmetric: the springs are; positive: `shift` is enough to keep them so."""
         values = self._values(spring, answer, shift)

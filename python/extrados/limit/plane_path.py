@@ -9,9 +9,7 @@ from extrados.limit.programme import LimitAnalysis
 from extrados.limit.states import Mechanism, State
 
 
-def collapse_along_path(
-    limit: LimitAnalysis, direction: int, ratio: float, effort: int = PATIENT
-) -> tuple[State, Mechanism]:
+def collapse_along_path(limit: LimitAnalysis, direction: int, ratio: float, effort: int = PATIENT) -> tuple[State, Mechanism]:
     """State and mechanism under a push to +x (1) or -x (-1) of joints whose shear stiffness is `ratio` of the normal one;
     NoAnswer where the path does not lead to a collapse."""
     if limit.strength is not None:

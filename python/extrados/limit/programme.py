@@ -13,17 +13,7 @@ from extrados.limit.equilibrium import hanging_stones, spanning_tree
 from extrados.limit.graphic import senses, thrust_joint
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
-from extrados.limit.solver import (
-    BOUND,
-    INFINITY,
-    MADE_UP,
-    Immovable,
-    NoAnswer,
-    NoEquilibrium,
-    Programme,
-    Solution,
-    linear_programme,
-)
+from extrados.limit.solver import BOUND, INFINITY, MADE_UP, Immovable, NoAnswer, NoEquilibrium, Programme, Solution, linear_programme
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
 from extrados.model.geometry.assembly import Assembly
@@ -121,9 +111,7 @@ class LimitAnalysis:
         if friction is not None:
             self._mu = np.broadcast_to(np.asarray(friction, dtype=float), m)
             self._cone = self._sliding(self._mu)
-        self._crush = (
-            None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
-        )
+        self._crush = None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
         self._cuts: Constraints | None = None
         self._programme: Programme | None = None
 
@@ -228,9 +216,7 @@ class LimitAnalysis:
             twist, defect = self.system.velocities(motion)
         else:
             twist, defect = self.system.velocities(motion, solution.equations)
-        mechanism = read_mechanism(
-            self.assembly, self.loads, rows, np.maximum(solution.rows, 0.0), motion, twist, defect
-        )
+        mechanism = read_mechanism(self.assembly, self.loads, rows, np.maximum(solution.rows, 0.0), motion, twist, defect)
         return self._state(solution, corners), mechanism
 
     @cached_property
@@ -263,9 +249,7 @@ class LimitAnalysis:
         motion = problem.motion(point.u)
         # No forces the joints bear take more work than these and what is left of the gap (weak duality).
         taken = point.gap_of_joints - float((point.corners * motion).sum())
-        state, mechanism = self.read_collapse(
-            direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken
-        )
+        state, mechanism = self.read_collapse(direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken)
         apart = abs(state.gamma - mechanism.upper_bound)
         return None if apart > closed(len(self.assembly.a), state.gamma) else (state, mechanism)
 
@@ -278,9 +262,7 @@ class LimitAnalysis:
         found = self._neutral(problem) or problem.least(self.starts, 0.0)
         if found is None:
             self._refuse_immovable(direction)
-            lower, upper = (
-                "nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction)
-            )
+            lower, upper = ("nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction))
             raise NoAnswer(
                 f"no state of collapse without dilatancy was found; the load lies between that without friction ({lower}) and "
                 f"that with dilatancy ({upper}); blocks that friction alone holds between their neighbours may have none"
@@ -297,11 +279,16 @@ class LimitAnalysis:
         nothing = np.empty((2, 0))
         answers = self.loads.resistance
         return ContactPoints(
-            sparse.csr_array(system.corner_matrix.tocsc()[:, columns]), -system.right,
-            direction * (self.loads.live / system.unit).ravel(), np.repeat(self._mu, 2), np.zeros(2 * m),
-            np.repeat(length, 2), sparse.csr_array(system.matrix.tocsc()[:, np.arange(system.shares.start, system.shares.stop)]),
-            nothing if answers is None else np.stack([answers.low, answers.high]), 1.0,
-        )  # fmt: skip
+            sparse.csr_array(system.corner_matrix.tocsc()[:, columns]),
+            -system.right,
+            direction * (self.loads.live / system.unit).ravel(),
+            np.repeat(self._mu, 2),
+            np.zeros(2 * m),
+            np.repeat(length, 2),
+            sparse.csr_array(system.matrix.tocsc()[:, np.arange(system.shares.start, system.shares.stop)]),
+            nothing if answers is None else np.stack([answers.low, answers.high]),
+            1.0,
+        )
 
     def dilating(self, mechanism: Mechanism) -> list[int]:
         """Joints that press and slide in a mechanism of associated friction: they open by the friction times the slip, so that
@@ -315,9 +302,7 @@ class LimitAnalysis:
 
     def without_dilatancy(self) -> "LimitAnalysis":
         """The same question with sliding that does not dilate."""
-        return LimitAnalysis(
-            self.assembly, self.friction, strength=self.strength, associated=False, loads=self.loads, starts=self.starts
-        )
+        return LimitAnalysis(self.assembly, self.friction, strength=self.strength, associated=False, loads=self.loads, starts=self.starts)
 
     def _neutral(self, problem: CoulombProblem) -> CoulombState | None:
         """A state at rest in which a stone that friction alone holds between its neighbours slides out of them, by which the
@@ -352,9 +337,7 @@ class LimitAnalysis:
         """State and mechanism of a collapse whose forces and motion were found together; taken: work of the joints."""
         nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
         _, defect = self.equations.velocities(motion, -twist.ravel())
-        mechanism = read_mechanism(
-            self.assembly, self.loads, nothing, np.empty(0), motion, twist, defect, INNER_REST, taken
-        )  # fmt: skip
+        mechanism = read_mechanism(self.assembly, self.loads, nothing, np.empty(0), motion, twist, defect, INNER_REST, taken)
         return read_state(gamma, corners, self.loads.scale, share), mechanism
 
     def certificate(self, gamma: float = 0.0) -> np.ndarray | None:
@@ -379,24 +362,22 @@ class LimitAnalysis:
         work = (force / unit).ravel()
         dilates = sparse.diags_array(np.zeros(m) if mu is None else mu)
         one, none = sparse.eye_array(m), sparse.csr_array((m, m))
-        rows = sparse.vstack([
-            sparse.hstack([turned[0::3], -dilates, -dilates]),
-            sparse.hstack([turned[1::3], -dilates, -dilates]),
-            sparse.hstack([turned[2::3], one if mu is not None else none, -one if mu is not None else none]),
-        ])  # fmt: skip
+        rows = sparse.vstack(
+            [
+                sparse.hstack([turned[0::3], -dilates, -dilates]),
+                sparse.hstack([turned[1::3], -dilates, -dilates]),
+                sparse.hstack([turned[2::3], one if mu is not None else none, -one if mu is not None else none]),
+            ]
+        )
         lower, upper = np.zeros(3 * m), np.concatenate([np.full(2 * m, INFINITY), np.zeros(m)])
         k, answers = self.loads.pushes, self.loads.resistance
-        if (
-            answers is not None
-        ):  # what each can take of the work, whole or at its least; what never yields lets none be done
+        if answers is not None:  # what each can take of the work, whole or at its least; what never yields lets none be done
             works = sparse.csr_array(system.matrix[:, system.shares].T)
             blocks = [sparse.hstack([rows, sparse.csr_array((3 * m, k))])]
             for bound, sign in ((answers.low, -1.0), (answers.high, 1.0)):
                 yields = np.isfinite(bound)
                 share = sparse.diags_array(np.where(yields, bound if taking else 0.0, sign))
-                blocks.append(sparse.hstack([
-                    share @ works, sparse.csr_array((k, 2 * m)), sparse.diags_array(yields.astype(float))
-                ]))  # fmt: skip
+                blocks.append(sparse.hstack([share @ works, sparse.csr_array((k, 2 * m)), sparse.diags_array(yields.astype(float))]))
             rows = sparse.vstack(blocks)
             lower, upper = np.append(lower, np.zeros(2 * k)), np.append(upper, np.full(2 * k, INFINITY))
         bound = np.concatenate([np.ones(n), np.full(2 * m + k, INFINITY)])
@@ -453,9 +434,7 @@ class LimitAnalysis:
         corners = self.system.corners(programme.minimise(cost, (gamma, gamma)).x[:-1])
         found = corners[joint, 1] / max(corners[joint, :2].sum(), 1e-300)
         # A hair of room: the place was found to rounding.
-        near = self._rows(here, (HAIR - found, 1.0 - found + HAIR, 0.0)) + self._rows(
-            here, (found + HAIR, found - 1.0 + HAIR, 0.0)
-        )
+        near = self._rows(here, (HAIR - found, 1.0 - found + HAIR, 0.0)) + self._rows(here, (found + HAIR, found - 1.0 + HAIR, 0.0))
         rows = whole + near
         slack, cost = np.zeros(len(rows.lower)), -cost
         others = np.setdiff1d(self._joints, here)
@@ -490,9 +469,7 @@ class LimitAnalysis:
             part, share = _eccentric(lean, normal), np.maximum(normal, CARRIES)
         programme, best, low, high, last = None, None, 0.0, np.inf, np.inf
         for _ in range(ROUNDS):
-            rows = self._rows(self._joints, (part + 1.0, part - 1.0, 0.0)) + self._rows(
-                self._joints, (part - 1.0, part + 1.0, 0.0)
-            )
+            rows = self._rows(self._joints, (part + 1.0, part - 1.0, 0.0)) + self._rows(self._joints, (part - 1.0, part + 1.0, 0.0))
             rows = rows if fixed is None else rows + fixed
             slack = np.concatenate([share, share, np.zeros(len(rows.lower) - 2 * m)])
             if programme is None:
@@ -527,9 +504,7 @@ class LimitAnalysis:
         def held(part: float) -> State | None:
             a = self.assembly
             half = 0.5 * part * (a.q - a.p)
-            limit = LimitAnalysis(
-                replace(a, p=a.middle - half, q=a.middle + half), self.friction, loads=self.loads, form="sparse"
-            )
+            limit = LimitAnalysis(replace(a, p=a.middle - half, q=a.middle + half), self.friction, loads=self.loads, form="sparse")
             try:
                 right, left = (limit.collapse(direction)[0] for direction in (1, -1))
             except NoEquilibrium:

@@ -28,10 +28,13 @@ class Resistance:
     def __add__(self, other: "Resistance") -> "Resistance":
         """Both, the forces of the other behind."""
         return Resistance(
-            np.concatenate([self.number, other.number + self.count]), np.concatenate([self.block, other.block]),
-            np.concatenate([self.wrench, other.wrench]), np.concatenate([self.point, other.point]),
-            np.concatenate([self.low, other.low]), np.concatenate([self.high, other.high]),
-        )  # fmt: skip
+            np.concatenate([self.number, other.number + self.count]),
+            np.concatenate([self.block, other.block]),
+            np.concatenate([self.wrench, other.wrench]),
+            np.concatenate([self.point, other.point]),
+            np.concatenate([self.low, other.low]),
+            np.concatenate([self.high, other.high]),
+        )
 
     def spread(self, blocks: int) -> np.ndarray:
         """The wholes as forces on all blocks (blocks, 3, k), one a column."""

@@ -57,9 +57,7 @@ def settle(limit: LimitAnalysis, movement: np.ndarray) -> Settlement:
     if solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
         raise NoEquilibrium(CANNOT_FOLLOW)
     share = solution.x[limit.system.shares]
-    if (
-        np.abs(solution.x).max() > 0.99 * BOUND
-    ):  # wedged stones press each other as they like: the state that presses least
+    if np.abs(solution.x).max() > 0.99 * BOUND:  # wedged stones press each other as they like: the state that presses least
         pressing = np.zeros_like(corners)
         pressing[:, :2] = SLIGHT
         easiest, _, pressed = limit.optimise(cost + limit.system.cost(pressing), (0.0, 0.0))
@@ -67,9 +65,7 @@ def settle(limit: LimitAnalysis, movement: np.ndarray) -> Settlement:
             corners, share = pressed, easiest.x[limit.system.shares]
     opened = rows.openings(np.maximum(solution.rows, 0.0), len(assembly.a)) * most
     scaled = (opened - given) / assembly.size
-    twist, defect = limit.system.velocities(
-        scaled, *([solution.equations * most / assembly.size] if limit.system.equations else [])
-    )
+    twist, defect = limit.system.velocities(scaled, *([solution.equations * most / assembly.size] if limit.system.equations else []))
     defect *= float(np.abs(twist).max()) * assembly.size / most  # of the movement: where no block moves, of nothing
     if defect > 1e-6:
         raise NoAnswer(f"the motions of blocks and joints differ by {defect:.1e} of the movement")
@@ -84,6 +80,4 @@ def settle(limit: LimitAnalysis, movement: np.ndarray) -> Settlement:
         held = answers.on_blocks(share, len(shift))
         taken += float((held[:, :2] * shift).sum() + (held[:, 2] * twist[:, 2]).sum())
     reactions = limit.loads.scale * float((corners * given).sum())
-    return Settlement(
-        pose, opened, read_state(0.0, corners, limit.loads.scale, share), work, abs(work + taken - reactions)
-    )  # fmt: skip
+    return Settlement(pose, opened, read_state(0.0, corners, limit.loads.scale, share), work, abs(work + taken - reactions))

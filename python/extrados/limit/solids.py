@@ -79,9 +79,12 @@ class SolidLimit:
     the centroids [N m]."""
 
     def __init__(
-        self, assembly: SolidAssembly, friction: float | np.ndarray | None, strands: Sequence[Strand] = (),
+        self,
+        assembly: SolidAssembly,
+        friction: float | np.ndarray | None,
+        strands: Sequence[Strand] = (),
         resting: np.ndarray | None = None,
-    ):  # fmt: skip
+    ):
         self.assembly = assembly
         self.strands = tuple(strands)
         self.resting = np.zeros((len(assembly.mass), 6)) if resting is None else resting
@@ -229,17 +232,20 @@ class SolidLimit:
         if dowels:  # a compression of dowels is none
             own = matrix[:, 3 * corners :]
             nothing = sparse.csc_array((matrix.shape[0], dowels))
-            order = np.column_stack(
-                [2 * dowels + np.arange(dowels), np.arange(0, 2 * dowels, 2), np.arange(1, 2 * dowels, 2)]
-            )
+            order = np.column_stack([2 * dowels + np.arange(dowels), np.arange(0, 2 * dowels, 2), np.arange(1, 2 * dowels, 2)])
             own = sparse.hstack([own, nothing]).tocsc()[:, order.ravel()]
             matrix = sparse.hstack([matrix[:, : 3 * corners], own])
         return ContactPoints(
-            sparse.csr_array(matrix), dead, live, np.append(self.mu, np.zeros(dowels)),
+            sparse.csr_array(matrix),
+            dead,
+            live,
+            np.append(self.mu, np.zeros(dowels)),
             np.append(np.zeros(corners), [] if keys is None else keys.strength / self.scale),
-            np.append(area / area.mean(), np.zeros(dowels)), sparse.csr_array(self.pulls), self.tension_bounds,
+            np.append(area / area.mean(), np.zeros(dowels)),
+            sparse.csr_array(self.pulls),
+            self.tension_bounds,
             float(self.weight.sum() + self.assembly.fill[:, 1].sum() * GRAVITY) / self.scale,
-        )  # fmt: skip
+        )
 
     def certify(self, direction: float, state: SlidingState) -> tuple[Programme, Certificate]:
         """A state without dilatancy in N, and its certificate, which the geometry alone gives."""
@@ -249,13 +255,11 @@ class SolidLimit:
         unit = self.scale * np.array([1.0, 1.0, 1.0, size, size, size])
         dead, live = (load.reshape(-1, 6) * unit for load in self.ways(direction))
         tension = state.share * self.scale
-        proof = certify_solids(
-            self.assembly, self.mu, dead, live, state.gamma, force, keyed, motion, self.strands, tension
-        )
+        proof = certify_solids(self.assembly, self.mu, dead, live, state.gamma, force, keyed, motion, self.strands, tension)
         upper = state.gamma + proof.zero_gap
         return Programme(
             state.gamma, upper, force, keyed, tension, motion, proof.equilibrium, max(proof.friction, proof.tension), proof.closing
-        ), proof  # fmt: skip
+        ), proof
 
     def falls(self) -> Falls | None:
         """The proof that it cannot stand without a push; None where no motion proves that."""
@@ -306,9 +310,16 @@ class SolidLimit:
         # the scale is a stone's weight times the root of their number: over the weight of all it is one over that root
         part = 1.0 / np.sqrt(len(self.weight))
         found = Programme(
-            gamma, float(-dead @ motion) + spent, force * self.scale, keys * self.scale, tension * self.scale,
-            self._rates(motion), float(np.abs(rest).max()) * part, self._excess(force, keys, tension) * part, overlap,
-        )  # fmt: skip
+            gamma,
+            float(-dead @ motion) + spent,
+            force * self.scale,
+            keys * self.scale,
+            tension * self.scale,
+            self._rates(motion),
+            float(np.abs(rest).max()) * part,
+            self._excess(force, keys, tension) * part,
+            overlap,
+        )
         if max(found.equilibrium, found.cone, found.overlap) > LOOSE or found.gap > LOOSE * max(1.0, abs(gamma)):
             raise NoAnswer(
                 f"the conic solver gave up ({status}): forces are balanced to {found.equilibrium:.1e} of the weight, the bounds differ "
@@ -350,14 +361,10 @@ class SolidLimit:
         if len(weak):  # the rate of each dowel that may give way is bounded by an unknown that costs its strength
             own = np.column_stack([3 * corners + 2 * weak, 3 * corners + 2 * weak + 1])
             bound = sparse.csr_array(
-                (-np.ones(len(weak)), (3 * np.arange(len(weak)), np.arange(len(weak)))),
-                shape=(3 * len(weak), len(weak)),
+                (-np.ones(len(weak)), (3 * np.arange(len(weak)), np.arange(len(weak)))), shape=(3 * len(weak), len(weak))
             )
             rate = sparse.csr_array(
-                (
-                    np.ones(2 * len(weak)),
-                    ((3 * np.arange(len(weak))[:, None] + [1, 2]).ravel(), np.arange(2 * len(weak))),
-                ),
+                (np.ones(2 * len(weak)), ((3 * np.arange(len(weak))[:, None] + [1, 2]).ravel(), np.arange(2 * len(weak)))),
                 shape=(3 * len(weak), 2 * len(weak)),
             )
             below = sparse.hstack([-(rate @ rates[own.ravel()]), bound])
@@ -378,15 +385,10 @@ class SolidLimit:
         if len(strand):  # what each lengthens beyond an unknown that costs its strength is nothing
             free = np.isin(strand, sized)
             yields = np.flatnonzero(np.isfinite(most) | free)
-            bound = sparse.csr_array(
-                (np.ones(len(yields)), (yields, np.arange(len(yields)))), shape=(len(strand), len(yields))
-            )
+            bound = sparse.csr_array((np.ones(len(yields)), (yields, np.arange(len(yields)))), shape=(len(strand), len(yields)))
             slack = sparse.hstack([sparse.csr_array((len(yields), len(cost))), -sparse.eye_array(len(yields))])
             rate = sparse.hstack(
-                [
-                    sparse.diags_array(sense) @ self.pulls.T.tocsr()[strand],
-                    sparse.csr_array((len(strand), len(cost) - len(dead))),
-                ]
+                [sparse.diags_array(sense) @ self.pulls.T.tocsr()[strand], sparse.csr_array((len(strand), len(cost) - len(dead)))]
             )
             matrix = sparse.hstack([matrix, sparse.csr_array((matrix.shape[0], len(yields)))])
             matrix = sparse.vstack([matrix, slack, sparse.hstack([-rate, -bound])])
@@ -473,9 +475,7 @@ class SolidLimit:
         overlap, spent = self._hindered(motion, rigid)
         power = (float(dead @ motion) - spent) / falling
         if power < POWERLESS or overlap > PROOF:
-            raise NoAnswer(
-                f"no forces were found, but no motion proves that there are none (power {power:.1e}, overlap {overlap:.1e})"
-            )
+            raise NoAnswer(f"no forces were found, but no motion proves that there are none (power {power:.1e}, overlap {overlap:.1e})")
         return Falls(self._rates(motion), power, overlap)
 
     def pyramids(self, direction: float, sides: int) -> tuple[float, float]:

@@ -95,10 +95,22 @@ class Programme:
             row_upper = np.concatenate([system.right, np.full(k, INFINITY)])
         basis = solver.getBasis()
         passed = solver.passModel(
-            n, e + k, len(value), int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
-            np.zeros(n), self._least, self._most, row_lower, row_upper, start, index, value,
+            n,
+            e + k,
+            len(value),
+            int(highspy.MatrixFormat.kRowwise),
+            int(highspy.ObjSense.kMinimize),
+            0.0,
+            np.zeros(n),
+            self._least,
+            self._most,
+            row_lower,
+            row_upper,
+            start,
+            index,
+            value,
             np.zeros(n, dtype=np.int32),
-        )  # fmt: skip
+        )
         if passed == highspy.HighsStatus.kError:
             raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
         if basis.valid:
@@ -123,9 +135,7 @@ class Programme:
         solution = solver.getSolution()
         dual = np.array(solution.row_dual)
         e = self.system.equations
-        return Solution(
-            np.array(solution.col_value), dual[e:], dual[:e], np.array(solution.col_dual), solver.getObjectiveValue()
-        )  # fmt: skip
+        return Solution(np.array(solution.col_value), dual[e:], dual[:e], np.array(solution.col_dual), solver.getObjectiveValue())
 
     def _start(self) -> highspy.Highs:
         """HiGHS with these rows."""
@@ -169,7 +179,7 @@ class Optimum:
 
 def linear_programme(
     matrix: sparse.sparray, row_lower: np.ndarray, row_upper: np.ndarray, cost: np.ndarray, lower: np.ndarray, upper: np.ndarray
-) -> Optimum:  # fmt: skip
+) -> Optimum:
     """Minimise cost . x with row_lower <= matrix x <= row_upper and lower <= x <= upper.
 
     NoEquilibrium where nothing obeys all of them, NoAnswer where the solver gives up.
@@ -179,10 +189,22 @@ def linear_programme(
     solver = highspy.Highs()
     solver.passOptions(_options(True, False))
     passed = solver.passModel(
-        count, rows.shape[0], rows.nnz, int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0, cost,
-        lower, upper, row_lower, row_upper, rows.indptr.astype(np.int32), rows.indices.astype(np.int32), rows.data,
+        count,
+        rows.shape[0],
+        rows.nnz,
+        int(highspy.MatrixFormat.kRowwise),
+        int(highspy.ObjSense.kMinimize),
+        0.0,
+        cost,
+        lower,
+        upper,
+        row_lower,
+        row_upper,
+        rows.indptr.astype(np.int32),
+        rows.indices.astype(np.int32),
+        rows.data,
         np.zeros(count, dtype=np.int32),
-    )  # fmt: skip
+    )
     if passed == highspy.HighsStatus.kError:
         raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
     status = _decided(solver)
@@ -191,9 +213,7 @@ def linear_programme(
     if status != highspy.HighsModelStatus.kOptimal:
         raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
     found = solver.getSolution()
-    return Optimum(
-        np.array(found.col_value), solver.getObjectiveValue(), np.array(found.row_dual), np.array(found.col_dual)
-    )
+    return Optimum(np.array(found.col_value), solver.getObjectiveValue(), np.array(found.row_dual), np.array(found.col_dual))
 
 
 _INFEASIBLE = (highspy.HighsModelStatus.kInfeasible, highspy.HighsModelStatus.kUnboundedOrInfeasible)

@@ -59,9 +59,12 @@ def blended(one: State, other: State, share: float) -> State:
     moment = parts[0] * one.position + parts[1] * other.position
     even = (1.0 - share) * one.position + share * other.position
     return State(
-        one.gamma, normal, (1.0 - share) * one.shear + share * other.shear,
-        np.divide(moment, normal, out=even, where=normal > 0.0), (1.0 - share) * one.mobilised + share * other.mobilised,
-    )  # fmt: skip
+        one.gamma,
+        normal,
+        (1.0 - share) * one.shear + share * other.shear,
+        np.divide(moment, normal, out=even, where=normal > 0.0),
+        (1.0 - share) * one.mobilised + share * other.mobilised,
+    )
 
 
 @dataclass(frozen=True)
@@ -131,11 +134,16 @@ def read_mechanism(
     # A negative opening is crushing: the joint turns about a place inside it.
     turns = (np.minimum(speed_p, speed_q) < HINGE * np.maximum(speed_p, speed_q)) | (opening_p * opening_q < 0.0)
     hinges: list[tuple[int, Side]] = [
-        (j, "intrados" if abs(opening_p[j]) < abs(opening_q[j]) else "extrados")
-        for j in np.flatnonzero(moves & turns).tolist()
+        (j, "intrados" if abs(opening_p[j]) < abs(opening_q[j]) else "extrados") for j in np.flatnonzero(moves & turns).tolist()
     ]
     scale = 1.0 / (abs(driven) * size)
     return Mechanism(
-        velocity * np.array([size, size, 1.0]) * scale, hinges, np.flatnonzero(moves & ~turns).tolist(),
-        opening_p * size * scale, opening_q * size * scale, slip * size * scale, upper, defect,
-    )  # fmt: skip
+        velocity * np.array([size, size, 1.0]) * scale,
+        hinges,
+        np.flatnonzero(moves & ~turns).tolist(),
+        opening_p * size * scale,
+        opening_q * size * scale,
+        slip * size * scale,
+        upper,
+        defect,
+    )

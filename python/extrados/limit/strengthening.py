@@ -142,9 +142,7 @@ def least_force(limit: LimitAnalysis, gamma: float, sign: int) -> float:
     return max(0.0, sign * float(share)) * limit.loads.scale
 
 
-def least_forces(
-    limits: list[LimitAnalysis], gammas: list[float], ties: int, weight: np.ndarray, most: np.ndarray
-) -> np.ndarray:
+def least_forces(limits: list[LimitAnalysis], gammas: list[float], ties: int, weight: np.ndarray, most: np.ndarray) -> np.ndarray:
     """Yield forces (ties) [N], of least weighted sum, at which the structure carries all load cases, the accelerations `gammas`
     [g] to +x: one programme over the joint forces of all cases and the yield forces that they share.
 
@@ -168,9 +166,8 @@ def least_forces(
 
 
 def _solved(
-    limits: list[LimitAnalysis], gammas: list[float], ties: int, weight: np.ndarray, most: np.ndarray,
-    cuts: list[Constraints | None],
-) -> list[np.ndarray]:  # fmt: skip
+    limits: list[LimitAnalysis], gammas: list[float], ties: int, weight: np.ndarray, most: np.ndarray, cuts: list[Constraints | None]
+) -> list[np.ndarray]:
     """Unknowns of each case, then the shares of the yield forces in the total load."""
     blocks, low, high, least, greatest = [], [], [], [], []
     n = len(limits)
@@ -197,7 +194,11 @@ def _solved(
     counts = [limit.equations.unknowns for limit in limits]
     cost = np.concatenate([np.zeros(sum(counts)), weight])
     found = linear_programme(
-        sparse.block_array(blocks, format="csr"), np.concatenate(low), np.concatenate(high), cost,
-        np.concatenate([*least, np.zeros(ties)]), np.concatenate([*greatest, most]),
-    )  # fmt: skip
+        sparse.block_array(blocks, format="csr"),
+        np.concatenate(low),
+        np.concatenate(high),
+        cost,
+        np.concatenate([*least, np.zeros(ties)]),
+        np.concatenate([*greatest, most]),
+    )
     return np.split(found.x, np.cumsum(counts))

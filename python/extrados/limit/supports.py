@@ -145,9 +145,7 @@ class _Chain:
             if over[worst] <= ROOM:
                 return state
             side: Side = "intrados" if state.position[worst] < 0.0 else "extrados"
-            nearest = min(
-                (i for i, h in enumerate(hinges) if h[1] == side), key=lambda i: abs(hinges[i][0] - worst), default=None
-            )
+            nearest = min((i for i, h in enumerate(hinges) if h[1] == side), key=lambda i: abs(hinges[i][0] - worst), default=None)
             if nearest is None:
                 return None
             changed = [h if i != nearest else (worst, side) for i, h in enumerate(hinges)]

@@ -23,9 +23,7 @@ def pulls(anchored: Anchored, least: Sequence[float], most: Sequence[float], sca
     force = whole[number, None] * np.where(end == 0, 1.0, -1.0)[:, None] * anchored.direction[number]
     moment = point[:, 0] * force[:, 1] - point[:, 1] * force[:, 0]
     held = block != GROUND
-    return Resistance(
-        number[held], block[held], np.column_stack([force, moment])[held], point[held], low / whole, high / whole
-    )
+    return Resistance(number[held], block[held], np.column_stack([force, moment])[held], point[held], low / whole, high / whole)
 
 
 def tensions(answers: Resistance, share: np.ndarray, count: int) -> np.ndarray:

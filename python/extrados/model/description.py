@@ -47,9 +47,7 @@ class Description:
     def special_keys(self) -> dict[str, Key]:
         """What of it only some strategies take into account, as decks call it, with the key that says so; what it has not is
         left out."""
-        found: dict[str, Key] = {
-            f"[[{section}]]": (section, 0) for section in ("ties", "dampers", "hinges") if getattr(self, section)
-        }
+        found: dict[str, Key] = {f"[[{section}]]": (section, 0) for section in ("ties", "dampers", "hinges") if getattr(self, section)}
         there = {
             "abutting_wall": self.supports.abutting_wall is not None,
             "foundation": "foundation" in self.supports.model_fields_set,

@@ -18,15 +18,9 @@ class Damper(Table):
     start: Point = key(about="[x, y] of the anchorage in a stone")
     end: Point | None = key(None, "[x, y] of the anchorage in another stone; or give `ground`")
     ground: Point | None = key(None, "[x, y] of the anchorage in the ground, which moves with the supports")
-    start_stone: str | None = key(
-        None, "name of the stone at `start`; needed if that point lies between two stones", max_length=80
-    )
-    end_stone: str | None = key(
-        None, "name of the stone at `end`; needed if that point lies between two stones", max_length=80
-    )
-    damping: Damping | None = key(
-        None, "c of a viscous damper: force per rate, of a power n of the rate in N (s/m)^n", gt=0
-    )
+    start_stone: str | None = key(None, "name of the stone at `start`; needed if that point lies between two stones", max_length=80)
+    end_stone: str | None = key(None, "name of the stone at `end`; needed if that point lies between two stones", max_length=80)
+    damping: Damping | None = key(None, "c of a viscous damper: force per rate, of a power n of the rate in N (s/m)^n", gt=0)
     power: float = key(1.0, "n: 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
     slip_force: Force | None = key(None, "force at which a friction damper slides", gt=0)
     stiffness: AxialStiffness | None = key(None, "of the brace of a friction damper, before it slides", gt=0)
@@ -54,9 +48,7 @@ class AddedHinge(Table):
 
     name: str | None = key(None, "name in results; default hinge 1, hinge 2 and so on", max_length=80)
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground, "all" every joint',
-        min_length=1,
-        max_length=10000,
+        about='names of joints; "ground" means all joints to the ground, "all" every joint', min_length=1, max_length=10000
     )
     stiffness: Moment | None = key(None, "moment per radian of rotation", gt=0)
     yield_moment: Moment | None = key(None, "moment at which it yields, in both senses; needs stiffness", gt=0)

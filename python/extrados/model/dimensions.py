@@ -39,8 +39,11 @@ def dimensions(assembly: Assembly) -> list[Dimension]:
         found += _arch(turned, "" if len(spans) == 1 else f" of {_with_article(name)}", arch)
     arches = bool(found)
     for block in assembly.buttresses:
-        found += [_foot(assembly, j, f"width of the {assembly.block_names[block]}") for j in assembly.joints_of(block)
-                  if GROUND in (assembly.a[j], assembly.b[j])]  # fmt: skip
+        found += [
+            _foot(assembly, j, f"width of the {assembly.block_names[block]}")
+            for j in assembly.joints_of(block)
+            if GROUND in (assembly.a[j], assembly.b[j])
+        ]
     if not arches:
         base = vertices[np.isclose(vertices[:, 1], low[1], atol=1e-6 * (high[1] - low[1]))]
         left, right = float(base[:, 0].min()), float(base[:, 0].max())

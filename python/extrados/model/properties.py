@@ -17,52 +17,54 @@ NO_SLIDING_COEFFICIENT = 1e3
 class Material(Table):
     """The stone or the homogenised masonry: density, elastic constants, and the strengths of what may crack or crush."""
 
-    starter: ClassVar = {
-        "young": '"6.9 GPa"', "poisson": "0.25", "tensile_strength": '"0.2 MPa"', "fracture_energy": '"50 N/m"',
-    }  # fmt: skip
+    starter: ClassVar = {"young": '"6.9 GPa"', "poisson": "0.25", "tensile_strength": '"0.2 MPa"', "fracture_energy": '"50 N/m"'}
     density: Density = key(2000.0, "density", ge=0, le=30000)
     young: Stress = key(10e9, "modulus of elasticity, E0", source="thesis 7.3", gt=0)
     poisson: float = key(0.2, "Poisson's ratio", ge=0, lt=0.5)
     tensile_strength: Stress | None = key(None, "tensile strength, ft; without it nothing cracks", gt=0)
     fracture_energy: Energy | None = key(None, "energy of a crack per area, Gf", gt=0)
     tensile_strength_parallel: Stress | None = key(
-        None, "tensile strength along the bed joints; tensile_strength is then that across them",
-        source="Lourenco, de Borst and Rots (1997)", gt=0,
-    )  # fmt: skip
+        None,
+        "tensile strength along the bed joints; tensile_strength is then that across them",
+        source="Lourenco, de Borst and Rots (1997)",
+        gt=0,
+    )
     fracture_energy_parallel: Energy | None = key(
         None, "energy of a crack that runs across the bed joints, per area; default fracture_energy", gt=0
     )
     shear_strength: Stress | None = key(
-        None, "of bedded masonry: strength under shear alone in the axes of its joints; default, and at most, the root of the "
-        "product of both tensile strengths", gt=0,
-    )  # fmt: skip
+        None,
+        "of bedded masonry: strength under shear alone in the axes of its joints; default, and at most, the root of the "
+        "product of both tensile strengths",
+        gt=0,
+    )
     bed_angle: Angle = key(0.0, "angle of the bed joints to the x axis, counter-clockwise", ge=-180, le=180)
     softening: Literal["linear", "exponential", "hordijk"] = key(
         "linear", "softening law: decrease of stress after the strength", source="thesis Fig. 4-1"
     )
     compressive_strength: Stress | None = key(None, "compressive strength; without it nothing crushes", gt=0)
     compressive_strength_parallel: Stress | None = key(
-        None, "compressive strength along the bed joints; compressive_strength is then that across them (Hill's criterion)",
-        source="Lourenco, de Borst and Rots (1997)", gt=0,
-    )  # fmt: skip
+        None,
+        "compressive strength along the bed joints; compressive_strength is then that across them (Hill's criterion)",
+        source="Lourenco, de Borst and Rots (1997)",
+        gt=0,
+    )
     compressive_coupling: float = key(
-        -1.0, "coupling of the pressures along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 "
-        "+ c t^2 / (fx fy) = 1", source="-1.05 of Page's panels, Lourenco (1996), from memory", gt=-2, lt=2,
-    )  # fmt: skip
+        -1.0,
+        "coupling of the pressures along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) = 1",
+        source="-1.05 of Page's panels, Lourenco (1996), from memory",
+        gt=-2,
+        lt=2,
+    )
     compressive_shear: float = key(
         1.2, "c of the same criterion", source="1.20 of Page's panels, Lourenco (1996), from memory", gt=0, le=20
     )
-    crushing_energy: Energy | None = key(
-        None, "energy of crushing per area, Gc; sequentially linear analysis crushes only with it", gt=0
-    )
+    crushing_energy: Energy | None = key(None, "energy of crushing per area, Gc; sequentially linear analysis crushes only with it", gt=0)
     crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
-    lateral_reduction: bool = key(
-        False, "reduce ft under lateral compression, s1/ft - s2/fc <= 1; needs compressive_strength"
-    )
+    lateral_reduction: bool = key(False, "reduce ft under lateral compression, s1/ft - s2/fc <= 1; needs compressive_strength")
     confinement: float = key(
-        0.0, "increase of the compressive strength per lateral pressure; 4.1 for concrete",
-        source="Richart and others (1928)", ge=0, le=10,
-    )  # fmt: skip
+        0.0, "increase of the compressive strength per lateral pressure; 4.1 for concrete", source="Richart and others (1928)", ge=0, le=10
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> "Material":
@@ -144,29 +146,23 @@ class Joints(Table):
     )
     crushing_energy: Energy | None = key(None, "energy of crushing per area of the joints; goes with it", gt=0)
     softening: Literal["linear", "exponential"] = key(
-        "exponential",
-        "softening law of the cohesion and tension of mortar, in sequentially linear analysis",
-        source="Lourenco 1996",
+        "exponential", "softening law of the cohesion and tension of mortar, in sequentially linear analysis", source="Lourenco 1996"
     )
     normal_stiffness: Stiffness | None = key(
-        None, "normal stiffness per area; default E over the length of stone that a joint represents",
-        source="thesis Eq. 7.10", gt=0,
-    )  # fmt: skip
-    shear_stiffness: Stiffness | None = key(
-        None, "shear stiffness per area; default shear_ratio times the normal", gt=0
+        None, "normal stiffness per area; default E over the length of stone that a joint represents", source="thesis Eq. 7.10", gt=0
     )
+    shear_stiffness: Stiffness | None = key(None, "shear stiffness per area; default shear_ratio times the normal", gt=0)
     shear_ratio: float = key(1.0, "shear over normal stiffness", gt=0, le=10)
     stiffness_rule: Literal["consistent", "thesis"] = key(
         "consistent", "default stiffness: E/L, or E B/L as the thesis prints it", source="thesis Eqs 7.10-7.12"
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
-        "edge", "impact frequency that is damped critically; or of a single block the damping that gives its restitution, "
-        "found by letting it rock", source="thesis Eqs 7.13, 7.17-7.20",
-    )  # fmt: skip
-    damping_ratio: float = key(1.0, "fraction of critical damping at that frequency", ge=0, le=100)
-    beta: Annotated[float, Field(ge=0, le=10)] | None = key(
-        None, "stiffness-proportional damping in s, instead of the rule"
+        "edge",
+        "impact frequency that is damped critically; or of a single block the damping that gives its restitution, found by letting it rock",
+        source="thesis Eqs 7.13, 7.17-7.20",
     )
+    damping_ratio: float = key(1.0, "fraction of critical damping at that frequency", ge=0, le=100)
+    beta: Annotated[float, Field(ge=0, le=10)] | None = key(None, "stiffness-proportional damping in s, instead of the rule")
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
         "impact of rocking, of blocks always Housner's: all energy that remains after a plastic impact, with impulses at all "
@@ -175,13 +171,10 @@ class Joints(Table):
         source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
-        None, "instead of restitution: c_E, the kinetic energy after over that before an impact of a block",
-        source="thesis Eq. 6.2",
-    )  # fmt: skip
-    worn_corners: Length = key(0.0, "radius to which the corners of the stones are worn", ge=0)
-    types: list[JointType] = key(
-        [], "joints that differ, [[joints.types]]; missing keys are as in [joints]", max_length=1000
+        None, "instead of restitution: c_E, the kinetic energy after over that before an impact of a block", source="thesis Eq. 6.2"
     )
+    worn_corners: Length = key(0.0, "radius to which the corners of the stones are worn", ge=0)
+    types: list[JointType] = key([], "joints that differ, [[joints.types]]; missing keys are as in [joints]", max_length=1000)
 
     @model_validator(mode="after")
     def _one_impact(self) -> "Joints":
@@ -209,24 +202,27 @@ class Supports(Table):
         None, "stiffness of the ground per area, in series with the joints on it; `rocking` takes joints as rigid", gt=0
     )
     foundation: Literal["winkler", "two-spring"] = key(
-        "winkler", "for `rocking`: springs of that stiffness all along the base, or half of them under each edge; neither pulls",
+        "winkler",
+        "for `rocking`: springs of that stiffness all along the base, or half of them under each edge; neither pulls",
         source="Psycharis and Jennings 1983",
-    )  # fmt: skip
+    )
     damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(
-        None, "for `rocking`: dashpots beside these springs, by their fraction of critical damping of the vertical motion of the "
+        None,
+        "for `rocking`: dashpots beside these springs, by their fraction of critical damping of the vertical motion of the "
         "whole structure on its base; default none",
-    )  # fmt: skip
+    )
     abutting_wall: Literal["left", "right"] | None = key(
         None, "a wall that stands against it on this side: it rocks away from it only, and is thrown back by it"
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
-        None, "rate after over rate before it is thrown back by the wall; default, of a block, three impacts: of the far toe, of "
-        "the top on the wall, of the near toe, which is an upper bound", source="three balances of angular momentum, derived here",
-    )  # fmt: skip
+        None,
+        "rate after over rate before it is thrown back by the wall; default, of a block, three impacts: of the far toe, of "
+        "the top on the wall, of the near toe, which is an upper bound",
+        source="three balances of angular momentum, derived here",
+    )
     held: list[Held] = key(
-        [], "held nodes of finite-element meshes, [[supports.held]]; default the bottom edge, or the joints on the ground",
-        max_length=1000,
-    )  # fmt: skip
+        [], "held nodes of finite-element meshes, [[supports.held]]; default the bottom edge, or the joints on the ground", max_length=1000
+    )
 
     @model_validator(mode="after")
     def _thrown_back_by_a_wall(self) -> "Supports":
@@ -256,7 +252,5 @@ class Movement(Table):
 class Initial(Table):
     """The state from which dynamics start."""
 
-    rotation_ratio: float = key(
-        0.0, "rotation over the critical one of that side; positive to +x", source="thesis 6.2.2", gt=-1, lt=1
-    )
+    rotation_ratio: float = key(0.0, "rotation over the critical one of that side; positive to +x", source="thesis 6.2.2", gt=-1, lt=1)
     movements: list[Movement] = key([], "supports that move, [[initial.movements]]", max_length=100)

@@ -18,39 +18,28 @@ class Tie(Table):
     [[ties]]."""
 
     name: str | None = key(None, "name in results; default tie 1, tie 2 and so on", max_length=80)
-    start: Place = key(
-        about="[x, y], in space [x, y, z], of the anchorage in a stone; of a hoop any point at its height"
-    )
+    start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a stone; of a hoop any point at its height")
     end: Place | None = key(None, "the anchorage in another stone; or give `ground`")
     ground: Place | None = key(None, "the anchorage in the ground, which does not move with the supports")
-    via: list[Place] = key(
-        [], "in space: points of stones over which a chain runs from start to end, in order", max_length=1000
-    )
-    hoop: bool = key(
-        False,
-        "in space: closed around the convex outline of the structure at the height z of `start`, as a chain of a dome",
-    )
+    via: list[Place] = key([], "in space: points of stones over which a chain runs from start to end, in order", max_length=1000)
+    hoop: bool = key(False, "in space: closed around the convex outline of the structure at the height z of `start`, as a chain of a dome")
     bonded: bool = key(
-        False, "of a chain or hoop: anchored at every point, so that each segment has a force of its own; else it runs over them without "
-        "friction",
-    )  # fmt: skip
+        False,
+        "of a chain or hoop: anchored at every point, so that each segment has a force of its own; else it runs over them without friction",
+    )
     start_stone: str | None = key(
         None, "name of the stone at `start`; needed if that point lies between two stones or in none", max_length=80
     )
-    end_stone: str | None = key(
-        None, "name of the stone at `end`; needed if that point lies between two stones or in none", max_length=80
-    )
+    end_stone: str | None = key(None, "name of the stone at `end`; needed if that point lies between two stones or in none", max_length=80)
     works_in: Literal["tension", "compression", "both"] = key(
         "tension", "a tie is slack in compression, a strut in tension; a spring works in both"
     )
     yield_force: Force | None = key(
-        None, "force at which it yields and from then on carries on, in the senses it works in; without it it never yields",
-        gt=0,
-    )  # fmt: skip
+        None, "force at which it yields and from then on carries on, in the senses it works in; without it it never yields", gt=0
+    )
     stiffness: AxialStiffness | None = key(
-        None, "force per change of length, EA/L; without it it is rigid until it yields, as limit analysis takes every tie",
-        gt=0,
-    )  # fmt: skip
+        None, "force per change of length, EA/L; without it it is rigid until it yields, as limit analysis takes every tie", gt=0
+    )
     prestress: Force = key(0.0, "force in it before any load, tension positive; it changes no load of plastic collapse")
 
     @model_validator(mode="after")
@@ -79,9 +68,7 @@ class Tie(Table):
     def flat(self) -> list[list[float]]:
         """Both ends in a plane section [m]; BadGeometry of a tie in space."""
         if len(self.start) != 2 or self.via:
-            raise BadGeometry(
-                f"{self.name}: this analysis takes a plane section, where a tie is straight and its points are [x, y]"
-            )
+            raise BadGeometry(f"{self.name}: this analysis takes a plane section, where a tie is straight and its points are [x, y]")
         return [self.start, self.far]
 
     @property

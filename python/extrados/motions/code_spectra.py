@@ -15,17 +15,30 @@ Spectrum = Callable[[np.ndarray], np.ndarray]
 
 #: EN 1998-1:2004 Tables 3.2 and 3.3: S, T_B, T_C, T_D
 EN1998 = {
-    1: {"A": (1.0, 0.15, 0.4, 2.0), "B": (1.2, 0.15, 0.5, 2.0), "C": (1.15, 0.20, 0.6, 2.0), "D": (1.35, 0.20, 0.8, 2.0),
-        "E": (1.4, 0.15, 0.5, 2.0)},
-    2: {"A": (1.0, 0.05, 0.25, 1.2), "B": (1.35, 0.05, 0.25, 1.2), "C": (1.5, 0.10, 0.25, 1.2), "D": (1.8, 0.10, 0.30, 1.2),
-        "E": (1.6, 0.05, 0.25, 1.2)},
-}  # fmt: skip
+    1: {
+        "A": (1.0, 0.15, 0.4, 2.0),
+        "B": (1.2, 0.15, 0.5, 2.0),
+        "C": (1.15, 0.20, 0.6, 2.0),
+        "D": (1.35, 0.20, 0.8, 2.0),
+        "E": (1.4, 0.15, 0.5, 2.0),
+    },
+    2: {
+        "A": (1.0, 0.05, 0.25, 1.2),
+        "B": (1.35, 0.05, 0.25, 1.2),
+        "C": (1.5, 0.10, 0.25, 1.2),
+        "D": (1.8, 0.10, 0.30, 1.2),
+        "E": (1.6, 0.05, 0.25, 1.2),
+    },
+}
 
 #: NTC 2018 Table 3.2.IV: S_S = a - b F_0 a_g/g between bounds; C_C = c T_C*^e
 _NTC = {
-    "A": (1.0, 0.0, 1.0, 1.0, 1.0, 0.0), "B": (1.40, 0.40, 1.00, 1.20, 1.10, -0.20), "C": (1.70, 0.60, 1.00, 1.50, 1.05, -0.33),
-    "D": (2.40, 1.50, 0.90, 1.80, 1.25, -0.50), "E": (2.00, 1.10, 1.00, 1.60, 1.15, -0.40),
-}  # fmt: skip
+    "A": (1.0, 0.0, 1.0, 1.0, 1.0, 0.0),
+    "B": (1.40, 0.40, 1.00, 1.20, 1.10, -0.20),
+    "C": (1.70, 0.60, 1.00, 1.50, 1.05, -0.33),
+    "D": (2.40, 1.50, 0.90, 1.80, 1.25, -0.50),
+    "E": (2.00, 1.10, 1.00, 1.60, 1.15, -0.40),
+}
 
 
 def damping_factor(damping: float) -> float:
@@ -40,9 +53,7 @@ def _four_branches(peak: float, start: float, tb: float, tc: float, td: float) -
         t = np.asarray(period, dtype=float)
         late = np.maximum(t, 1e-12)
         return np.select(
-            [t < tb, t <= tc, t <= td],
-            [start + (peak - start) * t / tb, np.full_like(t, peak), peak * tc / late],
-            peak * tc * td / late**2,
+            [t < tb, t <= tc, t <= td], [start + (peak - start) * t / tb, np.full_like(t, peak), peak * tc / late], peak * tc * td / late**2
         )
 
     return at
@@ -54,9 +65,7 @@ def en1998(kind: int, ground: str, acceleration: float, damping: float = 0.05) -
     return _four_branches(2.5 * damping_factor(damping) * acceleration * soil, acceleration * soil, tb, tc, td)
 
 
-def ntc(
-    ground: str, acceleration: float, f0: float, corner: float, topography: float = 1.0, damping: float = 0.05
-) -> Spectrum:
+def ntc(ground: str, acceleration: float, f0: float, corner: float, topography: float = 1.0, damping: float = 0.05) -> Spectrum:
     """NTC 2018 Eqs 3.2.2 to 3.2.7; acceleration a_g [m/s^2], f0 F_0, corner T_C* [s], topography S_T."""
     a, b, low, high, c, e = _NTC[ground]
     soil = min(max(a - b * f0 * acceleration / GRAVITY, low), high) * topography
@@ -74,9 +83,12 @@ def asce7(sds: float, sd1: float, long_period: float) -> Spectrum:
 #: NZS 1170.5 Table 3.1, shape C_h(T) with the values for periods from 0: C_h(0), plateau, its end [s], factor and corner period
 #: of the branch to 1.5 s, factor of 1/T to 3 s
 _NZS = {
-    "A": (1.0, 2.35, 0.3, 1.6, 0.5, 1.05), "B": (1.0, 2.35, 0.3, 1.6, 0.5, 1.05), "C": (1.33, 2.93, 0.3, 2.0, 0.5, 1.32),
-    "D": (1.12, 3.0, 0.56, 2.4, 0.75, 2.14), "E": (1.12, 3.0, 1.0, 3.0, 1.0, 3.32),
-}  # fmt: skip
+    "A": (1.0, 2.35, 0.3, 1.6, 0.5, 1.05),
+    "B": (1.0, 2.35, 0.3, 1.6, 0.5, 1.05),
+    "C": (1.33, 2.93, 0.3, 2.0, 0.5, 1.32),
+    "D": (1.12, 3.0, 0.56, 2.4, 0.75, 2.14),
+    "E": (1.12, 3.0, 1.0, 3.0, 1.0, 3.32),
+}
 
 
 def nzs1170(ground: str, hazard: float, return_factor: float, damping: float = 0.05) -> Spectrum:

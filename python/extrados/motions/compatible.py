@@ -182,9 +182,7 @@ class CompatibleSet:
             value = w[j] ** 2 * u[top]
             missing[j] = np.sign(value) * (wanted[j] - abs(value))
             before = t[top] - t[: top + 1]
-            mirrored[j, : top + 1] = (
-                -(w[j] ** 2) * np.exp(-self.damping * w[j] * before) * np.sin(wd[j] * before) / wd[j]
-            )
+            mirrored[j, : top + 1] = -(w[j] ** 2) * np.exp(-self.damping * w[j] * before) * np.sin(wd[j] * before) / wd[j]
         response = mirrored @ mirrored.T * self.step
         # neighbours are almost alike: a little damping of the least squares keeps the wavelets small
         scale = np.sqrt(np.diag(response))

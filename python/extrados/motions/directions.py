@@ -26,11 +26,7 @@ def spectra(horizontal: np.ndarray, step: float, periods: np.ndarray, damping: f
     parts = np.array_split(ANGLES, max(1, -(-len(ANGLES) * horizontal.shape[1] // _BATCH)))
     psa = [
         core.response_spectra(
-            np.stack([rotated(horizontal[0], horizontal[1], angle) for angle in part]),
-            step,
-            periods,
-            [damping],
-            threads=threads,
+            np.stack([rotated(horizontal[0], horizontal[1], angle) for angle in part]), step, periods, [damping], threads=threads
         ).psa[:, 0]
         for part in parts
         if len(part)

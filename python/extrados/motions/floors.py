@@ -53,9 +53,7 @@ def on_floor(motion: Motion, floor: FloorBelow | None) -> Motion:
     time = start + step * np.arange(int(np.ceil((motion.end - start + sway.tail) / step)) + 1)
     rows = np.stack([motion.sample(time, k) for k in range(motion.ground.channels)])
     rows[0] = sway.accelerations(rows[0], step)
-    return replace(
-        motion, ground=Ground(samples=rows, step=step, start=start), horizontal=None, name=f"{motion.name} on a floor"
-    )
+    return replace(motion, ground=Ground(samples=rows, step=step, start=start), horizontal=None, name=f"{motion.name} on a floor")
 
 
 def floor_condition(floor: FloorBelow) -> str:

@@ -37,9 +37,7 @@ def _make_motion(model: Model, folder: Path) -> Motion:
         case models.SinePulse():
             return pulses.sine_pulse(model.amplitude, model.period)
         case models.Harmonic():
-            return pulses.harmonic(
-                model.amplitude, model.frequency, model.duration, model.phase, model.ramp, model.carrier
-            )
+            return pulses.harmonic(model.amplitude, model.frequency, model.duration, model.phase, model.ramp, model.carrier)
         case models.Pulse():
             return pulses.pulse(model.shape, model.amplitude, model.period)
         case models.VelocityPulse():
@@ -124,10 +122,19 @@ def compatible_set(model: models.Compatible, folder: Path) -> CompatibleSet:
     """The set of a deck's `compatible` motion."""
     try:
         return CompatibleSet(
-            target_of(model, folder), model.damping, model.shortest, model.longest, model.tolerance, model.duration,
-            model.time_step, model.seed, model.envelope, model.rise, model.decay,
+            target_of(model, folder),
+            model.damping,
+            model.shortest,
+            model.longest,
+            model.tolerance,
+            model.duration,
+            model.time_step,
+            model.seed,
+            model.envelope,
+            model.rise,
+            model.decay,
             model.longest if model.code == "table" else np.inf,
-        )  # fmt: skip
+        )
     except ValueError as error:
         raise RecordError(f"[motion] compatible: {error}") from None
 

@@ -47,9 +47,7 @@ class GeneratedSet:
 
     def batch(self, first: int, count: int, threads: int = 1) -> np.ndarray:
         """Motions first .. first + count - 1 (count, points) [m/s^2]."""
-        made = core.generate(
-            self.lines, self.amplitude, self.window, self.step, self.seed, first, count, threads=threads
-        )
+        made = core.generate(self.lines, self.amplitude, self.window, self.step, self.seed, first, count, threads=threads)
         made = made * self.factors(first, count)[:, None] if self.dispersion > 0.0 else made
         return made if self.floor is None else self.floor.accelerations(made, self.step)
 
@@ -58,9 +56,7 @@ class GeneratedSet:
         seeds = ([self.seed % 2**64, k] for k in range(first, first + count))
         return np.exp(self.dispersion * np.array([np.random.default_rng(s).standard_normal() for s in seeds]))
 
-    def batches(
-        self, count: int, *, first: int = 0, size: int | None = None, threads: int = 1
-    ) -> Iterator[tuple[int, np.ndarray]]:
+    def batches(self, count: int, *, first: int = 0, size: int | None = None, threads: int = 1) -> Iterator[tuple[int, np.ndarray]]:
         """(number of its first motion, batch) until `count` motions are out; memory holds one batch."""
         size = size or max(1, min(2000, BATCH_VALUES // self.points))
         for start in range(first, first + count, size):
@@ -80,11 +76,7 @@ class GeneratedSet:
         pga [m/s^2], pgv [m/s], arias [m/s]: pi / 2g times the energy 2 sum |X|^2 df.
         """
         energy = 2.0 * float(np.sum(self.spectrum**2 * self.widths))
-        return {
-            "pga": worden_pga(self.mmi),
-            "pgv": worden_pgv(self.mmi),
-            "arias": np.pi / (2.0 * 9.80665) * energy,
-        }
+        return {"pga": worden_pga(self.mmi), "pgv": worden_pgv(self.mmi), "arias": np.pi / (2.0 * 9.80665) * energy}
 
 
 def line_frequencies(lines: int | Sequence[float], spacing: str, band: tuple[float, float]) -> np.ndarray:
@@ -155,6 +147,4 @@ def generated(
     values, widths = table.at(mmi, frequency), core.line_widths(frequency, spacing)
     strong = float(np.sum(window**2) * step)
     amplitude = core.line_amplitudes(values, widths, scaling, factor, strong)
-    return GeneratedSet(
-        float(mmi), int(seed), float(step), frequency, widths, values, amplitude, window, float(dispersion)
-    )
+    return GeneratedSet(float(mmi), int(seed), float(step), frequency, widths, values, amplitude, window, float(dispersion))

@@ -47,10 +47,7 @@ class HazardCurve:
 
     def _integral(self, probability: Probability, ends: np.ndarray) -> np.ndarray:
         """Integral of P over the density between the ends, none of whose intervals crosses a corner of the curve."""
-        pieces = [
-            np.linspace(a, b, int(np.ceil((b - a) / PIECE)) + 1)
-            for a, b in zip(np.log(ends[:-1]), np.log(ends[1:]), strict=True)
-        ]
+        pieces = [np.linspace(a, b, int(np.ceil((b - a) / PIECE)) + 1) for a, b in zip(np.log(ends[:-1]), np.log(ends[1:]), strict=True)]
         start = np.concatenate([p[:-1] for p in pieces])
         length = np.concatenate([np.diff(p) for p in pieces])
         place, weight = np.polynomial.legendre.leggauss(POINTS)

@@ -22,11 +22,7 @@ class Impulse:
 
 
 def primary_impulses(
-    time: np.ndarray,
-    acceleration: np.ndarray,
-    count: int = 3,
-    min_period: float | None = None,
-    max_period: float = 4.0,
+    time: np.ndarray, acceleration: np.ndarray, count: int = 3, min_period: float | None = None, max_period: float = 4.0
 ) -> list[Impulse]:
     """The strongest impulses, first the primary one; later ones do not overlap earlier ones.
 
@@ -56,15 +52,7 @@ def primary_impulses(
         here = acceleration[inside]
         offset = np.arange(inside.start, inside.stop) * step - start
         misfit = here - amplitude * np.sin(2.0 * np.pi * offset / period)
-        found.append(
-            Impulse(
-                amplitude,
-                period,
-                float(time[0]) + start,
-                gain / total,
-                1.0 - float(misfit @ misfit) / float(here @ here),
-            )
-        )
+        found.append(Impulse(amplitude, period, float(time[0]) + start, gain / total, 1.0 - float(misfit @ misfit) / float(here @ here)))
         free[inside] = False
         rest[inside] = 0.0
     return found
@@ -122,9 +110,7 @@ def _gain(rest: np.ndarray, step: float, period: float, start: float) -> tuple[f
     return product**2 / square, product / square, inside
 
 
-def _polish(
-    rest: np.ndarray, free: np.ndarray, step: float, period: float, start: float, low: float, high: float
-) -> tuple[float, float]:
+def _polish(rest: np.ndarray, free: np.ndarray, step: float, period: float, start: float, low: float, high: float) -> tuple[float, float]:
     """Greatest gain near a grid point, over period and start between the samples."""
     from scipy.optimize import minimize  # takes 0.2 s to load
 

@@ -41,13 +41,11 @@ class LineSpectrum:
         (low, high), lines = self.band, np.asarray(lines, dtype=float)
         if not self.intensity[0] <= intensity <= self.intensity[-1]:
             raise ValueError(
-                f"intensity {intensity:g} is outside the spectrum '{self.name}': "
-                f"expected {self.intensity[0]:g} to {self.intensity[-1]:g}"
+                f"intensity {intensity:g} is outside the spectrum '{self.name}': expected {self.intensity[0]:g} to {self.intensity[-1]:g}"
             )
         if lines.min() < low * (1.0 - 1e-9) or lines.max() > high * (1.0 + 1e-9):
             raise ValueError(
-                f"lines from {lines.min():g} to {lines.max():g} Hz are outside the spectrum '{self.name}': "
-                f"expected {low:g} to {high:g} Hz"
+                f"lines from {lines.min():g} to {lines.max():g} Hz are outside the spectrum '{self.name}': expected {low:g} to {high:g} Hz"
             )
         return core.line_spectrum(self.intensity, self.frequency, self.amplitude, intensity, lines)
 
@@ -75,17 +73,11 @@ def _parse(text: str, name: str) -> LineSpectrum:
         try:
             intensity, frequency, amplitude = (float(word) for word in row)
         except ValueError:
-            raise SpectrumFileError(
-                f"{name}:{reader.line_num}: expected three numbers, got {','.join(row)[:80]!r}"
-            ) from None
+            raise SpectrumFileError(f"{name}:{reader.line_num}: expected three numbers, got {','.join(row)[:80]!r}") from None
         if not (0.0 < frequency < 1e4 and 0.0 < amplitude < 1e6 and 0.0 <= intensity <= 12.0):
-            raise SpectrumFileError(
-                f"{name}:{reader.line_num}: expected intensity 0 to 12, frequency and amplitude above zero"
-            )
+            raise SpectrumFileError(f"{name}:{reader.line_num}: expected intensity 0 to 12, frequency and amplitude above zero")
         if frequency in rows.setdefault(intensity, {}):
-            raise SpectrumFileError(
-                f"{name}:{reader.line_num}: intensity {intensity:g} at {frequency:g} Hz stands twice"
-            )
+            raise SpectrumFileError(f"{name}:{reader.line_num}: intensity {intensity:g} at {frequency:g} Hz stands twice")
         rows[intensity][frequency] = amplitude
     grids = {tuple(sorted(row)) for row in rows.values()}
     if len(rows) < 2 or len(grids) != 1 or len(next(iter(grids))) < 2:

@@ -29,9 +29,7 @@ def fourier_spectrum(acceleration: np.ndarray, step: float) -> tuple[np.ndarray,
     return np.arange(length // 2 + 1) / (length * step), np.abs(core.fourier(acceleration, length)) * step
 
 
-def konno_ohmachi(
-    frequency: np.ndarray, amplitude: np.ndarray, centre: np.ndarray, bandwidth: float = BANDWIDTH
-) -> np.ndarray:
+def konno_ohmachi(frequency: np.ndarray, amplitude: np.ndarray, centre: np.ndarray, bandwidth: float = BANDWIDTH) -> np.ndarray:
     """A Fourier spectrum smoothed at the frequencies `centre` [Hz]: the mean under the window
     (sin(b log10(f/fc)) / (b log10(f/fc)))^4 of Konno and Ohmachi (1998), Bull. Seism. Soc. Am. 88:228-241.
 

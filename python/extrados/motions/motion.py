@@ -38,9 +38,7 @@ class Motion:
         """What is left of a record with two horizontal components: the part a quarter turn from that in the plane."""
         if self.horizontal is None:
             return None
-        return Ground(
-            samples=rotated(self.horizontal[0], self.horizontal[1], self.angle + 90.0)[None], step=self.ground.step
-        )
+        return Ground(samples=rotated(self.horizontal[0], self.horizontal[1], self.angle + 90.0)[None], step=self.ground.step)
 
     def sample(self, time: np.ndarray, channel: int = 0) -> np.ndarray:
         """Acceleration at the given times [m/s^2]; zero outside the motion."""

@@ -15,10 +15,21 @@ LINES = np.geomspace(0.4, 13.0, 15)
 
 _DENSITY, _BETA, _STRESS_DROP, _KAPPA = 2.8, 3.7, 80.0, 0.04  # g/cm^3, km/s, bar, s
 #: Generic rock amplification, Boore and Joyner (1997): frequency [Hz], factor
-_ROCK = np.array([
-    (0.01, 1.00), (0.09, 1.10), (0.16, 1.18), (0.51, 1.42), (0.84, 1.58), (1.25, 1.74), (2.26, 2.06),
-    (3.17, 2.25), (6.05, 2.58), (16.6, 3.13), (61.2, 4.00),
-])  # fmt: skip
+_ROCK = np.array(
+    [
+        (0.01, 1.00),
+        (0.09, 1.10),
+        (0.16, 1.18),
+        (0.51, 1.42),
+        (0.84, 1.58),
+        (1.25, 1.74),
+        (2.26, 2.06),
+        (3.17, 2.25),
+        (6.05, 2.58),
+        (16.6, 3.13),
+        (61.2, 4.00),
+    ]
+)
 
 
 def worden_pga(intensity: float) -> float:

@@ -31,12 +31,7 @@ def sine_pulse(amplitude: float, period: float) -> Motion:
 
 
 def harmonic(
-    amplitude: float,
-    frequency: float,
-    duration: float,
-    phase: str = "sine",
-    ramp: float = 0.0,
-    carrier: float | None = None,
+    amplitude: float, frequency: float, duration: float, phase: str = "sine", ramp: float = 0.0, carrier: float | None = None
 ) -> Motion:
     """amplitude sin(2 pi f t), growing over `ramp` [s] or under a carrier sin(2 pi f_c t) (thesis 5.3.2)."""
     w = 2.0 * np.pi * frequency
@@ -83,8 +78,5 @@ def velocity_pulse(velocity: float, period: float, cycles: float, phase: float) 
     """
     w, nu = 2.0 * np.pi / period, np.radians(phase)
     half = 0.5 * cycles * period  # t runs from -half to half
-    terms = [
-        [-0.5 * velocity * share * v, 0.0, v, nu - v * half]
-        for share, v in ((1.0, w), (0.5, w + w / cycles), (0.5, w - w / cycles))
-    ]
+    terms = [[-0.5 * velocity * share * v, 0.0, v, nu - v * half] for share, v in ((1.0, w), (0.5, w + w / cycles), (0.5, w - w / cycles))]
     return Motion("velocity pulse", _pieces([0.0, 2.0 * half], [[0.0, 0.0]], [terms]))

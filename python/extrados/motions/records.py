@@ -18,8 +18,33 @@ from extrados.schema.constants import GRAVITY
 
 STRONGEST, WEAKEST = 5.0 * GRAVITY, 1e-4 * GRAVITY  # peaks of records
 #: Suffixes that a folder of records may hold beside others
-SUFFIXES = {".at2", ".vt2", ".dt2", ".v1", ".v2", ".v1c", ".v2c", ".smc", ".asc", ".ns", ".ew", ".ud", ".ns1", ".ns2",
-            ".ew1", ".ew2", ".ud1", ".ud2", ".acc", ".dat", ".csv", ".txt", ".th", ".mseed", ".sac"}  # fmt: skip
+SUFFIXES = {
+    ".at2",
+    ".vt2",
+    ".dt2",
+    ".v1",
+    ".v2",
+    ".v1c",
+    ".v2c",
+    ".smc",
+    ".asc",
+    ".ns",
+    ".ew",
+    ".ud",
+    ".ns1",
+    ".ns2",
+    ".ew1",
+    ".ew2",
+    ".ud1",
+    ".ud2",
+    ".acc",
+    ".dat",
+    ".csv",
+    ".txt",
+    ".th",
+    ".mseed",
+    ".sac",
+}
 MOST_RECORDS = 2000
 MOST_WILD = 2  # times that a pattern may say **: each multiplies the folders that are looked into by their depth
 LONGEST = 10_800.0  # s: spectra take work by a motion's length over their shortest period, however few its samples
@@ -132,9 +157,7 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
         side = "above 5 g" if peak > STRONGEST else "below 0.0001 g"
         fits = [u for u, size in ACCELERATION.items() if 0.02 <= peak / units[known] * size / GRAVITY <= 2.0]
         hint = f"; in {' or '.join(fits)} it would be plausible" if fits and record.quantity == "acceleration" else ""
-        raise RecordError(
-            f"{name}: the peak is {peak / GRAVITY:.3g} g in '{known}': {side}, the unit is probably wrong{hint}"
-        )
+        raise RecordError(f"{name}: the peak is {peak / GRAVITY:.3g} g in '{known}': {side}, the unit is probably wrong{hint}")
     return values, step, notes
 
 
@@ -158,9 +181,7 @@ def record_motion(
     try:
         step *= do.time_scale
         if (lasts := step * (rows.shape[1] - 1)) > LONGEST:
-            raise ValueError(
-                f"{rows.shape[1]} samples every {step:g} s last {lasts:g} s, at most {LONGEST:g} s are taken"
-            )
+            raise ValueError(f"{rows.shape[1]} samples every {step:g} s last {lasts:g} s, at most {LONGEST:g} s are taken")
         rows = processing.band_pass(rows, step, do.low_cut, do.high_cut)
         rows = processing.baseline(rows, step, do.baseline)
         if do.resample is not None:
@@ -178,11 +199,7 @@ def record_motion(
         raise RecordError(f"{name}: only {rows.shape[1]} samples are left after resampling")
     rows = rows * factor
     horizontal = None if horizontal is None else horizontal * factor
-    parts = (
-        [("", rows[0])]
-        if horizontal is None
-        else [("first component: ", horizontal[0]), ("second component: ", horizontal[1])]
-    )
+    parts = [("", rows[0])] if horizontal is None else [("first component: ", horizontal[0]), ("second component: ", horizontal[1])]
     for which, row in [*parts, *(("vertical component: ", row) for row in rows[1:])]:
         found, meaning = processing.drift(row, step)
         if found:
@@ -206,9 +223,7 @@ def _together(record: Record, others: list[Record], do: Treatment, name: str) ->
         # a unit in the deck stands in for all files, a unit in a file for that one
         values, its_step, more = acceleration_of(other, replace(do, unit=None if other.unit else do.unit), other.name)
         if abs(its_step - step) > 1e-9 * step:
-            raise RecordError(
-                f"{name}: the components have steps of {step:g} and {its_step:g} s ({other.name}); expected the same"
-            )
+            raise RecordError(f"{name}: the components have steps of {step:g} and {its_step:g} s ({other.name}); expected the same")
         found.append(values)
         notes += more
     lengths = [len(row) for row in found]

@@ -20,11 +20,7 @@ class Table:
     def amplitudes(self, frequency: np.ndarray, mass: float) -> dict[str, np.ndarray]:
         """Greatest displacement amplitude [m] of harmonic motion by each limit, at frequencies [Hz], for a mass [kg]."""
         w = 2.0 * np.pi * np.asarray(frequency, dtype=float)
-        return {
-            "stroke": np.full_like(w, self.stroke),
-            "flow": self.velocity / w,
-            "force": self.force / (mass * w**2),
-        }
+        return {"stroke": np.full_like(w, self.stroke), "flow": self.velocity / w, "force": self.force / (mass * w**2)}
 
     def corner_frequencies(self, mass: float) -> dict[str, float]:
         """Where one limit takes over from another [Hz]."""
@@ -119,9 +115,5 @@ def fit(table: Table, drive: Drive, mass: float, keep: str = "amplitude") -> Fit
         return Fit(stroke, flow, force, 1.0, 1.0 / max(1.0, stroke, flow, force))
     amplitude = 1.0 / max(1.0, force)
     return Fit(
-        stroke,
-        flow,
-        force,
-        min(1.0, 1.0 / np.sqrt(max(stroke * amplitude, 1e-300)), 1.0 / max(flow * amplitude, 1e-300)),
-        amplitude,
+        stroke, flow, force, min(1.0, 1.0 / np.sqrt(max(stroke * amplitude, 1e-300)), 1.0 / max(flow * amplitude, 1e-300)), amplitude
     )

@@ -29,9 +29,7 @@ class Shift:
 
 def with_shifts(motion: Motion | None, shifts: Sequence[Shift]) -> Motion:
     """The motion, or rest, with what supports that move add to it; on the straight lines and sines of both."""
-    ground = (
-        motion.ground if motion is not None else Ground(samples=np.zeros((1, 2)), step=min(s.duration for s in shifts))
-    )
+    ground = motion.ground if motion is not None else Ground(samples=np.zeros((1, 2)), step=min(s.duration for s in shifts))
     if ground.samples is not None:
         given = ground.start + ground.step * np.arange(ground.samples.shape[1])
     else:

@@ -42,9 +42,7 @@ class Harmonic(Motion):
     duration: Time = key(10.0, "how long it acts", gt=0)
     phase: Literal["sine", "cosine"] = key("sine", "starts at zero (sine) or at the amplitude (cosine)")
     ramp: Time = key(0.0, "the amplitude grows linearly from zero over this time", ge=0)
-    carrier: Frequency | None = key(
-        None, "frequency of a sinusoidal carrier that modulates the amplitude", gt=0, le=1000
-    )
+    carrier: Frequency | None = key(None, "frequency of a sinusoidal carrier that modulates the amplitude", gt=0, le=1000)
 
     @model_validator(mode="after")
     def _one_envelope(self) -> "Harmonic":
@@ -80,12 +78,9 @@ class Treated(Motion):
     """What may be done to records, in this order: time_scale, filter, baseline, resampling, scaling, scale."""
 
     time_step: Time | None = key(None, "sampling step where the file has none", ge=1e-4, le=10)
-    unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(
-        None, "unit where the file has none"
-    )
+    unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(None, "unit where the file has none")
     columns: Literal["series", "components"] | None = key(
-        None,
-        "a file of several columns without time: its rows are one series, or each column is a component; `channel` says which",
+        None, "a file of several columns without time: its rows are one series, or each column is a component; `channel` says which"
     )
     scale: float = key(1.0, "factor on the acceleration, last of all")
     time_scale: float = key(1.0, "factor on the time axis; accelerations keep their size", gt=0)
@@ -100,9 +95,7 @@ class Treated(Motion):
     )
     pgv: Velocity | None = key(None, "scale to this peak velocity, measured and applied like pga", gt=0)
     arias: Velocity | None = key(None, "scale to this Arias intensity, measured and applied like pga", gt=0)
-    sa: Acceleration | None = key(
-        None, "scale to this pseudo-acceleration at sa_period, measured and applied like pga", gt=0
-    )
+    sa: Acceleration | None = key(None, "scale to this pseudo-acceleration at sa_period, measured and applied like pga", gt=0)
     sa_period: Time | None = key(None, "period for sa", gt=0)
     sa_damping: float = key(0.05, "damping ratio for sa", ge=0, le=0.5)
 
@@ -120,19 +113,11 @@ class Treated(Motion):
 class Components(Table):
     """Where the components of one record lie: one horizontal, perhaps the other, perhaps the vertical."""
 
-    file: str = key(
-        about="path inside the deck's folder, or `extrados:NAME` for a shipped record", min_length=1, max_length=1024
-    )
-    channel: int | str | None = key(
-        None, "which channel of a file with several: its number from 1, or a part of its name"
-    )
-    second: str | None = key(
-        None, "file of the other horizontal component, at right angles to the first", min_length=1, max_length=1024
-    )
+    file: str = key(about="path inside the deck's folder, or `extrados:NAME` for a shipped record", min_length=1, max_length=1024)
+    channel: int | str | None = key(None, "which channel of a file with several: its number from 1, or a part of its name")
+    second: str | None = key(None, "file of the other horizontal component, at right angles to the first", min_length=1, max_length=1024)
     second_channel: int | str | None = key(None, "channel of the other horizontal, in `second` or in `file`")
-    angle: Angle | None = key(
-        None, "from the first component to the plane of the structure: it sees first cos(angle) + second sin(angle)"
-    )
+    angle: Angle | None = key(None, "from the first component to the plane of the structure: it sees first cos(angle) + second sin(angle)")
     vertical: str | None = key(None, "file of the vertical component", min_length=1, max_length=1024)
     vertical_channel: int | str | None = key(None, "channel of the vertical component, in `vertical` or in `file`")
 
@@ -184,25 +169,23 @@ class Generated(Motion):
     seed: int = key(1, "one seed gives one set; motion k of a set is always the same", ge=-(2**62), le=2**62)
     member: int = key(1, "which motion of the set a single run takes, from 1", ge=1, le=2**31)
     spectrum: str = key(
-        "boore-worden", "Fourier spectra by intensity: `boore-worden`, or a CSV file mmi,frequency_Hz,amplitude_cm_s",
-        min_length=1, max_length=1024, source="thesis Fig. 6-5",
-    )  # fmt: skip
+        "boore-worden",
+        "Fourier spectra by intensity: `boore-worden`, or a CSV file mmi,frequency_Hz,amplitude_cm_s",
+        min_length=1,
+        max_length=1024,
+        source="thesis Fig. 6-5",
+    )
     lines: int | list[Frequency] = key(15, "number of sine lines over the spectrum's band, or their frequencies")
     spacing: Literal["log", "uniform"] = key("log", "lines in equal ratios or at equal distances")
     scaling: Literal["thesis", "fourier", "energy"] = key(
-        "energy",
-        "amplitude of a line: factor |X| df, 2 |X| df, or 2 |X| sqrt(df / int P^2 dt)",
-        source="thesis Eq. 6.6",
+        "energy", "amplitude of a line: factor |X| df, 2 |X| df, or 2 |X| sqrt(df / int P^2 dt)", source="thesis Eq. 6.6"
     )
     factor: float = key(1.0, "factor on the amplitudes; with scaling = thesis the unit of the frequency step", gt=0)
     dispersion: float = key(
-        0.0, "scatter of the strength from motion to motion: standard deviation of the logarithm of a factor of median 1", ge=0,
-        le=2,
-    )  # fmt: skip
+        0.0, "scatter of the strength from motion to motion: standard deviation of the logarithm of a factor of median 1", ge=0, le=2
+    )
     envelope: Literal["arctangent", "trapezoid", "jennings", "saragoni-hart"] = key(
-        "arctangent",
-        "how the strength grows and fades",
-        source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974",
+        "arctangent", "how the strength grows and fades", source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974"
     )
     rise: Time | None = key(None, "arctangent: its width (0.1 s); else time to full strength (0.15 or 0.2 t_d)", gt=0)
     decay: Time | None = key(None, "trapezoid: at the end of t_d; jennings: after it, to 5 % (0.4 t_d)", gt=0)

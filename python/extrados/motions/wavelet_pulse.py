@@ -8,10 +8,18 @@ import numpy as np
 from extrados.core import motion as core
 
 #: Low-pass filter of the fourth-order Daubechies wavelet
-_DB4 = np.array([
-    0.23037781330885523, 0.7148465705525415, 0.6308807679295904, -0.02798376941698385,
-    -0.18703481171888114, 0.030841381835986965, 0.032883011666982945, -0.010597401784997278,
-])  # fmt: skip
+_DB4 = np.array(
+    [
+        0.23037781330885523,
+        0.7148465705525415,
+        0.6308807679295904,
+        -0.02798376941698385,
+        -0.18703481171888114,
+        0.030841381835986965,
+        0.032883011666982945,
+        -0.010597401784997278,
+    ]
+)
 _CENTRE = 5.0 / 7.0  # cycles per unit of the mother wavelet's time, whose support is 7 units
 _WAVELETS = 10  # of one scale make up the pulse
 LEAST_PGV = 0.30  # m/s
@@ -101,9 +109,16 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     if pgv <= LEAST_PGV:
         fails.append(f"the peak velocity of {100.0 * pgv:.3g} cm/s is not above {100.0 * LEAST_PGV:g}")
     return PulseClass(
-        indicator, float(length * step / (7.0 * _CENTRE)), float(np.abs(pulse).max()), pgv_ratio, energy_ratio, early,
-        not fails, pulse, tuple(fails),
-    )  # fmt: skip
+        indicator,
+        float(length * step / (7.0 * _CENTRE)),
+        float(np.abs(pulse).max()),
+        pgv_ratio,
+        energy_ratio,
+        early,
+        not fails,
+        pulse,
+        tuple(fails),
+    )
 
 
 def _none(velocity: np.ndarray, reason: str) -> PulseClass:

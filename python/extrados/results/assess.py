@@ -41,9 +41,7 @@ class StrategyVerdict(ResultModel):
     unit: str = fact("unit of both")
     outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
     bound: Bound | None = fact("capacity as a bound: exact, upper or lower; null: an estimate")
-    violated: list[str] = fact(
-        "assumptions of the strategy that were checked and do not hold; the outcome is then open"
-    )
+    violated: list[str] = fact("assumptions of the strategy that were checked and do not hold; the outcome is then open")
     margin: float | None = fact("critical scale factor of the hazard; null: not known")
     margin_at_least: float | None = fact("greatest factor on the hazard that was run without collapse; null: none")
     margin_below: float | None = fact("least factor on the hazard that was run with collapse; null: none")
@@ -150,12 +148,8 @@ class CollapseProbability(ResultModel):
         "if the peak acted as a sustained load: weighted mean over the contributions; 1 for a certificate; null: no contribution"
     )
     low: float | None = fact("least lower end of the contributions' 90 % confidence intervals; null: no contribution")
-    high: float | None = fact(
-        "greatest upper end of the contributions' 90 % confidence intervals; null: no contribution"
-    )
-    contributions: list[Contribution] = fact(
-        "strategies whose capacity the verification book compares with known results"
-    )
+    high: float | None = fact("greatest upper end of the contributions' 90 % confidence intervals; null: no contribution")
+    contributions: list[Contribution] = fact("strategies whose capacity the verification book compares with known results")
     without: dict[str, str] = fact("strategies that contribute nothing, with the reason")
     statement: str = fact("the probability in words")
     method: str = fact("derivation of the probability in words")
@@ -185,9 +179,7 @@ class Assess(KindResults):
     agreement: dict[str, dict[str, Agreement]] = fact(
         "of each pair of strategies with a verdict: the same verdict, the same with margins far apart, another one, or open"
     )
-    collapse_probability: CollapseProbability = fact(
-        "probability of collapse from the model uncertainty of the strategies"
-    )
+    collapse_probability: CollapseProbability = fact("probability of collapse from the model uncertainty of the strategies")
     reasons: list[Reason] = fact("why strategies differ")
     unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
     parts: dict[str, str] = fact("analyses of this run that the assessment requested: name -> description")
@@ -203,8 +195,6 @@ class Assess(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall answer; the capacity is the least factor on the hazard."""
-        decided: dict[str, Outcome] = {
-            "stands under all": "stands", "collapses under all": "collapses", "cannot stand": "cannot-stand",
-        }  # fmt: skip
+        decided: dict[str, Outcome] = {"stands under all": "stands", "collapses under all": "collapses", "cannot stand": "cannot-stand"}
         outcome = decided.get(self.overall, "open")
         return judge(self.statement, 1.0, self.least_margin, "hazard", outcome)

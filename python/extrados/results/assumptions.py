@@ -18,8 +18,7 @@ class Assumption(ResultModel):
     value: Any = fact("the value, in `unit`; null where the deck gives none and the analysis does without")
     unit: str = fact("unit of the value")
     origin: Origin = fact(
-        "default, the deck's own table, an override in the table of the analysis, or the method, which has one value only",
-        name="from",
+        "default, the deck's own table, an override in the table of the analysis, or the method, which has one value only", name="from"
     )
     exceptions: bool = fact("whether some joints or parts have values of their own")
 

@@ -163,9 +163,7 @@ class Checkpoint:
                 refuse_other_deck(out, deck)
             elif os.path.lexists(self.folder):
                 if not (self.folder / HEAD).exists():
-                    raise StoreError(
-                        f"{self.folder}: is in the way and was not written by extrados; remove it or use --out"
-                    )
+                    raise StoreError(f"{self.folder}: is in the way and was not written by extrados; remove it or use --out")
                 _hold(out)
                 _clear(self.folder)
             self.folder.mkdir(parents=True, exist_ok=True)

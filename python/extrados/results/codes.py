@@ -22,9 +22,7 @@ class Check(ResultModel):
     source: str = fact("clause of the rule, with edition and equation")
     note: str = fact("values on which capacity and demand rest")
     code: str = fact("code whose check it is; empty for a formula for comparison or a strength")
-    limit_state: str = fact(
-        "limit state of the demand: SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; ULS; empty of a formula for comparison"
-    )
+    limit_state: str = fact("limit state of the demand: SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; ULS; empty of a formula for comparison")
     scope: str = fact("element, restraint and height that the rule is for")
     alternative: str = fact(
         "checks of one code and limit state with the same word are alternatives: one that holds suffices; empty: must hold by itself"
@@ -49,12 +47,9 @@ class Checked(KindResults):
     by_default: bool = maybe("whether the deck has no [code], so that the rules of NTC 2018 are applied")
     clause: str = maybe("clause of the check that governs, with edition and equation; empty without a verdict")
     zeta_E: float | None = maybe(
-        "NTC: seismic action that the part carries over that of the code, at SLV; null without a demand",
-        source="NTC 2018 8.3",
+        "NTC: seismic action that the part carries over that of the code, at SLV; null without a demand", source="NTC 2018 8.3"
     )
-    nbs_percent: float | None = maybe(
-        "NZSEE: %NBS, capacity over demand of the check that governs; null without a demand", "%"
-    )
+    nbs_percent: float | None = maybe("NZSEE: %NBS, capacity over demand of the check that governs; null without a demand", "%")
     confidence_factor: float = maybe("confidence factor by which capacities are divided")
     behaviour_factor: float = maybe("q of the linear check of NTC, and of the demand on a pier")
     bound: Bound = maybe("which side of the exact capacity the checks lie on")
@@ -62,9 +57,7 @@ class Checked(KindResults):
         "joints slide: capacity / demand of the governing check by associated (dilatant) friction; a check that fails without dilatancy is "
         "open where this is at least 1; null without a demand"
     )
-    violated: list[str] = maybe(
-        "assumptions on the unsafe side that were checked and do not hold: a check that holds is then open"
-    )
+    violated: list[str] = maybe("assumptions on the unsafe side that were checked and do not hold: a check that holds is then open")
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall verdict; the deck's motion is no demand of a code."""
@@ -104,9 +97,7 @@ class Checked(KindResults):
             remarks += " All partial and confidence factors are 1: the capacity contains no margin for uncertain masonry properties."
         if decided:
             _, name, worst = decided[0]
-            holds = (
-                worst.verdict == "holds"
-            )  # what is violated errs on the unsafe side: a check that fails, fails all the same
+            holds = worst.verdict == "holds"  # what is violated errs on the unsafe side: a check that fails, fails all the same
             unit = f" {worst.unit}" if worst.unit else ""
             outcome: Outcome | None = "stands" if holds and self.bound != "upper" else None
             if not holds and (self.margin_associated or 0.0) >= 1.0:
@@ -118,9 +109,13 @@ class Checked(KindResults):
             return judge(
                 f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
-                worst.demand, worst.capacity, worst.unit, outcome, self.bound,
+                worst.demand,
+                worst.capacity,
+                worst.unit,
+                outcome,
+                self.bound,
                 (self.violated or ()) if holds else (),
-            )  # fmt: skip
+            )
         if (weakest := self.weakest()) is not None:
             name, check = weakest
             return judge(
@@ -129,15 +124,11 @@ class Checked(KindResults):
                 check.capacity,
                 "N",
             )
-        barred = {
-            f"{c.code}, {n}": c.reason for n, c in self.checks.items() if c.code and c.verdict == "not-applicable"
-        }
+        barred = {f"{c.code}, {n}": c.reason for n, c in self.checks.items() if c.code and c.verdict == "not-applicable"}
         if self.jurisdiction == "none":
             return judge("No code is applied (jurisdiction none). Formulas for comparison give no verdict.")
         if undecided or not barred:
-            return judge(
-                f"The deck gives no seismic action, so no check has a demand. Give the action in [code], or a spectrum.{remarks}"
-            )
+            return judge(f"The deck gives no seismic action, so no check has a demand. Give the action in [code], or a spectrum.{remarks}")
         told = "; ".join(f"{rule}: {reason}" for rule, reason in barred.items())
         return judge(f"This program implements no rule of the code for this element. {told[:1].upper()}{told[1:]}.")
 
@@ -160,9 +151,10 @@ class Checked(KindResults):
     def weakest(self) -> tuple[str, Check] | None:
         """The rule of the code with the least lateral strength [N] of a pier; residual strengths are not among them."""
         strengths = [
-            (n, c) for n, c in self.checks.items()
+            (n, c)
+            for n, c in self.checks.items()
             if c.quantity == "lateral strength" and c.code and c.capacity is not None and c.verdict != "not-applicable"
-        ]  # fmt: skip
+        ]
         return min(strengths, key=lambda item: item[1].capacity or 0.0, default=None)
 
     def concluded(self) -> dict[str, Any]:
@@ -201,13 +193,9 @@ class LocalMechanism(Checked):
     """local-mechanism: a local mechanism by the kinematic analysis of codes."""
 
     mechanism: str = fact("which")
-    multiplier: float = fact(
-        "alpha_0, the horizontal multiplier of the weights that starts it", source="Circ. 7/2019 C8.7.1.2.1"
-    )
+    multiplier: float = fact("alpha_0, the horizontal multiplier of the weights that starts it", source="Circ. 7/2019 C8.7.1.2.1")
     participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1")
-    participating_part: float = fact(
-        "e* = g M* over the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
-    )
+    participating_part: float = fact("e* = g M* over the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]")
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(
         "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of the moving blocks; null: none",
@@ -220,17 +208,12 @@ class LocalMechanism(Checked):
         "T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        "weight of the kinematic chain: moving blocks, the loads that rest on them and sway, and the masses that push them",
-        "N",
+        "weight of the kinematic chain: moving blocks, the loads that rest on them and sway, and the masses that push them", "N"
     )
-    base_height_m: float = fact(
-        "z, height of the mechanism above the foundation: at 0 the demand is that of the ground", "m"
-    )
+    base_height_m: float = fact("z, height of the mechanism above the foundation: at 0 the demand is that of the ground", "m")
     building_height_m: float = maybe("H, of a mechanism above the ground: the height of the building", "m")
     floor_acceleration_g: float = maybe(
-        "of a place above the ground: a_Z, the acceleration there, the demand of the linear check",
-        "g",
-        source="Circ. 7/2019 C7.2.3",
+        "of a place above the ground: a_Z, the acceleration there, the demand of the linear check", "g", source="Circ. 7/2019 C7.2.3"
     )
     multiplier_associated: float = maybe(
         "joints slide: alpha_0 by associated (dilatant) friction, the upper end of the interval whose least state found is `multiplier`",
@@ -239,17 +222,13 @@ class LocalMechanism(Checked):
 
     def subject(self) -> str:
         """The mechanism that is checked."""
-        bends = {
-            "vertical-bending": "The wall between its floors",
-            "horizontal-bending": "The wall between its side walls",
-        }
+        bends = {"vertical-bending": "The wall between its floors", "horizontal-bending": "The wall between its side walls"}
         if self.mechanism == "building":
             return "The mechanism of the structure"
         return bends.get(self.mechanism, f"The {self.mechanism}")
 
     walls: list[WallMechanism] = maybe(
-        "of a building on a plan: every wall above the foot of each storey, the worst first; the other "
-        "numbers are those of the worst"
+        "of a building on a plan: every wall above the foot of each storey, the worst first; the other numbers are those of the worst"
     )
 
 

@@ -71,10 +71,15 @@ def compare(old: Stored, new: Stored, tolerance: float = ROUNDING) -> Comparison
         if one != two or (ratio is not None and abs(ratio - 1.0) > tolerance):
             verdicts.append(Change(name, _told(one, ratios[0]), _told(two, ratios[1]), ratio))
     return Comparison(
-        changes(old.summary["extrados"], new.summary["extrados"], 0.0), changes(decks[0], decks[1], 0.0), verdicts,
-        {name: found for name, found in numbers.items() if found}, [n for n in a if n not in b], [n for n in b if n not in a],
-        [w for w in warnings[0] if w not in warnings[1]], [w for w in warnings[1] if w not in warnings[0]],
-    )  # fmt: skip
+        changes(old.summary["extrados"], new.summary["extrados"], 0.0),
+        changes(decks[0], decks[1], 0.0),
+        verdicts,
+        {name: found for name, found in numbers.items() if found},
+        [n for n in a if n not in b],
+        [n for n in b if n not in a],
+        [w for w in warnings[0] if w not in warnings[1]],
+        [w for w in warnings[1] if w not in warnings[0]],
+    )
 
 
 def _outcome(row: dict[str, Any]) -> str:

@@ -16,7 +16,9 @@ CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "se
 #: Slip over the length of a joint up to which the support that is left is not in doubt: half of the lever arm to the end of
 #: the joint, and so half of the resistance to overturning, is left then
 SLIP_LIMIT = 0.25
-INTERVAL = "whether blocks slide, on the way to collapse, on statically indeterminate joints: the accelerations are then one state of an interval"
+INTERVAL = (
+    "whether blocks slide, on the way to collapse, on statically indeterminate joints: the accelerations are then one state of an interval"
+)
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
 
@@ -30,8 +32,7 @@ class Variation(ResultModel):
     stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
     damping_ratio_rotation: float = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints",
-        source="thesis Eq. 7.13",
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints", source="thesis Eq. 7.13"
     )
     damping_ratio_edge: float = fact(
         "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
@@ -51,9 +52,7 @@ class Convergence(ResultModel):
     open_steps: int = fact("time steps in which the contacts did not converge")
     most_rounds: int = fact("greatest number of rounds (new impulses) of a step")
     factorisations_per_step: float = fact("sparse factorisations per step")
-    worst_violation_ratio: float = fact(
-        "greatest violation of the contact law as a velocity, over that which gravity gives in a step"
-    )
+    worst_violation_ratio: float = fact("greatest violation of the contact law as a velocity, over that which gravity gives in a step")
     worst_violation_s: float = fact("when that was", "s")
 
 
@@ -64,18 +63,14 @@ class TieRun(ResultModel):
     peak_force_N: float = fact("force of the greatest magnitude in any step, tension positive", "N")
     end_force_N: float = fact("force at the end", "N")
     plastic_elongation_m: float = fact("plastic elongation at the end, of shortening negative", "m")
-    state: Literal["slack", "elastic", "yielded"] = fact(
-        "without force all along, below its yield force, or at it once"
-    )
+    state: Literal["slack", "elastic", "yielded"] = fact("without force all along, below its yield force, or at it once")
 
 
 class DemRun(KindResults):
     """dem: the blocks under a motion."""
 
     outcome: DemOutcome = fact("no joint opens or slides, joints slide, joints open and the blocks stand, or collapse")
-    collapse_criterion: CollapseCriterion | None = fact(
-        "criterion of collapse besides the displacement; null without collapse"
-    )
+    collapse_criterion: CollapseCriterion | None = fact("criterion of collapse besides the displacement; null without collapse")
     governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
     stopped: str = fact("why the run ended")
@@ -83,9 +78,7 @@ class DemRun(KindResults):
     stop_time_s: float = fact("when it ended", "s")
     still_moving: bool = fact("whether it still moved at the end")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
-    collapse_displacement_m: float = fact(
-        "displacement of a block that counts as collapse where the block did more than slide", "m"
-    )
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse where the block did more than slide", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
     residual_slip_m: float = fact("greatest slip of joints at the end", "m")
@@ -113,21 +106,16 @@ class DemRun(KindResults):
     restitution_housner: float | None = fact("of a block: the momentum balance", source="Housner 1963")
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
-    solver: Literal["compliant", "nonsmooth"] = fact(
-        "springs at the joints, or rigid contacts; these have no stiffness"
-    )
+    solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts; these have no stiffness")
     ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints",
-        source="thesis Eq. 7.13",
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints", source="thesis Eq. 7.13"
     )
-    damping_ratio_corner: float | None = fact(
-        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
-    )
+    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
     damping_ratio_edge: float | None = fact(
         "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
     )
@@ -137,9 +125,7 @@ class DemRun(KindResults):
     critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
     animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
-    sensitivity: list[Variation] = maybe(
-        "runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7"
-    )
+    sensitivity: list[Variation] = maybe("runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
     friction_threshold: float | None = maybe("least friction at which no joint slides; null where not found")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -192,12 +178,8 @@ class DemTilt(KindResults):
 class SolidDemRun(KindResults):
     """dem: blocks in space under a motion."""
 
-    outcome: DemOutcome = fact(
-        "no contact opens or slides, contacts slide, contacts open and the blocks stand, or collapse"
-    )
-    collapse_criterion: CollapseCriterion | None = fact(
-        "criterion of collapse besides the displacement; null without collapse"
-    )
+    outcome: DemOutcome = fact("no contact opens or slides, contacts slide, contacts open and the blocks stand, or collapse")
+    collapse_criterion: CollapseCriterion | None = fact("criterion of collapse besides the displacement; null without collapse")
     governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
     direction_deg: float = fact("direction in plan of the horizontal motion, from +x to +y", "deg")
@@ -212,9 +194,7 @@ class SolidDemRun(KindResults):
     dowel_slip_m: float = fact("greatest displacement of a support, settling included", "m")
     dowels_out: int = fact("how many of them came out")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
-    collapse_displacement_m: float = fact(
-        "displacement of a block that counts as collapse where the block did more than slide", "m"
-    )
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse where the block did more than slide", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     final_displacement_m: float = fact("greatest displacement of any block at the end", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that still touches", "m")
@@ -249,12 +229,9 @@ class SolidDemRun(KindResults):
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the contacts", "Pa/m")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints",
-        source="thesis Eq. 7.13",
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints", source="thesis Eq. 7.13"
     )
-    damping_ratio_corner: float | None = fact(
-        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
-    )
+    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
     damping_ratio_edge: float | None = fact(
         "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
     )
@@ -275,9 +252,7 @@ class SolidDemTilt(KindResults):
 
     test: Literal["tilt"] = fact("the test")
     outcome: DemOutcome = fact("collapse occurs, at these accelerations")
-    collapse_acceleration_g: float = fact(
-        "constant acceleration that causes collapse, applied along the direction", "g"
-    )
+    collapse_acceleration_g: float = fact("constant acceleration that causes collapse, applied along the direction", "g")
     collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
@@ -305,9 +280,7 @@ def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
     is nearer to its limit. Open where blocks still move, slid too far, slid off a footing, or where the response is chaotic."""
     most, limit, share = run.peak_displacement_m, run.collapse_displacement_m, run.slip_ratio
     violated = [f"The footing under {name} ends where {name} slides on." for name in run.off_footing] + run.violated
-    unchecked = (
-        "" if run.perturbation_growth is not None else " Sensitivity to perturbations of the motion was not checked."
-    )
+    unchecked = "" if run.perturbation_growth is not None else " Sensitivity to perturbations of the motion was not checked."
     if run.outcome == "collapse":
         how = f"{run.governing_block} collapses by {run.collapse_criterion}"
         text = f"{how}, and moves farther than the {1e3 * limit:.3g} mm that count as collapse.{unchecked}"
@@ -337,21 +310,13 @@ class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
     label: str = fact("value that was varied, or the other solver")
-    solver: Literal["compliant", "nonsmooth"] = fact(
-        "springs at the joints, or rigid contacts; these have no stiffness"
-    )
+    solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts; these have no stiffness")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
-    damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints"
-    )
-    damping_ratio_corner: float | None = fact(
-        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
-    )
-    damping_ratio_edge: float | None = fact(
-        "damping ratio (fraction of critical damping) at edge impact, least of all joints"
-    )
+    damping_ratio_rotation: float | None = fact("damping ratio (fraction of critical damping) at rotational impact, least of all joints")
+    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
+    damping_ratio_edge: float | None = fact("damping ratio (fraction of critical damping) at edge impact, least of all joints")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null if no tried value causes collapse", "s")
 
 
@@ -381,8 +346,7 @@ class DemDomain(KindResults):
     shortest_durations_s: list[float | None] = fact("at each amplitude; null if no tried value causes collapse", "s")
     curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")
     mode_II_durations_s: list[float | None] | None = maybe(
-        "shortest durations that cause collapse in the first half cycle; null without collapse at any duration that was run",
-        "s",
+        "shortest durations that cause collapse in the first half cycle; null without collapse at any duration that was run", "s"
     )
     convergence: Convergence | None = maybe("of rigid contacts, in all runs")
     cross_check: CrossCheck | None = maybe("by both solvers")
@@ -405,15 +369,20 @@ class DemDomain(KindResults):
                 word = "shorter than" if duration < capacity else "at least as long as"
                 return judge(
                     f"The motion, {amplitude:.3g} g for {duration:.3g} s, is {word} the shortest failing one "
-                    f"({capacity:.3g} s at that amplitude).", duration, capacity, "s",
-                )  # fmt: skip
+                    f"({capacity:.3g} s at that amplitude).",
+                    duration,
+                    capacity,
+                    "s",
+                )
         failing = [t for t in self.shortest_durations_s if t is not None]
         if not failing:
             return judge("No pulse that was run causes collapse.", None, None, "s")
         return judge(
             f"Of the {self.pulse} pulses that were run the shortest that causes collapse lasts {min(failing):.3g} s.",
-            None, min(failing), "s",
-        )  # fmt: skip
+            None,
+            min(failing),
+            "s",
+        )
 
 
 class DemParameters(KindResults):
@@ -424,19 +393,13 @@ class DemParameters(KindResults):
     rotation_frequency_rad_s: float = fact("greatest frequency of rotational impact", "rad/s", source="thesis Eq. 7.20")
     corner_frequency_rad_s: float = fact("greatest frequency of corner impact", "rad/s", source="thesis Eq. 7.18")
     edge_frequency_rad_s: float = fact("greatest frequency of edge impact", "rad/s", source="thesis Eq. 7.19")
-    critical_beta_rotation_s: float = fact(
-        "damping that is critical at rotational impact", "s", source="thesis Eq. 7.17"
-    )
+    critical_beta_rotation_s: float = fact("damping that is critical at rotational impact", "s", source="thesis Eq. 7.17")
     critical_beta_corner_s: float = fact("damping that is critical at corner impact", "s", source="thesis Eq. 7.17")
     critical_beta_edge_s: float = fact("damping that is critical at edge impact", "s", source="thesis Eq. 7.17")
     beta_s: float = fact("stiffness-proportional damping in use", "s")
     mass_damping_per_s: float = fact("mass-proportional damping in use", "1/s")
-    damping_ratio_rotation: float = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints"
-    )
-    damping_ratio_corner: float = fact(
-        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
-    )
+    damping_ratio_rotation: float = fact("damping ratio (fraction of critical damping) at rotational impact, least of all joints")
+    damping_ratio_corner: float = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
     damping_ratio_edge: float = fact("damping ratio (fraction of critical damping) at edge impact, least of all joints")
     convention: Literal["consistent", "thesis"] = fact("rule of the default stiffness")
 

@@ -68,21 +68,14 @@ def json_schema() -> dict[str, Any]:
     schemas = {name: schema for (name, _), schema in placed.items()}
     nothing = {"type": "object", "maxProperties": 0}
     branches = [
-        {
-            "properties": {
-                "kind": {"const": kind},
-                "results": {"anyOf": [schemas[f"results of {kind}"], schemas["self-weight"], nothing]},
-            }
-        }
+        {"properties": {"kind": {"const": kind}, "results": {"anyOf": [schemas[f"results of {kind}"], schemas["self-weight"], nothing]}}}
         for kind in kinds.ANALYSES
     ]
     text = {"type": "string"}
     analysis = {
         "type": "object",
         "additionalProperties": False,
-        "required": [
-            "name", "kind", "status", "reason", "seconds", "answer", "warnings", "verdict", "assumptions", "results",
-        ],
+        "required": ["name", "kind", "status", "reason", "seconds", "answer", "warnings", "verdict", "assumptions", "results"],
         "properties": {
             "name": text,
             "kind": {"enum": list(kinds.ANALYSES)},
@@ -98,7 +91,7 @@ def json_schema() -> dict[str, Any]:
         "oneOf": branches,
         "if": {"properties": {"status": {"const": "ok"}}},
         "then": {"properties": {"verdict": {"type": "object"}, "results": {"minProperties": 1}}},
-    }  # fmt: skip
+    }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "extrados summary.json",

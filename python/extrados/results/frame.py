@@ -72,18 +72,13 @@ class FramePush(ResultModel):
     pattern: str = fact("of the forces")
     eccentricity: float = fact("accidental eccentricity over the length across the direction")
     stop: str = fact("why it ended")
-    control_displacement_m: list[float] = fact(
-        "mean displacement of the masses on the control level along the sense", "m"
-    )
+    control_displacement_m: list[float] = fact("mean displacement of the masses on the control level along the sense", "m")
     base_shear_N: list[float] = fact("base shear along the sense", "N")
     peak_base_shear_N: float = fact("greatest base shear", "N")
     displacement_at_peak_m: float = fact("control displacement there", "m")
-    drop_displacement_m: float | None = fact(
-        "that at which the base shear has decreased by 20 %; null: not reached", "m"
-    )
+    drop_displacement_m: float | None = fact("that at which the base shear has decreased by 20 %; null: not reached", "m")
     ultimate_displacement_m: float | None = fact(
-        "least of that and of those at which all piers of a storey of a wall are at their drift limit; null: not reached",
-        "m",
+        "least of that and of those at which all piers of a storey of a wall are at their drift limit; null: not reached", "m"
     )
     stiffness_N_m: float = fact("secant at a tenth of the greatest base shear", "N/m")
     period_s: float = fact("of the mode of greatest participating mass in the direction", "s")
@@ -125,9 +120,7 @@ class FramePushover(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The verification by displacement; without one the least base shear, without an outcome."""
-        lost = [
-            row.name for row in self.runs if row.stop.startswith("no equilibrium") and row.drop_displacement_m is None
-        ]
+        lost = [row.name for row in self.runs if row.stop.startswith("no equilibrium") and row.drop_displacement_m is None]
         text = f"The frame carries a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
         if self.out_of_plane is not None and self.out_of_plane.outcome in ("collapses", "cannot-stand"):
             factor = "" if self.out_of_plane.factor is None else f" (safety factor {self.out_of_plane.factor:.3g})"
@@ -169,9 +162,7 @@ class FrameFragility(KindResults):
     histories: int = maybe("of histories: runs with a result")
     buildings: int = maybe("of pushovers: buildings of the sample")
     levels_g: list[float] = maybe("levels of the intensity", "g")
-    drift_16: list[float | None] = maybe(
-        "greatest drift of a pier that 16 % of the motions stay within, at each level; null: collapse"
-    )
+    drift_16: list[float | None] = maybe("greatest drift of a pier that 16 % of the motions stay within, at each level; null: collapse")
     drift_50: list[float | None] = maybe("the median of it")
     drift_84: list[float | None] = maybe("that 84 % of the motions stay within")
     confidence_factor: float = maybe("of the code, by the knowledge level")
@@ -183,9 +174,7 @@ class FrameFragility(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """Probabilities, which decide no limit state without an accepted one."""
         worst = self.limit_states[-1]
-        median = (
-            f"Median {self.intensity} at collapse {worst.median_g:.3g} g" if worst.median_g else "No curve of collapse"
-        )
+        median = f"Median {self.intensity} at collapse {worst.median_g:.3g} g" if worst.median_g else "No curve of collapse"
         text = f"{median}; {worst.exceeded} runs exceed collapse."
         return judge(text, None, None, "", "not-applicable")
 
@@ -195,16 +184,12 @@ class FrameHistory(KindResults):
 
     stop: str = fact("why it ended")
     end_time_s: float = fact("end of the calculation", "s")
-    peak_displacement_m: float = fact(
-        "greatest displacement of the control level along the motion, relative to the ground", "m"
-    )
+    peak_displacement_m: float = fact("greatest displacement of the control level along the motion, relative to the ground", "m")
     peak_base_shear_N: float = fact("greatest base shear along the motion", "N")
     residual_displacement_m: float = fact("at the end", "m")
     peak_drift: float = fact("greatest chord rotation of a pier")
     peak_drift_element: str = fact("that pier")
-    failed: list[FailedElement] = fact(
-        "elements beyond their drift limits, in order; control displacements at those instants"
-    )
+    failed: list[FailedElement] = fact("elements beyond their drift limits, in order; control displacements at those instants")
     period_s: float = fact("of the mode of greatest participating mass in the direction, at rest", "s")
     damping: list[float] = fact("Rayleigh's factors of the mass [1/s] and of the last tangent stiffness [s]")
     weight_N: float = fact("weight of walls and floors", "N")
@@ -215,13 +200,5 @@ class FrameHistory(KindResults):
         """Open without equilibrium; else the drifts, which decide no limit state."""
         moved = f"greatest displacement {1e3 * self.peak_displacement_m:.3g} mm, greatest drift of a pier {100 * self.peak_drift:.3g} %"
         if self.stop != "target displacement":
-            return judge(
-                f"The calculation ends at {self.end_time_s:.3g} s: {self.stop}; {moved}.", None, None, "", "open"
-            )
-        return judge(
-            f"The motion ends; {moved}; {len(self.failed)} elements beyond their drift limits.",
-            None,
-            None,
-            "",
-            "not-applicable",
-        )
+            return judge(f"The calculation ends at {self.end_time_s:.3g} s: {self.stop}; {moved}.", None, None, "", "open")
+        return judge(f"The motion ends; {moved}; {len(self.failed)} elements beyond their drift limits.", None, None, "", "not-applicable")

@@ -71,9 +71,7 @@ class Fracture(ResultModel):
     tilt_angle_deg: float = maybe("tilt of the ground that pushes alike", "deg", source="thesis Eq. 3.1")
     ratio: float = maybe("over the collapse acceleration of the whole structure")
     crack_height_m: float = maybe("height above the base at which the crack starts", "m")
-    crack_height_ratio: float = maybe(
-        "height above the base at which the crack starts, over the height of the buttress"
-    )
+    crack_height_ratio: float = maybe("height above the base at which the crack starts, over the height of the buttress")
     resultant_from_outer_face_ratio: float = maybe("distance of the resultant from the outer face over the width there")
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
     dilating: bool = maybe(
@@ -93,12 +91,8 @@ class LoadPath(ResultModel):
     """Collapse at the end of a load path: elastic joints, self-weight first, then the push, sliding without dilatancy."""
 
     shear_stiffness_ratio: float = fact("shear stiffness over normal stiffness of the joints")
-    collapse_acceleration_g: float | None = fact(
-        "collapse acceleration; null where the path did not end in a collapse", "g"
-    )
-    certified: bool = fact(
-        "whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver"
-    )
+    collapse_acceleration_g: float | None = fact("collapse acceleration; null where the path did not end in a collapse", "g")
+    certified: bool = fact("whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver")
     zero_gap_g: float | None = fact("as in non_dilatant", "g")
     equilibrium_residual: float | None = fact("as in non_dilatant")
     friction_residual: float | None = fact("as in non_dilatant")
@@ -119,31 +113,20 @@ class NonDilatant(ResultModel):
     """
 
     associated_g: float | None = fact(
-        "upper bound: the same with sliding that dilates; null without a collapse mechanism",
-        "g",
-        source="Drucker 1954",
+        "upper bound: the same with sliding that dilates; null without a collapse mechanism", "g", source="Drucker 1954"
     )
-    frictionless_g: float | None = fact(
-        "lower bound: the same without friction; null if it cannot stand then", "g", source="Drucker 1954"
-    )
+    frictionless_g: float | None = fact("lower bound: the same without friction; null if it cannot stand then", "g", source="Drucker 1954")
     starts_g: list[float] = fact("load reached from each start; the least is the result", "g")
     spread_g: float = fact("greatest less least of them: such states are not unique", "g")
-    certified: bool = fact(
-        "whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver"
-    )
+    certified: bool = fact("whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver")
     zero_gap_g: float = fact(
-        "|gamma - (work of friction - work of the weight)| per unit of work of the load; zero: forces and motion belong together",
-        "g",
+        "|gamma - (work of friction - work of the weight)| per unit of work of the load; zero: forces and motion belong together", "g"
     )
-    equilibrium_residual: float = fact(
-        "greatest force, or moment over the size, left over at a block, over the total load"
-    )
+    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a block, over the total load")
     friction_residual: float = fact("greatest excess of |s| over mu N, over the total load")
     tension_residual: float = fact("greatest tension (or crushing beyond the strength), over the total load")
     overlap_residual: float = fact("greatest overlap of the motion, over the fastest joint")
-    complementarity_residual: float = fact(
-        "greatest lesser of force and motion where a joint presses and opens, or holds and slides"
-    )
+    complementarity_residual: float = fact("greatest lesser of force and motion where a joint presses and opens, or holds and slides")
     work_residual: float = fact("work of the load less that of weight and friction, over the former")
 
 
@@ -165,14 +148,16 @@ class Tilt(KindResults):
     )
     dilating_joints_opposite: list[int] = maybe("the same in the mechanism to -x")
     collapse_acceleration_non_associated_g: float = maybe(
-        "sliding without dilatancy, to +x: the least certified state found, one of an interval whose upper end is the "
-        "associated value", "g", source="Ferris and Tin-Loi 2001",
-    )  # fmt: skip
+        "sliding without dilatancy, to +x: the least certified state found, one of an interval whose upper end is the associated value",
+        "g",
+        source="Ferris and Tin-Loi 2001",
+    )
     collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
     collapse_acceleration_load_path_g: float = maybe(
-        "design value where joints slide, to +x: least of the load paths of elastic joints with three ratios of stiffness", "g",
+        "design value where joints slide, to +x: least of the load paths of elastic joints with three ratios of stiffness",
+        "g",
         source="elastic-frictional joints without dilatancy, incremental return; certificate as in non_dilatant",
-    )  # fmt: skip
+    )
     collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
     load_paths: list[LoadPath] = maybe("load paths to +x, one a ratio of joint stiffness")
     load_paths_opposite: list[LoadPath] = maybe("load paths to -x")
@@ -189,12 +174,8 @@ class Tilt(KindResults):
     reactions: list[Reaction] = fact("forces of the ground at collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse to -x")
-    thrust_min_N: float = maybe(
-        "least horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N"
-    )
-    thrust_max_N: float = maybe(
-        "greatest horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N"
-    )
+    thrust_min_N: float = maybe("least horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N")
+    thrust_max_N: float = maybe("greatest horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N")
     thrusts: dict[str, ChainThrust] = maybe("least and greatest thrust upright of each arch, by its name")
     clear_span_m: float = maybe("clear span", "m")
     rise_m: float = maybe("rise of the intrados", "m")
@@ -207,20 +188,21 @@ class Tilt(KindResults):
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     fracture: Fracture = maybe("collapse with the leeward buttress cracked")
     non_dilatant: NonDilatant = maybe("sliding without dilatancy: bounds and certificate of the collapse to +x")
-    non_dilatant_opposite: NonDilatant = maybe(
-        "sliding without dilatancy: bounds and certificate of the collapse to -x"
-    )
+    non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy: bounds and certificate of the collapse to -x")
 
     def interval(self, opposite: bool = False) -> tuple[float | None, float]:
         """Least and greatest collapse acceleration [g] to +x, or to -x: equal where no pressed joint slides, the least None
         where joints slide and no state without dilatancy is known; infinite where what dilates cannot be brought down."""
         own, least, found, dilating = (
-            (self.collapse_acceleration_opposite_g, self.collapse_acceleration_non_associated_opposite_g,
-             self.non_dilatant_opposite, self.dilating_joints_opposite)
+            (
+                self.collapse_acceleration_opposite_g,
+                self.collapse_acceleration_non_associated_opposite_g,
+                self.non_dilatant_opposite,
+                self.dilating_joints_opposite,
+            )
             if opposite
-            else (self.collapse_acceleration_g, self.collapse_acceleration_non_associated_g, self.non_dilatant,
-                  self.dilating_joints)
-        )  # fmt: skip
+            else (self.collapse_acceleration_g, self.collapse_acceleration_non_associated_g, self.non_dilatant, self.dilating_joints)
+        )
         if found is not None:
             return least, inf if found.associated_g is None else found.associated_g
         return (None if dilating else own), own
@@ -250,13 +232,8 @@ class Tilt(KindResults):
         """
         intervals = [self.interval(one) for one in opposite]
         high = min(most for _, most in intervals)
-        designs = [
-            self.collapse_acceleration_load_path_opposite_g if one else self.collapse_acceleration_load_path_g
-            for one in opposite
-        ]
-        slides = [
-            least is None or self._state(one) is not None for one, (least, _) in zip(opposite, intervals, strict=True)
-        ]
+        designs = [self.collapse_acceleration_load_path_opposite_g if one else self.collapse_acceleration_load_path_g for one in opposite]
+        slides = [least is None or self._state(one) is not None for one, (least, _) in zip(opposite, intervals, strict=True)]
         if any(slides) and all(d is not None for d, slide in zip(designs, slides, strict=True) if slide):
             known = [least for least, _ in intervals if least is not None]
             return judge_design(min(self.capacity(one) for one in opposite), min(known, default=None), high, demand)
@@ -287,11 +264,7 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
     if peak is None:
         return judge(f"{text}; the deck holds no single motion to compare with.", None, design, "g")
     outcome: Outcome = "collapses" if peak >= most else "open" if peak >= design else "stands"
-    place = {
-        "collapses": "at or above the upper bound",
-        "open": "between design value and upper bound",
-        "stands": "below the design value",
-    }
+    place = {"collapses": "at or above the upper bound", "open": "between design value and upper bound", "stands": "below the design value"}
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place[outcome]}."
     if outcome == "stands" and least is not None and peak >= least:
         text += " Warning: in another state of stress at rest collapse is possible at this peak. Settlements or loads of the past may have caused it."
@@ -312,10 +285,7 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
     elif peak >= least:
         outcome, place = "open", "between both"
     elif peak >= least - spread:
-        outcome, place = (
-            "open",
-            f"below the least state found by less than the spread of the states found, {spread:.3g} g",
-        )
+        outcome, place = ("open", f"below the least state found by less than the spread of the states found, {spread:.3g} g")
     else:
         outcome, place = "stands", "below the least state found"
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place}."
@@ -374,9 +344,7 @@ class Thrust(KindResults):
         if self.geometric_safety_factor is None:
             text = "a thrust line runs through the middles of all joints, within 1 % of their length: no horizontal demand."
             return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0)
-        return judge(
-            f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0
-        )  # fmt: skip
+        return judge(f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0)
 
 
 #: Beside a verdict on a load whose partial factors are all 1
@@ -387,14 +355,10 @@ class MovingLoad(KindResults):
     """moving-load: collapse load, or adequacy factor of a train, at every place along an arch or a bridge."""
 
     chain: str | None = fact("arch that the load crosses; null if it crosses the whole top")
-    collapse_load_N: float = fact(
-        "least collapse load over all positions; for a train, the load on the structure at collapse", "N"
-    )
+    collapse_load_N: float = fact("least collapse load over all positions; for a train, the load on the structure at collapse", "N")
     collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle at the governing position", "m")
-    worst_place_over_span: float = fact(
-        "x of the first axle at the governing position, from the left springing, over the span"
-    )
+    worst_place_over_span: float = fact("x of the first axle at the governing position, from the left springing, over the span")
     worst_way: Literal["+x", "-x"] = fact("direction in which the train runs at the governing position")
     hinges: list[NamedHinge] = fact("hinges of the mechanism at the governing position")
     sliding_joints: list[int] = fact("joints that slide or open in the mechanism at the governing position")
@@ -402,9 +366,7 @@ class MovingLoad(KindResults):
         "joints in compression that slide in the collapse mechanism; the collapse load is then an upper bound, because "
         "friction is dilatant in the analysis (associated friction)"
     )
-    greatest_compression_N: float = fact(
-        "greatest compression across a joint at collapse, with the load at the governing position", "N"
-    )
+    greatest_compression_N: float = fact("greatest compression across a joint at collapse, with the load at the governing position", "N")
     places_without_limit: int = fact("places at which no load of the kind causes collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
@@ -440,17 +402,23 @@ class MovingLoad(KindResults):
             factored = "" if self.characteristic else "factored "
             return judge(
                 f"Adequacy factor {self.adequacy_factor:.3g} on the {factored}train at the most dangerous place.{judged}",
-                1.0, self.adequacy_factor, bound=bound, violated=violated,
-            )  # fmt: skip
+                1.0,
+                self.adequacy_factor,
+                bound=bound,
+                violated=violated,
+            )
         if self.load_N is None:
             return judge(
-                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound,
-                violated=violated,
-            )  # fmt: skip
+                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound, violated=violated
+            )
         return judge(
             f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{judged}",
-            self.load_N, self.collapse_load_N, "N", bound=bound, violated=violated,
-        )  # fmt: skip
+            self.load_N,
+            self.collapse_load_N,
+            "N",
+            bound=bound,
+            violated=violated,
+        )
 
 
 class Stage(ResultModel):
@@ -492,13 +460,14 @@ class MovingSupports(KindResults):
         """The movement that the arch can follow [m]; the deck asks for none."""
         move = self.movement_at_fall_m
         if move is None:
-            return judge(
-                "Under the given movements the structure stands with open joints; no limit is sought.", None, None, "m"
-            )
+            return judge("Under the given movements the structure stands with open joints; no limit is sought.", None, None, "m")
         return judge(
             f"The arch follows its support by {move:.4g} m, {100.0 * self.movement_at_fall_over_span:.3g} % of the span, "
-            "before it collapses.", None, move, "m",
-        )  # fmt: skip
+            "before it collapses.",
+            None,
+            move,
+            "m",
+        )
 
 
 class GoverningMechanism(ResultModel):
@@ -554,9 +523,7 @@ class Sweep(KindResults):
     )
     gaps: list[Gap] = fact("values without a mechanism: cannot stand, locked, or no result")
     duality_gap: float = fact("greatest difference between the bounds", "g")
-    fractured_collapse_accelerations_g: list[float | None] = maybe(
-        "collapse accelerations with the leeward buttress cracked", "g"
-    )
+    fractured_collapse_accelerations_g: list[float | None] = maybe("collapse accelerations with the leeward buttress cracked", "g")
     buttress_alone_accelerations_g: list[float | None] = maybe(
         "collapse accelerations of the leeward buttress by itself", "g", source="thesis Fig. 3-4b"
     )
@@ -589,9 +556,7 @@ class Survey(KindResults):
         "sections that a certificate proves to collapse under their own weight, the first hundred; their capacity is 0"
     )
     without_answer: list[NoAnswerRow] = fact("sections without a result, the first hundred")
-    upper_bounds: int = fact(
-        "sections in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)"
-    )
+    upper_bounds: int = fact("sections in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)")
     weakest: str | None = fact("name of the weakest section; one that cannot stand has capacity 0")
     weakest_collapse_acceleration_g: float | None = fact("its capacity", "g")
     median_collapse_acceleration_g: float | None = fact("median capacity of those that stand", "g")
@@ -607,9 +572,7 @@ class Survey(KindResults):
         text += f"; the weakest, {self.weakest}, has a capacity of {least:.3g} g."
         if not self.upper_bounds:
             return judge(text, None, least, "g")
-        return judge(
-            f"{text} In {self.upper_bounds} of them joints slide: {DILATANT}.", None, least, "g", bound="upper"
-        )
+        return judge(f"{text} In {self.upper_bounds} of them joints slide: {DILATANT}.", None, least, "g", bound="upper")
 
 
 class Imperfections(KindResults):
@@ -625,9 +588,7 @@ class Imperfections(KindResults):
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
     cannot_stand: int = fact("surveys that a certificate proves to collapse under their own weight; they count as 0 g")
     without_answer: int = fact("surveys whose programmes gave no result; they are not counted")
-    upper_bounds: int = fact(
-        "surveys in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)"
-    )
+    upper_bounds: int = fact("surveys in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)")
 
     def judged(self, demand: Demand) -> Verdict:
         """The 5th percentile of the capacities against the peak ground acceleration of the motion [g]."""

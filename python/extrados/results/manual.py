@@ -39,11 +39,7 @@ def explain(word: str, results: ResultFacts) -> str:
     """What "results", "results.KIND" or "results.KIND.KEY" mean, or "results.verdict"; KeyError with the nearest known word where there is none."""
     path = word.split(".", 2)[1:]
     if not path:
-        rows = [
-            f"{kind:16} {shape.summary.removeprefix(f'{kind}: ')}"
-            for kind, shapes in results.kinds.items()
-            for shape in shapes
-        ]
+        rows = [f"{kind:16} {shape.summary.removeprefix(f'{kind}: ')}" for kind, shapes in results.kinds.items() for shape in shapes]
         return "Results of an analysis, in summary.json and as run[NAME]:\n  " + "\n  ".join(rows)
     kind, *rest = path
     if path[-1] in results.beside:
@@ -90,11 +86,7 @@ def manual(results: ResultFacts) -> str:
         "Beside its results each analysis gives these.",
         "",
     ]
-    heads = {
-        "verdict": "verdict",
-        "assumptions": "assumptions.KEY",
-        "self-weight": "results of a building that cannot stand",
-    }
+    heads = {"verdict": "verdict", "assumptions": "assumptions.KEY", "self-weight": "results of a building that cannot stand"}
     for name, shape in results.beside.items():
         lines += [f"### {heads[name]}", "", shape.summary, "", *_table(shape)]
     for kind, shapes in results.kinds.items():

@@ -50,9 +50,7 @@ class OneMotion(KindResults):
     impulses: list[Impulse] = fact("the strongest impulses")
     wavelet_pulse: WaveletPulse = fact("the strongest velocity pulse", source="Baker 2007")
     vertical_pga_g: float = maybe("greatest vertical acceleration", "g")
-    rotd50_pga_g: float | None = maybe(
-        "median over all directions of the greatest acceleration", "g", source="Boore 2010"
-    )
+    rotd50_pga_g: float | None = maybe("median over all directions of the greatest acceleration", "g", source="Boore 2010")
     rotd100_pga_g: float | None = maybe("greatest over all directions", "g", source="Boore 2010")
     rotd_damping: float = maybe("damping ratio of the spectra over all directions")
 
@@ -79,9 +77,7 @@ class MotionSet(KindResults):
     time_step_s: float = fact("time between samples of the first motion", "s")
     mmi: float = maybe("of generated motions: their intensity")
     seed: int = maybe("of generated and compatible motions: the seed")
-    expected_pga_g: float = maybe(
-        "median peak acceleration observed at that intensity", "g", source="Worden et al. 2012"
-    )
+    expected_pga_g: float = maybe("median peak acceleration observed at that intensity", "g", source="Worden et al. 2012")
     expected_pgv_m_s: float = maybe("median peak velocity observed", "m/s", source="Worden et al. 2012")
     expected_arias_m_s: float = maybe("Arias intensity of the target spectrum", "m/s")
     pga_over_expected: float = maybe("median peak acceleration over the expected one")
@@ -116,9 +112,7 @@ class ShakeTable(KindResults):
 
     max_velocity_m_s: float = fact("greatest velocity of the table", "m/s")
     masses_kg: list[float] = fact("moving masses, table included", "kg")
-    stroke_to_flow_Hz: float = fact(
-        "frequency at which the flow takes over from the stroke", "Hz", source="thesis Fig. C-1"
-    )
+    stroke_to_flow_Hz: float = fact("frequency at which the flow takes over from the stroke", "Hz", source="thesis Fig. C-1")
     flow_to_force_Hz: list[float] = fact("frequency at which the force takes over, for each mass", "Hz")
     fits: bool = maybe("whether the motion fits with every mass")
     low_cut_Hz: float = maybe("corner of the high-pass of the drive", "Hz")

@@ -40,9 +40,7 @@ class Conditions(ResultModel):
         "greatest coefficient of friction that the joints need while it rocks; null where a joint comes under tension"
     )
     slides_first: JointTime = maybe("of one run: place and time at which joints first lack friction")
-    leaves_first: JointTime = maybe(
-        "of one run: place and time at which the thrust line first leaves a joint by more than 1 % of it"
-    )
+    leaves_first: JointTime = maybe("of one run: place and time at which the thrust line first leaves a joint by more than 1 % of it")
     thrust_line_outside: float | None = maybe(
         "of one run: how far the thrust line leaves a joint, over its length; below 0 inside; null under tension"
     )
@@ -52,8 +50,9 @@ class Conditions(ResultModel):
     hinges_elsewhere_share: float = maybe("of many runs: share in which hinges form elsewhere")
     energy_astray: float = maybe(
         "share of the kinetic energy after an impact without rebound at all joints that lies outside the mechanism that rocks on; "
-        "above 0.2 hinges form elsewhere at impacts", source="Moreau 1988",
-    )  # fmt: skip
+        "above 0.2 hinges form elsewhere at impacts",
+        source="Moreau 1988",
+    )
     not_checked: str = fact("conditions that are not checked, and why; empty where all are")
     violated: list[str] = fact("conditions that do not hold, a sentence each")
 
@@ -73,9 +72,7 @@ class RestraintForces(ResultModel):
     least_force_N: float = maybe("least force, tension positive; of a tie or damper", "N")
     greatest_force_N: float = maybe("greatest force, tension positive; of a tie or damper", "N")
     permanent_elongation_m: float = maybe("residual yield or slip at the end; of a tie or damper", "m")
-    least_moment_Nm: float = maybe(
-        "least moment, counter-clockwise rotation of the first block positive; of an added hinge", "N*m"
-    )
+    least_moment_Nm: float = maybe("least moment, counter-clockwise rotation of the first block positive; of an added hinge", "N*m")
     greatest_moment_Nm: float = maybe("greatest moment; of an added hinge", "N*m")
     permanent_turn_rad: float = maybe("residual yield at the end; of an added hinge", "rad")
 
@@ -121,9 +118,7 @@ class SoftBaseRocking(ResultModel):
 class HandOver(ResultModel):
     """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
 
-    time_s: float = fact(
-        "time at which places and velocities of the blocks were handed over, just before the condition fails", "s"
-    )
+    time_s: float = fact("time at which places and velocities of the blocks were handed over, just before the condition fails", "s")
     reason: str = fact("condition that fails, and where")
     outcome: WholeOutcome = fact("outcome of the whole motion")
     fixed_hinges_outcome: RockingOutcome = fact("outcome that fixed hinges without sliding would have")
@@ -134,9 +129,7 @@ class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
     rotation_of: str = fact("body to which the rotation belongs")
-    outcome: WholeOutcome = fact(
-        "no rocking, sliding alone, rocking and recovery, or collapse; by rigid contacts where these went on"
-    )
+    outcome: WholeOutcome = fact("no rocking, sliding alone, rocking and recovery, or collapse; by rigid contacts where these went on")
     settled: bool = fact("whether it came to rest, or down, before the run ended; false leaves the outcome open")
     collapse_half_cycle: int | None = fact("half cycle of the collapse")
     collapse_time_s: float | None = fact("time from which its rotation is past recovery", "s")
@@ -164,9 +157,7 @@ class Rocking(KindResults):
     critical_rotation_left_rad: float = maybe("of a block or a mechanism: the critical rotation to -x", "rad")
     frequency_parameter_rad_s: float = maybe("of a block or a frame: p", "rad/s", source="Housner 1963")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    required_friction: float | None = fact(
-        "greatest coefficient of friction needed; null where a joint comes under tension"
-    )
+    required_friction: float | None = fact("greatest coefficient of friction needed; null where a joint comes under tension")
     hinges: list[RockingHinge] = maybe("of a mechanism: hinges, rocking to +x")
     hinges_opposite: list[RockingHinge] = maybe("of a mechanism: hinges, rocking to -x")
     restitution_thesis: float = maybe("of an arch: by the momentum balance of the thesis", source="thesis Eq. 5.3")
@@ -185,9 +176,7 @@ class Rocking(KindResults):
     hand_over: HandOver = maybe(
         "where joints slide or hinges form elsewhere: the rest of the motion on rigid contacts; all other results of the mechanism end there"
     )
-    violated: list[str] = fact(
-        "further assumptions that were checked and do not hold: chaos, impact rules, a sentence each"
-    )
+    violated: list[str] = fact("further assumptions that were checked and do not hold: chaos, impact rules, a sentence each")
     stack: StackRocking = maybe("of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("on a compliant base ([supports] stiffness)")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
@@ -214,9 +203,7 @@ class ModeCurve(ResultModel):
 
     durations_s: list[float] = fact("durations or periods of the pulses", "s")
     amplitudes_g: list[float | None] = fact("lowest failing amplitude at each; null if above the cap", "g")
-    amplitude_ratios: list[float | None] = maybe(
-        "of a block: failing amplitudes over the uplift acceleration, that on rigid ground"
-    )
+    amplitude_ratios: list[float | None] = maybe("of a block: failing amplitudes over the uplift acceleration, that on rigid ground")
 
 
 class AtAmplitudes(ResultModel):
@@ -226,9 +213,7 @@ class AtAmplitudes(ResultModel):
     mode_I_durations_s: list[float | None] = fact(
         "shortest that causes collapse in either mode; null: none up to the longest of `durations`", "s"
     )
-    mode_II_durations_s: list[float | None] = fact(
-        "shortest that does without an impact; null: none up to the longest of `durations`", "s"
-    )
+    mode_II_durations_s: list[float | None] = fact("shortest that does without an impact; null: none up to the longest of `durations`", "s")
 
 
 class RuleCurve(ResultModel):
@@ -242,9 +227,7 @@ class RuleCurve(ResultModel):
 class FailureDomain(KindResults):
     """failure-domain: which pulses bring an arch or a block down."""
 
-    sliding_from_g: list[float | None] = fact(
-        "at each duration: lowest amplitude of the map at which blocks slide; null: at none", "g"
-    )
+    sliding_from_g: list[float | None] = fact("at each duration: lowest amplitude of the map at which blocks slide; null: at none", "g")
     hinges_elsewhere_from_g: list[float | None] = fact(
         "at each duration: lowest amplitude of the map at which hinges form elsewhere; null: at none", "g"
     )
@@ -252,9 +235,7 @@ class FailureDomain(KindResults):
     handed_over: int = maybe(
         "pulses of the map that rigid contacts decided, as joints slide or hinges form elsewhere; a curve is known to a cell of the map there"
     )
-    amplitudes_by_rule: list[RuleCurve] = maybe(
-        "failure curve by each impact rule, where their c_v differ by more than 1.3"
-    )
+    amplitudes_by_rule: list[RuleCurve] = maybe("failure curve by each impact rule, where their c_v differ by more than 1.3")
     rule_ratio: float | None = maybe(
         "greatest ratio between the lowest amplitudes that cause collapse by two impact rules, at the same duration of the "
         "pulse; null: at no duration does collapse follow from two rules"
@@ -262,22 +243,16 @@ class FailureDomain(KindResults):
     pulse: Pulse = fact("shape of the pulses")
     mode_I: ModeCurve = fact("lowest amplitudes that cause collapse, with or without an impact")
     mode_II: ModeCurve = fact("lowest amplitudes that cause collapse in the first half cycle, without an impact")
-    pocket_begins_g: list[float | None] = fact(
-        "amplitude at which the first safe region above the curve begins; null: none", "g"
-    )
+    pocket_begins_g: list[float | None] = fact("amplitude at which the first safe region above the curve begins; null: none", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     natural_time_s: float = fact("time by which the curves scale: sqrt(R/g) of an arch, 1/p of a block", "s")
     safe_pockets: int = fact("durations with safe amplitudes above a failing one")
     at_amplitudes: AtAmplitudes = maybe(
         "shortest failing durations at the amplitudes that the deck requests, by fixed hinges without sliding"
     )
     frequency_ratio: list[float] = maybe("of a block: omega/p of the pulses")
-    pocket_begins_ratio: list[float | None] = maybe(
-        "of a block: pocket_begins over the uplift acceleration, that on rigid ground"
-    )
+    pocket_begins_ratio: list[float | None] = maybe("of a block: pocket_begins over the uplift acceleration, that on rigid ground")
     mode_names: str = maybe("of a block: how the modes are called elsewhere")
 
     def _violated(self, duration: float, amplitude: float) -> list[str]:
@@ -310,15 +285,21 @@ class FailureDomain(KindResults):
                 word = "stays below" if amplitude < capacity else "reaches"
                 return judge(
                     f"The motion, {amplitude:.3g} g for {duration:.3g} s, {word} the failure curve ({capacity:.3g} g there).",
-                    amplitude, capacity, "g", violated=self._violated(duration, amplitude),
-                )  # fmt: skip
+                    amplitude,
+                    capacity,
+                    "g",
+                    violated=self._violated(duration, amplitude),
+                )
         failing = [a for a in curve if a is not None]
         if not failing:
             return judge("No pulse that was run causes collapse.", None, None, "g", violated=self.conditions.violated)
         return judge(
             f"Over the {self.pulse} pulses that were run the lowest amplitude that causes collapse is {min(failing):.3g} g.",
-            None, min(failing), "g", violated=self.conditions.violated,
-        )  # fmt: skip
+            None,
+            min(failing),
+            "g",
+            violated=self.conditions.violated,
+        )
 
 
 class MotionImpulse(ResultModel):
@@ -351,9 +332,7 @@ class FailureCurve(ResultModel):
     durations_s: list[float] = fact("durations or periods of the pulses", "s")
     amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null: none below the cap", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     natural_time_s: float = fact("time by which its curve scales: sqrt(R/g) of an arch, 1/p of a block", "s")
     cycles: int = fact("cycles of a train of sines; 1 for all other pulses")
     static_verdicts: list[Literal["stands", "fails"]] = fact("of each motion: its peak against the uplift acceleration")
@@ -367,19 +346,13 @@ class FailureCurve(ResultModel):
     hinges_elsewhere_from_g: list[float | None] = fact(
         "at each duration: lowest amplitude tried up to the curve at which hinges form elsewhere; null: at none", "g"
     )
-    conditions: Conditions = fact(
-        "over the points of the curve: below how many of them blocks slide or hinges form elsewhere"
-    )
-    amplitudes_by_rule: list[RuleCurve] = maybe(
-        "the curve by each impact rule, where their c_v differ by more than 1.3"
-    )
+    conditions: Conditions = fact("over the points of the curve: below how many of them blocks slide or hinges form elsewhere")
+    amplitudes_by_rule: list[RuleCurve] = maybe("the curve by each impact rule, where their c_v differ by more than 1.3")
     rule_ratio: float | None = maybe(
         "greatest ratio between the lowest amplitudes that cause collapse by two impact rules, at the same duration of the "
         "pulse; null: at no duration does collapse follow from two rules"
     )
-    fit: CurveFit = maybe(
-        "Eq. 5.5 fitted to this curve (radius not scaled); omitted with fewer than four points to fit"
-    )
+    fit: CurveFit = maybe("Eq. 5.5 fitted to this curve (radius not scaled); omitted with fewer than four points to fit")
     criterion: CurveFit = maybe("Eq. 5.8 with the coefficients of Table 5.3, interpolated; omitted outside the table")
 
 
@@ -389,27 +362,28 @@ class FailureCurves(KindResults):
     pulse: Pulse = fact("shape of the pulses")
     curves: list[FailureCurve] = fact("one for each variant and number of cycles")
     impulses: list[MotionImpulse] = fact("of the motions of the deck; empty without a motion")
-    agreement: float | None = fact(
-        "share of verdicts by the curves that the whole motions confirm; null: none to compare"
-    )
+    agreement: float | None = fact("share of verdicts by the curves that the whole motions confirm; null: none to compare")
     scaling_misfit: float | None = fact(
         "greatest relative difference of amplitude between two curves, with durations divided by the natural time and "
-        "amplitudes by the uplift acceleration; null: one curve only, or curves of different trains", source="thesis Eq. 5.7",
-    )  # fmt: skip
+        "amplitudes by the uplift acceleration; null: one curve only, or curves of different trains",
+        source="thesis Eq. 5.7",
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The weakest of the structures; a motion that is a sine is no demand here, as it has a curve for each."""
-        lowest = [
-            (min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])
-        ]
+        lowest = [(min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])]
         if not lowest:
             every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
             return judge("No pulse that was run causes collapse of any of them.", None, None, "g", violated=every)
         least, label = min(lowest)
         violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(
-            f"Of the {len(self.curves)} curves that of {label} has the lowest amplitude: {least:.3g} g.", None, least, "g", violated=violated
-        )  # fmt: skip
+            f"Of the {len(self.curves)} curves that of {label} has the lowest amplitude: {least:.3g} g.",
+            None,
+            least,
+            "g",
+            violated=violated,
+        )
 
 
 class Coefficients(ResultModel):
@@ -450,9 +424,7 @@ class Assessment(KindResults):
     coefficients: Coefficients = fact("the failure curve that is used")
     coefficients_source: str = fact("source of the impulse")
     coefficients_of_this_arch: Coefficients = fact("the failure curve fitted to this structure")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
     verdict: Literal["stands", "fails"] = fact("whether one of them causes collapse by the criterion")
     run_outcome: RockingOutcome | None = fact("outcome of the whole motion by the equation of motion")
@@ -470,9 +442,7 @@ class Assessment(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The impulse of the least margin against its failing amplitude [g]."""
         harmful = [
-            (i.margin, i.failing_amplitude_g, i)
-            for i in self.impulses
-            if i.margin is not None and i.failing_amplitude_g is not None
+            (i.margin, i.failing_amplitude_g, i) for i in self.impulses if i.margin is not None and i.failing_amplitude_g is not None
         ]
         if not harmful:
             text = "No single impulse of the motion is long enough to cause collapse."
@@ -487,5 +457,9 @@ class Assessment(KindResults):
         conditional = "".join(f" {one}" for one in self.margin_conditions)
         return judge(
             f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
-            f"{failing:.3g} g.{conditional}", size, failing, "g", violated=[*self.conditions.violated, *self.violated],
-        )  # fmt: skip
+            f"{failing:.3g} g.{conditional}",
+            size,
+            failing,
+            "g",
+            violated=[*self.conditions.violated, *self.violated],
+        )

@@ -77,14 +77,11 @@ class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
     capacity_N: float | None = fact(
-        "greatest base shear, or the sliding limit if less; null without a state, and of ground that moves",
-        "N",
+        "greatest base shear, or the sliding limit if less; null without a state, and of ground that moves", "N"
     )
     sliding_capacity_N: float = maybe("least base shear under which a level slides by Coulomb's limit", "N")
     sliding_level: str = maybe("the level that slides first")
-    sliding: list[SlidingLevel] = maybe(
-        "limits of all levels; absent without walls, and where friction excludes sliding"
-    )
+    sliding: list[SlidingLevel] = maybe("limits of all levels; absent without walls, and where friction excludes sliding")
     base_shear_coefficient: float | None = fact("capacity over the weight")
     roof_drift: float | None = fact("control displacement there over its height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
@@ -162,10 +159,7 @@ class Pushover(PushCurve, KindResults):
             return self.verification.judged(f"The greatest base shear is {told}.")
         if slides:
             text = f"Sliding on {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
-            violated = [
-                f"The model excludes that sliding and carries {load / 1e3:.4g} kN, "
-                f"{load / capacity:.3g} times the sliding limit."
-            ]
+            violated = [f"The model excludes that sliding and carries {load / 1e3:.4g} kN, {load / capacity:.3g} times the sliding limit."]
             return capacity_alone(text, value, unit, "upper", violated)
         if least.peak_load_N is None:
             text = f"The base shear has reached {told} without a peak; the capacity is not known."

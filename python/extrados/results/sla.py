@@ -36,27 +36,21 @@ class BarForce(ResultModel):
 
     name: str = fact("its name; bars of the wall are called by their number")
     force_at_greatest_load_N: float | None = fact(
-        "force at the greatest load in equilibrium, of an embedded bar at its section of greatest force; null if that state "
-        "was not kept",
+        "force at the greatest load in equilibrium, of an embedded bar at its section of greatest force; null if that state was not kept",
         "N",
     )
     last_force_N: float | None = fact("force in the last state, likewise", "N")
     greatest_force_N: float | None = maybe(
         "force of greatest size of all states in equilibrium, of a bar that is held at its ends alone", "N"
     )
-    state: Literal["slack", "carries", "yielded"] = fact(
-        "at the end: slack, carrying, or past a tooth of its strength somewhere"
-    )
+    state: Literal["slack", "carries", "yielded"] = fact("at the end: slack, carrying, or past a tooth of its strength somewhere")
 
 
 class SlaCurve(ResultModel):
     """The events of one sense of the load."""
 
     sense: Literal["+", "-"] = fact("sense of the reference loads")
-    peak_load_N: float | None = fact(
-        "greatest load in equilibrium, followed by a drop of the load or a mechanism; else null",
-        "N",
-    )
+    peak_load_N: float | None = fact("greatest load in equilibrium, followed by a drop of the load or a mechanism; else null", "N")
     peak_displacement_m: float | None = fact("control displacement at the peak", "m")
     displacement_of_constant_loads_m: float = fact("control displacement under the constant loads alone", "m")
     peak_event: int | None = fact("event of the peak, from 1")
@@ -79,9 +73,7 @@ class SlaCurve(ResultModel):
     last_load_N: float | None = fact("load of the last event in equilibrium", "N")
     last_displacement_m: float | None = fact("control displacement of that event", "m")
     energy_residual_ratio: float = fact("error of the energy ledger over the work of the loads")
-    external_work_J: float | None = fact(
-        "work of all loads up to that event, along the straight way from event to event", "J"
-    )
+    external_work_J: float | None = fact("work of all loads up to that event, along the straight way from event to event", "J")
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
         "energy dissipated up to that event; never negative, never decreasing. Basis: the work of the loads less the stored energy, from one "
@@ -97,47 +89,33 @@ class SlaCurve(ResultModel):
     guard_checks: int = fact("times that the residual was measured on the way")
     guard_resolutions: int = fact("times that the equations were solved again for it")
     guard_new_factors: int = fact("times that the factor was made anew for it")
-    equilibrium_steps: int = maybe(
-        "steps of equilibrium iterations among the events, after equilibrium was lost under the constant loads"
-    )
-    staggered_steps: int = maybe(
-        "steps among them in which damage was frozen and updated, because Newton's method stalled"
-    )
+    equilibrium_steps: int = maybe("steps of equilibrium iterations among the events, after equilibrium was lost under the constant loads")
+    staggered_steps: int = maybe("steps among them in which damage was frozen and updated, because Newton's method stalled")
     unbalanced_steps: int = maybe("steps among them that exceed the tolerance of the residual: no states")
     equilibrium_solutions: int = maybe("linear systems solved in these steps")
     equilibrium_from_m: float = maybe("control displacement from which equilibrium iterations went on", "m")
-    step_residual_ratio: float = maybe(
-        "greatest residual of a state of these steps, over the largest nodal force of an element"
-    )
+    step_residual_ratio: float = maybe("greatest residual of a state of these steps, over the largest nodal force of an element")
     step_balance_ratio: float = maybe(
         "greatest error of the energies in these states: work of all loads less stored and dissipated energy, over the work"
     )
     released_energy_J: float = maybe(
-        "energy lost as motion in these steps, where the load drops to another equilibrium; part of dissipated_energy_J",
-        "J",
+        "energy lost as motion in these steps, where the load drops to another equilibrium; part of dissipated_energy_J", "J"
     )
-    drift_height_m: float = maybe(
-        "extent of the structure across the control displacement: drifts are displacements over it", "m"
-    )
+    drift_height_m: float = maybe("extent of the structure across the control displacement: drifts are displacements over it", "m")
     peak_drift: float | None = maybe("drift at the peak")
     drop_displacement_m: float | None = maybe(
         "control displacement at which the envelope has dropped to 80 % of the peak; null if it has not", "m"
     )
     drop_drift: float | None = maybe("drift there")
     axial_loss_displacement_m: float | None = maybe(
-        "control displacement of the last state before the constant loads were no longer carried; null if they were",
-        "m",
+        "control displacement of the last state before the constant loads were no longer carried; null if they were", "m"
     )
     axial_loss_drift: float | None = maybe("drift there")
     seconds_per_event: float = fact("computing time of an event", "s")
     events_of_constant_loads: int = fact("events while the constant loads were brought on")
     probe_loads_N: list[float | None] = maybe("load of the envelope at the probed displacements; null beyond it", "N")
-    initial_stiffness_N_m: float = maybe(
-        "stiffness before the first event; none of a stage that began with equilibrium iterations", "N/m"
-    )
-    peak_acceleration_g: float | None = maybe(
-        "the peak as a horizontal acceleration, where the load is an acceleration of the masses", "g"
-    )
+    initial_stiffness_N_m: float = maybe("stiffness before the first event; none of a stage that began with equilibrium iterations", "N/m")
+    peak_acceleration_g: float | None = maybe("the peak as a horizontal acceleration, where the load is an acceleration of the masses", "g")
     greatest_acceleration_g: float | None = maybe("the greatest load as a horizontal acceleration, likewise", "g")
     bars: list[BarForce] = maybe("forces of bars and ties")
     bilinear: Bilinear = maybe("idealisation of an envelope that has a rising branch and has passed its peak")
@@ -170,9 +148,7 @@ class Comparison(ResultModel):
     tail_ratios: list[float | None] = fact(
         "load over the measured one at 75, 50, 25 % of its peak after the peak; null if either curve ends before"
     )
-    inside_ratio: float | None = fact(
-        "part of the measured points between whose least and greatest load the envelope lies"
-    )
+    inside_ratio: float | None = fact("part of the measured points between whose least and greatest load the envelope lies")
     half_band_ratio: float = fact("mean half width of the measured band over its mean load")
 
 
@@ -188,14 +164,10 @@ class Sla(SlaCurve, KindResults):
     points: int = fact("integration points, those of bars too")
     makeup: Makeup = maybe("values that resume_from compares")
     minus: SlaCurve = maybe("the curve of the second sense")
-    stages: list[SlaStage] = maybe(
-        "of a run in stages, each; without a name, the numbers are those of the last or main one"
-    )
+    stages: list[SlaStage] = maybe("of a run in stages, each; without a name, the numbers are those of the last or main one")
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
-    verification: Verification = maybe(
-        "displacement-based verification of a wall on which the horizontal forces of its own masses act"
-    )
+    verification: Verification = maybe("displacement-based verification of a wall on which the horizontal forces of its own masses act")
     stones: bool = fact("whether the model is of blocks with joints, whose peak acceleration is a static limit load")
     hinges: list[str] = maybe("of blocks: joints that are open but for an edge at the peak")
 
@@ -221,8 +193,11 @@ class Sla(SlaCurve, KindResults):
                 return judge_acceleration(reached, demand)
             return judge(
                 f"{text}; the demand of the motion is {demand.peak_g:.3g} g, {reached:.3g} g were reached.",
-                demand.peak_g, None, "g", "open",
-            )  # fmt: skip
+                demand.peak_g,
+                None,
+                "g",
+                "open",
+            )
         if reached is not None:
             return judge_acceleration(abs(reached), demand)
         return judge(f"The capacity of the building is {load} of the growing load.", None, least.greatest_load_N, "N")

@@ -55,12 +55,7 @@ def scene_files(
 
 
 def glb(
-    parts: Sequence[Solid],
-    owner: np.ndarray,
-    centroid: np.ndarray,
-    names: Sequence[str],
-    times: np.ndarray,
-    poses: np.ndarray,
+    parts: Sequence[Solid], owner: np.ndarray, centroid: np.ndarray, names: Sequence[str], times: np.ndarray, poses: np.ndarray
 ) -> bytes:
     """A binary glTF 2.0: a node for each stone, named, its faces flat, moved from pose to pose (nt, nb, 6) at times (nt) [s].
 
@@ -77,9 +72,7 @@ def glb(
         chunks.append(raw)
         rows = np.asarray(values, dtype="<f4").reshape(len(values), -1)
         bounds = {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()} if ends else {}
-        accessors.append(
-            {"bufferView": len(views) - 1, "componentType": 5126, "count": len(rows), "type": kind, **bounds}
-        )
+        accessors.append({"bufferView": len(views) - 1, "componentType": 5126, "count": len(rows), "type": kind, **bounds})
         return len(accessors) - 1
 
     nodes: list[dict[str, Any]] = []
@@ -96,34 +89,44 @@ def glb(
                 fan = [corners[[0, i, i + 1]] for i in range(1, len(face) - 1)]
                 points += fan
                 normals += [np.tile(across / np.linalg.norm(across), (3, 1))] * len(fan)
-        attributes = {
-            "POSITION": put(np.concatenate(points), "VEC3", ends=True),
-            "NORMAL": put(np.concatenate(normals), "VEC3"),
-        }
+        attributes = {"POSITION": put(np.concatenate(points), "VEC3", ends=True), "NORMAL": put(np.concatenate(normals), "VEC3")}
         meshes.append({"primitives": [{"attributes": attributes, "material": 0}]})
         nodes.append({"mesh": block, "name": name, "translation": centroid[block].tolist()})
         if moves[block]:
             for path, values, kind in (
-                ("translation", centroid[block] + poses[:, block, :3], "VEC3"), ("rotation", quaternions(poses[:, block, 3:]), "VEC4"),
-            ):  # fmt: skip
+                ("translation", centroid[block] + poses[:, block, :3], "VEC3"),
+                ("rotation", quaternions(poses[:, block, 3:]), "VEC4"),
+            ):
                 samplers.append({"input": clock, "output": put(values, kind), "interpolation": "LINEAR"})
                 channels.append({"sampler": len(samplers) - 1, "target": {"node": block, "path": path}})
     half = float(np.sqrt(0.5))
     nodes.append({"name": "z up", "rotation": [-half, 0.0, 0.0, half], "children": list(range(len(names)))})
     body = b"".join(chunks)
     scene = {
-        "asset": {"version": "2.0", "generator": "extrados"}, "scene": 0, "scenes": [{"nodes": [len(names)]}], "nodes": nodes,
-        "meshes": meshes, "accessors": accessors, "bufferViews": views, "buffers": [{"byteLength": len(body)}],
+        "asset": {"version": "2.0", "generator": "extrados"},
+        "scene": 0,
+        "scenes": [{"nodes": [len(names)]}],
+        "nodes": nodes,
+        "meshes": meshes,
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": len(body)}],
         "materials": [{"pbrMetallicRoughness": {"baseColorFactor": STONE, "metallicFactor": 0.0, "roughnessFactor": 0.9}}],
         **({"animations": [{"name": "motion", "samplers": samplers, "channels": channels}]} if channels else {}),
-    }  # fmt: skip
+    }
     head = json.dumps(scene, separators=(",", ":")).encode()
     head += b" " * (-len(head) % 4)
     body += b"\0" * (-len(body) % 4)
     total = 12 + 8 + len(head) + 8 + len(body)
-    return b"".join([
-        struct.pack("<4sII", b"glTF", 2, total), struct.pack("<I4s", len(head), b"JSON"), head, struct.pack("<I4s", len(body), b"BIN\0"), body,
-    ])  # fmt: skip
+    return b"".join(
+        [
+            struct.pack("<4sII", b"glTF", 2, total),
+            struct.pack("<I4s", len(head), b"JSON"),
+            head,
+            struct.pack("<I4s", len(body), b"BIN\0"),
+            body,
+        ]
+    )
 
 
 def series(

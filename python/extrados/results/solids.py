@@ -25,9 +25,7 @@ class Pyramids(ResultModel):
 
     sides: int = fact("sides of the pyramids")
     lower_g: float | None = fact("with pyramids within the cones: lower bound; null if it cannot stand so", "g")
-    upper_g: float | None = fact(
-        "with pyramids around the cones: a bound from above; null without a collapse mechanism", "g"
-    )
+    upper_g: float | None = fact("with pyramids around the cones: a bound from above; null without a collapse mechanism", "g")
 
 
 class BlockSize(ResultModel):
@@ -50,9 +48,7 @@ class SolidNonDilatant(ResultModel):
     associated_g: float | None = fact("upper bound: sliding that dilates; null without a collapse mechanism", "g")
     load_path_g: float | None = fact("design value: least of the certified load paths; null without one", "g")
     load_paths: list[LoadPath] = fact("load paths of elastic joints, one a ratio of stiffness")
-    least_g: float | None = fact(
-        "least certified state found, from any state of stress at rest (a warning); null without one", "g"
-    )
+    least_g: float | None = fact("least certified state found, from any state of stress at rest (a warning); null without one", "g")
     starts_g: list[float] = fact("loads of the certified states to which the starts led; the least counts", "g")
     spread_g: float | None = fact("greatest less least of them", "g")
     zero_gap_g: float | None = fact(
@@ -70,9 +66,7 @@ class SolidTilt(KindResults):
 
     collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant) along the direction", "g")
     collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
-    tilt_angle_deg: float = fact(
-        "tilt of the ground that pushes alike, along the direction", "deg", source="thesis Eq. 3.1"
-    )
+    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg", source="thesis Eq. 3.1")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
     load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
     least_acceleration_g: float = fact("least of the capacities in all directions sought", "g")
@@ -86,9 +80,7 @@ class SolidTilt(KindResults):
     upper_bound_g: float = fact("bound from above by the virtual work of the mechanism", "g")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")
-    friction_residual: float = fact(
-        "greatest excess of shear over friction, or of tension, at a corner, over the weight"
-    )
+    friction_residual: float = fact("greatest excess of shear over friction, or of tension, at a corner, over the weight")
     overlap_residual: float = fact("greatest rate of overlap of the mechanism, over the fastest contact")
     dilating_contacts: int = fact(
         "contacts that press and slide in the mechanisms along the direction, back, and of the least capacity; with any the "
@@ -109,15 +101,15 @@ class SolidTilt(KindResults):
     non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
     collapse_acceleration_face_law_g: float = maybe(
         "upper bound of the direction with the friction of whole faces under an even pressure (torsion); the corner law, which is "
-        "collapse_acceleration_g, lets the pressure concentrate", "g", source="after Orduna and Lourenco 2005",
-    )  # fmt: skip
+        "collapse_acceleration_g, lets the pressure concentrate",
+        "g",
+        source="after Orduna and Lourenco 2005",
+    )
     collapse_acceleration_face_law_opposite_g: float = maybe("the same, pushed the opposite way", "g")
     face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
     face_law_reason: str = maybe("why the face law gives no value")
     ties: list[TieForce] = maybe("ties, chains and hoops at the collapse acceleration; of bonded ones each segment")
-    block_sizes: list[BlockSize] = maybe(
-        "upper bounds with blocks half as long in each direction, and with the other bond"
-    )
+    block_sizes: list[BlockSize] = maybe("upper bounds with blocks half as long in each direction, and with the other bond")
     pyramids: Pyramids = maybe("bounds by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -24,12 +24,8 @@ class Annual(KindResults):
     annual_collapse_rate: float = maybe(
         "mean annual rate of collapse", "1/year", source="Cornell and Krawinkler 2000, PEER Center News 3(2)"
     )
-    annual_collapse_rate_interval: list[float | None] = maybe(
-        "its interval by the uncertainty of the fitted curve", "1/year"
-    )
-    annual_collapse_rate_left_out: float = maybe(
-        "possible contribution of intensities beyond the ends of the hazard curve", "1/year"
-    )
+    annual_collapse_rate_interval: list[float | None] = maybe("its interval by the uncertainty of the fitted curve", "1/year")
+    annual_collapse_rate_left_out: float = maybe("possible contribution of intensities beyond the ends of the hazard curve", "1/year")
     collapse_return_period_years: float | None = maybe("its inverse", "year")
     years: float = maybe("time for which the next probability holds", "year")
     collapse_probability_in_years: float = maybe("probability of collapse in that time, events being independent")
@@ -75,17 +71,11 @@ class Ensemble(Annual):
     uplifted: int = fact("runs that rock")
     uplift_probability: float | None = fact("share of the runs that rock")
     uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
-    mean_peak_rotation_ratio: float | None = fact(
-        "mean of the peak rotation over the critical rotation; a run that collapses counts as 1"
-    )
-    deviation_peak_rotation_ratio: float | None = fact(
-        "standard deviation of the peak rotation over the critical rotation"
-    )
+    mean_peak_rotation_ratio: float | None = fact("mean of the peak rotation over the critical rotation; a run that collapses counts as 1")
+    deviation_peak_rotation_ratio: float | None = fact("standard deviation of the peak rotation over the critical rotation")
     median_peak_rotation_ratio: float | None = fact("median of the peak rotation over the critical rotation")
     confidence: float = fact("level of all intervals")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
@@ -97,9 +87,7 @@ class Ensemble(Annual):
     median_pga_g: float | None = fact("median peak acceleration of the runs", "g")
     median_pgv_m_s: float | None = fact("median peak velocity of the runs", "m/s")
     median_arias_m_s: float | None = fact("median Arias intensity of the runs", "m/s")
-    expected_pga_g: float = maybe(
-        "of generated motions: median observed at their intensity", "g", source="Worden et al. 2012"
-    )
+    expected_pga_g: float = maybe("of generated motions: median observed at their intensity", "g", source="Worden et al. 2012")
     expected_pgv_m_s: float = maybe(
         "of generated motions: median peak velocity observed at their intensity", "m/s", source="Worden et al. 2012"
     )
@@ -111,8 +99,7 @@ class Ensemble(Annual):
     intensity: str = maybe("of a cloud: the measure of its curves; medians are in its unit")
     intensity_unit: str = maybe("unit of the intensities and medians")
     median: float | None = maybe(
-        "median of the lognormal curve of collapse over the intensities of the motions",
-        source="Jalayer and others 2017",
+        "median of the lognormal curve of collapse over the intensities of the motions", source="Jalayer and others 2017"
     )
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Jalayer and others 2017")
     median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
@@ -160,9 +147,7 @@ class OverLevels(Annual):
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
     uplifted: list[int] = fact("number of motions that make the structure rock, at each intensity level")
     uplift_probability: list[float | None] = fact("share of the motions that make the structure rock, at each level")
-    uplift_confidence_interval: list[list[float]] = fact(
-        "score intervals of the share that rocks", source="Wilson 1927"
-    )
+    uplift_confidence_interval: list[list[float]] = fact("score intervals of the share that rocks", source="Wilson 1927")
     mean_peak_rotation_ratio: list[float | None] = fact(
         "mean of the peak rotation over the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
@@ -184,22 +169,16 @@ class OverLevels(Annual):
     )
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level", "g")
     confidence: float = fact("level of all intervals")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
-    median: float | None = maybe(
-        "median of the lognormal curve of collapse at a level, in intensity_unit", source="Baker 2015"
-    )
+    median: float | None = maybe("median of the lognormal curve of collapse at a level, in intensity_unit", source="Baker 2015")
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     deviance: float | None = maybe("deviance of that curve")
     degrees_of_freedom: int = maybe("its degrees of freedom")
     goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
-    median_interval: list[float | None] = maybe(
-        "bootstrap interval of that median, motions drawn with all their levels"
-    )
+    median_interval: list[float | None] = maybe("bootstrap interval of that median, motions drawn with all their levels")
     dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
     first_collapse_median: float | None = maybe(
         "median of the lognormal curve of the intensity at which a motion first causes collapse, in intensity_unit",
@@ -213,9 +192,7 @@ class OverLevels(Annual):
     first_collapse_goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
     first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
-    uplift_median: float | None = maybe(
-        "median of the lognormal curve of uplift, in intensity_unit", source="Baker 2015"
-    )
+    uplift_median: float | None = maybe("median of the lognormal curve of uplift, in intensity_unit", source="Baker 2015")
     uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     uplift_deviance: float | None = maybe("deviance of that curve")
     uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
@@ -226,12 +203,8 @@ class OverLevels(Annual):
     overturning_given_uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
     overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
-    overturning_given_uplift_goodness_p_value: float | None = maybe(
-        "probability of a worse deviance were that curve true"
-    )
-    collapse_by_rule: list[RuleShares] = maybe(
-        "probabilities of collapse by each impact rule, where their c_v differ by more than 1.3"
-    )
+    overturning_given_uplift_goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
+    collapse_by_rule: list[RuleShares] = maybe("probabilities of collapse by each impact rule, where their c_v differ by more than 1.3")
     rule_band: float = maybe("greatest difference of these probabilities at one level")
     motions_that_collapse: int = fact("motions that cause collapse at some level")
     resurrections: int = fact("motions without collapse at a level above one with collapse")
@@ -252,21 +225,28 @@ class OverLevels(Annual):
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
                 f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}; no curve "
-                "could be fitted.", None, None, self.intensity_unit, "not-applicable", violated=violated,
-            )  # fmt: skip
+                "could be fitted.",
+                None,
+                None,
+                self.intensity_unit,
+                "not-applicable",
+                violated=violated,
+            )
         return judge(
             f"Half of the motions cause collapse at {self.intensity} {self.median:.3g}{unit}.",
-            None, self.median, self.intensity_unit, "not-applicable", violated=violated,
-        )  # fmt: skip
+            None,
+            self.median,
+            self.intensity_unit,
+            "not-applicable",
+            violated=violated,
+        )
 
 
 class OverDurations(KindResults):
     """fragility: generated motions of several durations; lists hold one value a duration."""
 
     durations_s: list[float] = fact("durations of the motions", "s")
-    mean_peak_rotation_ratio: list[float | None] = fact(
-        "mean of the peak rotation over the critical rotation, at each duration"
-    )
+    mean_peak_rotation_ratio: list[float | None] = fact("mean of the peak rotation over the critical rotation, at each duration")
     deviation_peak_rotation_ratio: list[float | None] = fact(
         "standard deviation of the peak rotation over the critical rotation, at each duration"
     )
@@ -278,9 +258,7 @@ class OverDurations(KindResults):
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("motions that cause collapse, at each")
     uplifted: list[int] = fact("number of motions that make the structure rock, at each duration")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
@@ -317,9 +295,7 @@ class Resonance(KindResults):
     peak_rotation_rad: list[float] = fact("rotation at the start and at each change of sign", "rad")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("under that motion: whether blocks slide or hinges form elsewhere")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
         "of a block: least cap over uplift that causes collapse within so many half cycles"
@@ -333,8 +309,7 @@ class Resonance(KindResults):
     initial_ratios: list[float] = maybe("their initial rotations over the critical one", source="thesis Fig. 6-3")
     impulse_amplitude_g: float = maybe("of a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
     share_of_starts_that_add: dict[str, float] = maybe(
-        "share of the starts at which an impulse adds energy, by its period over the natural one",
-        source="thesis Fig. 6-4",
+        "share of the starts at which an impulse adds energy, by its period over the natural one", source="thesis Fig. 6-4"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -349,9 +324,8 @@ class Resonance(KindResults):
             does = f"does not cause collapse within {self.half_cycles} half cycles"
         known = "" if least is None else f"; above {least:.3g} g its rotation grows"
         return judge(
-            f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome,
-            violated=self.conditions.violated,
-        )  # fmt: skip
+            f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome, violated=self.conditions.violated
+        )
 
 
 class RuleSpectrum(ResultModel):
@@ -377,14 +351,10 @@ class RockingSpectrum(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """How many collapse; a spectrum is about no one building."""
         total = len(self.family) * len(self.size_m)
-        violated = [
-            f"{name}: {text}" for name, one in zip(self.family, self.conditions, strict=True) for text in one.violated
-        ]
+        violated = [f"{name}: {text}" for name, one in zip(self.family, self.conditions, strict=True) for text in one.violated]
         if self.decided_by_rule:
             violated.append(f"The impact rule decides the outcome of {self.decided_by_rule} sizes.")
-        return judge(
-            f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.", violated=violated
-        )  # fmt: skip
+        return judge(f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.", violated=violated)
 
 
 class HarmonicMap(KindResults):
@@ -396,19 +366,18 @@ class HarmonicMap(KindResults):
     frequency_ratios: list[float] = fact("omega/p of the frequencies")
     lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null if none overturns", "g")
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
-    restitution: float | None = fact(
-        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
-    )
+    restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""
         failing = [a for a in self.lowest_overturning_amplitude_g if a is not None]
         if not failing:
-            return judge(
-                "No harmonic motion of the map causes collapse.", None, None, "g", violated=self.conditions.violated
-            )
+            return judge("No harmonic motion of the map causes collapse.", None, None, "g", violated=self.conditions.violated)
         return judge(
-            f"The lowest harmonic amplitude that causes collapse is {min(failing):.3g} g.", None, min(failing), "g",
+            f"The lowest harmonic amplitude that causes collapse is {min(failing):.3g} g.",
+            None,
+            min(failing),
+            "g",
             violated=self.conditions.violated,
-        )  # fmt: skip
+        )

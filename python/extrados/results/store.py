@@ -65,13 +65,22 @@ def group_names(kinds: list[str]) -> list[str]:
 def rows(results: list[Result]) -> list[dict[str, Any]]:
     """What summary.json says of each analysis."""
     return [
-        plain({
-            "name": name, "kind": r.kind, "status": r.status, "reason": r.reason, "seconds": round(r.seconds, 6),
-            "answer": r.answer, "warnings": r.warnings, "verdict": r.verdict and r.verdict.as_json(),
-            "assumptions": {key: a.as_json() for key, a in r.assumptions.items()}, "results": r.results.as_json(),
-        })
+        plain(
+            {
+                "name": name,
+                "kind": r.kind,
+                "status": r.status,
+                "reason": r.reason,
+                "seconds": round(r.seconds, 6),
+                "answer": r.answer,
+                "warnings": r.warnings,
+                "verdict": r.verdict and r.verdict.as_json(),
+                "assumptions": {key: a.as_json() for key, a in r.assumptions.items()},
+                "results": r.results.as_json(),
+            }
+        )
         for name, r in zip(group_names([r.kind for r in results]), results, strict=True)
-    ]  # fmt: skip
+    ]
 
 
 def typed_of(results: list[Result]) -> dict[str, KindResults]:
@@ -82,10 +91,7 @@ def typed_of(results: list[Result]) -> dict[str, KindResults]:
 def arrays_of(results: list[Result]) -> dict[str, dict[str, Array]]:
     """The arrays of each analysis by its name; a reader of the folder finds the same."""
     return {
-        name: {
-            title: a if isinstance(a.data, Streamed) else replace(a, data=np.asarray(a.data))
-            for title, a in r.arrays.items()
-        }
+        name: {title: a if isinstance(a.data, Streamed) else replace(a, data=np.asarray(a.data)) for title, a in r.arrays.items()}
         for name, r in zip(group_names([r.kind for r in results]), results, strict=True)
     }
 
@@ -96,9 +102,7 @@ def prepare(out: Path) -> None:
     if Path.cwd().is_relative_to(out):
         raise StoreError(f"{out}: holds the current folder; name a folder for the results alone, such as --out results")
     if os.path.ismount(out):
-        raise StoreError(
-            f"{out}: is a mounted file system, which cannot be replaced; name a folder within it with --out"
-        )
+        raise StoreError(f"{out}: is a mounted file system, which cannot be replaced; name a folder within it with --out")
     if len(os.fsencode(out.name)) > LONGEST_NAME:
         raise StoreError(f"{out}: the name has more than {LONGEST_NAME} bytes; name a shorter one with --out")
     _refuse_no_folder(out)
@@ -160,8 +164,10 @@ class NewFolder:
                 self.place = written.beside(out)
                 log.warning(
                     "%s: holds '%s', which extrados did not write or which was changed since; the results are in %s",
-                    out, strange[0] if strange else out.name, self.place,
-                )  # fmt: skip
+                    out,
+                    strange[0] if strange else out.name,
+                    self.place,
+                )
             before = _exchange(scratch, self.place)
             self._done = True
             try:
@@ -222,11 +228,7 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
                 target = folder / title if name == result.kind else folder / name / title
                 target.parent.mkdir(parents=True, exist_ok=True)
                 target.write_bytes(content)
-        summary = {
-            **head,
-            "analyses": rows(results),
-            "files": written.sums_of(folder),
-        }
+        summary = {**head, "analyses": rows(results), "files": written.sums_of(folder)}
         text = json.dumps(plain(summary), indent=1, ensure_ascii=False)
         # names of files may hold bytes that are no text; what replaces them is JSON for the same
         (folder / SUMMARY).write_text(text + "\n", encoding="utf-8", errors="backslashreplace")
@@ -244,9 +246,7 @@ def csv_parts(table: TableData) -> Iterator[str]:
         if len({len(column) for column in columns}) > 1:
             raise ValueError(f"columns of unlike length: {', '.join(names)}")
         if number == 0:
-            yield _lines(
-                [[cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]]
-            )
+            yield _lines([[cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]])
         for first in range(0, len(columns[0]) if columns else 0, CSV_ROWS):
             some = (column[first : first + CSV_ROWS].tolist() for column in columns)
             yield _lines([repr(v) if isinstance(v, float) else cell(v) for v in row] for row in zip(*some, strict=True))
@@ -337,9 +337,7 @@ def _numbers(size: int) -> np.ndarray | Streamed:
     """0, 1, 2, ..., along an axis."""
     if size <= LARGE:
         return np.arange(size)
-    return Streamed(
-        size, np.arange(1).dtype, lambda: (np.arange(k, min(k + LARGE, size)) for k in range(0, size, LARGE))
-    )
+    return Streamed(size, np.arange(1).dtype, lambda: (np.arange(k, min(k + LARGE, size)) for k in range(0, size, LARGE)))
 
 
 def _sizes(arrays: dict[str, Array]) -> dict[str, int]:
@@ -512,9 +510,7 @@ def _on_disk(path: Path, group: str, title: str, length: int, dtype: np.dtype) -
         for first in range(0, length, LARGE):
             end = min(first + LARGE, length)
             try:
-                rows = read_contained(
-                    f"{READER}:parse_rows", path, ["h5py"], group=group, title=title, first=first, end=end
-                )
+                rows = read_contained(f"{READER}:parse_rows", path, ["h5py"], group=group, title=title, first=first, end=end)
             except Unreadable as error:
                 raise StoreError(f"{path}: cannot be read: {error}") from None
             if rows.shape != (end - first,) or rows.dtype != dtype:
@@ -548,12 +544,15 @@ def read(folder: str | Path) -> Stored:
             raise StoreError(f"{place}: does not match its checksum in {SUMMARY}; the file is damaged")
         small = place.stat().st_size <= SMALL
         found = read_contained(
-            f"{READER}:parse_arrays", files.read(STORE, None, folder).content if small else place.absolute(), ["h5py"],
-            SECONDS, marks=MARKS, long=None if small else LARGE,
-        )  # fmt: skip
+            f"{READER}:parse_arrays",
+            files.read(STORE, None, folder).content if small else place.absolute(),
+            ["h5py"],
+            SECONDS,
+            marks=MARKS,
+            long=None if small else LARGE,
+        )
         arrays = {
-            name: {title: _array(place.absolute(), name, title, one) for title, one in group.items()}
-            for name, group in found.items()
+            name: {title: _array(place.absolute(), name, title, one) for title, one in group.items()} for name, group in found.items()
         }
         if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
             raise StoreError(f"{place}: holds '{min(untold)}', of which {SUMMARY} says nothing")

@@ -46,13 +46,10 @@ class Intervention(ResultModel):
     )
     key: str = maybe("key of the deck that is changed")
     place: str = fact("place, or value from which the key is changed")
-    start_m: list[float] = maybe(
-        "[x, y], in space [x, y, z], of the first end of a tie; of a hoop a point at its height", "m"
-    )
+    start_m: list[float] = maybe("[x, y], in space [x, y, z], of the first end of a tie; of a hoop a point at its height", "m")
     via_m: list[list[float]] = maybe("points over which a chain runs", "m")
     stiffness_N_m: float = maybe(
-        "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section",
-        "N/m",
+        "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section", "N/m"
     )
     end_m: list[float] = maybe("of its other end; none of a hoop", "m")
     unit: str = fact("unit of the sizes")
@@ -65,9 +62,7 @@ class Intervention(ResultModel):
     )
     capacity_after: float | None = fact("value with the required size, in the unit of the target")
     safety_factor_after: float | None = fact("value with the required size over the demand")
-    next_mechanism: str = fact(
-        "mechanism that governs with the required size, or with the greatest one if none suffices"
-    )
+    next_mechanism: str = fact("mechanism that governs with the required size, or with the greatest one if none suffices")
     bound: Literal["exact", "upper"] | None = fact(
         "capacity after as a bound: exact; upper, where pressed joints slide (dilatant friction); null: an estimate by runs"
     )
@@ -75,9 +70,7 @@ class Intervention(ResultModel):
     length_m: float = fact("length of tie", "m")
     force_N: float = fact("force of tie", "N")
     volume_m3: float = fact("volume of masonry added or injected", "m^3")
-    cost: float | None = fact(
-        "cost by the weights of the deck; null where the target is not met, or no weight is of such a change"
-    )
+    cost: float | None = fact("cost by the weights of the deck; null where the target is not met, or no weight is of such a change")
     anchorage: list[AnchorageCheck] = maybe("bar and anchorage under the required force")
     adverse: list[str] = fact("adverse effects")
     verdicts: list[OtherVerdict] = maybe("verdicts of all strategies before and after")
@@ -122,9 +115,7 @@ class Strengthen(KindResults):
     met_before: bool = fact("whether the existing building meets the target")
     mechanism_before: str = fact("governing mechanism of the existing building")
     interventions: list[Intervention] = fact("the alternatives, the cheapest that meets the target first")
-    combination: list[CombinedTie] = maybe(
-        "combination of ties of least total force, if more than one tie carries a force"
-    )
+    combination: list[CombinedTie] = maybe("combination of ties of least total force, if more than one tie carries a force")
     combination_cost: float = maybe("its cost")
     fragility: FragilityPair = maybe("fragility before and after, of the cheapest intervention")
 

@@ -37,11 +37,18 @@ def read_uncertainties() -> list[ModelUncertainty]:
     with _TABLE.open(encoding="utf-8", newline="") as file:
         return [
             ModelUncertainty(
-                row["strategy"], tuple(row["analyses"].split()), row["quantity"], row["comparison"], int(row["count"]),
-                float(row["bias"]), float(row["scatter"]), row["worst_case"], float(row["worst_ratio"]),
+                row["strategy"],
+                tuple(row["analyses"].split()),
+                row["quantity"],
+                row["comparison"],
+                int(row["count"]),
+                float(row["bias"]),
+                float(row["scatter"]),
+                row["worst_case"],
+                float(row["worst_ratio"]),
             )
             for row in csv.DictReader(file)
-        ]  # fmt: skip
+        ]
 
 
 def uncertainties_of(analysis: str, comparison: str = "experiment") -> list[ModelUncertainty]:

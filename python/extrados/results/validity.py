@@ -83,8 +83,7 @@ Fragility = Validity(
 )
 Resonance = Validity(
     "The ground acceleration stays below a cap and switches its sign so that each half cycle feeds most energy to the mechanism.",
-    "No earthquake follows the rotation of a structure: the result is an extreme and has no probability. The limits of rocking "
-    "apply.",
+    "No earthquake follows the rotation of a structure: the result is an extreme and has no probability. The limits of rocking apply.",
 )
 RockingSpectrum = Validity(
     "Rigid blocks, or arches of one shape in all sizes, rock from rest without sliding under one motion.",
@@ -116,8 +115,7 @@ ShakeTable = Validity(
     "Errors of control, resonance of the oil column and the reaction of a specimen that rocks are not considered.",
 )
 Sla = Validity(
-    "Elastic masonry, whose joints or elements crack one event after the other, carries a load that grows in proportion, in the "
-    "plane.",
+    "Elastic masonry, whose joints or elements crack one event after the other, carries a load that grows in proportion, in the plane.",
     "The analysis is static: duration and inertia are not considered. The capacity depends on the strengths, the fracture energies "
     "and the mesh. Small displacements are assumed: collapse by a mechanism needs limit analysis.",
 )

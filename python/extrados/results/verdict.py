@@ -13,8 +13,12 @@ DECIDED: tuple[Outcome, ...] = ("stands", "collapses", "cannot-stand")
 
 #: Outcomes in words, the gravest first
 OUTCOMES: dict[Outcome, str] = {
-    "cannot-stand": "cannot stand", "collapses": "collapses", "open": "open", "stands": "stands", "not-applicable": "no verdict",
-}  # fmt: skip
+    "cannot-stand": "cannot stand",
+    "collapses": "collapses",
+    "open": "open",
+    "stands": "stands",
+    "not-applicable": "no verdict",
+}
 #: Outcomes of a check of a code that differ from those of a building
 CHECKED: dict[Outcome, str] = {"collapses": "not satisfied", "stands": "satisfied"}
 
@@ -40,9 +44,7 @@ class Verdict(ResultModel):
     bound: Bound | None = fact(
         "capacity as a bound: exact, upper (true capacity is at most this), lower (at least this); null: an estimate"
     )
-    violated: list[str] = fact(
-        "assumptions of the analysis that were checked and do not hold; the outcome is then open"
-    )
+    violated: list[str] = fact("assumptions of the analysis that were checked and do not hold; the outcome is then open")
     statement: str = fact("the verdict in one or two sentences")
 
 
@@ -111,10 +113,15 @@ class SelfWeight(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """cannot-stand; open where the deck gives strengths that the proof neglects."""
         return Verdict(
-            demand=demand.peak_g, capacity=0.0, unit="g", ratio=0.0, outcome="open" if self.neglected else "cannot-stand",
-            bound="lower" if self.neglected else "exact", violated=[f"The analysis neglects {one}." for one in self.neglected],
+            demand=demand.peak_g,
+            capacity=0.0,
+            unit="g",
+            ratio=0.0,
+            outcome="open" if self.neglected else "cannot-stand",
+            bound="lower" if self.neglected else "exact",
+            violated=[f"The analysis neglects {one}." for one in self.neglected],
             statement=self.statement(),
-        )  # fmt: skip
+        )
 
 
 def judge(
@@ -145,14 +152,11 @@ def judge(
     if violated:
         statement = f"{statement} {' '.join(violated)}"
     return Verdict(
-        demand=demand, capacity=capacity, unit=unit, ratio=ratio, outcome=outcome, bound=bound, violated=list(violated),
-        statement=statement,
-    )  # fmt: skip
+        demand=demand, capacity=capacity, unit=unit, ratio=ratio, outcome=outcome, bound=bound, violated=list(violated), statement=statement
+    )
 
 
-def capacity_alone(
-    carried: str, capacity: float, unit: str, bound: Bound | None = None, violated: Sequence[str] = ()
-) -> Verdict:
+def capacity_alone(carried: str, capacity: float, unit: str, bound: Bound | None = None, violated: Sequence[str] = ()) -> Verdict:
     """A base shear that a structure carries which vibrates and yields: no verdict follows from the peak ground acceleration."""
     text = (
         f"{carried} This is a capacity without a verdict: the structure amplifies the motion and yields, so that the peak ground "
@@ -161,15 +165,13 @@ def capacity_alone(
     return judge(text, None, capacity, unit, "not-applicable", bound, violated)
 
 
-def judge_acceleration(
-    capacity: float, demand: Demand, bound: Bound | None = None, violated: Sequence[str] = ()
-) -> Verdict:  # fmt: skip
+def judge_acceleration(capacity: float, demand: Demand, bound: Bound | None = None, violated: Sequence[str] = ()) -> Verdict:
     """A constant horizontal acceleration [g] that is carried, against the peak of the motion, if there is one."""
     peak = demand.peak_g
     name = {"upper": "Upper bound of the collapse acceleration", "lower": "Lower bound of the collapse acceleration"}
     carried = f"{name.get(bound or '', 'Collapse acceleration')} {capacity:.3g} g (horizontal, constant)"
     if peak is None:
-        return judge(f"{carried}; the deck holds no single motion to compare with.", None, capacity, "g", None, bound, violated)  # fmt: skip
+        return judge(f"{carried}; the deck holds no single motion to compare with.", None, capacity, "g", None, bound, violated)
     word = "below" if peak < capacity else "at or above"
     text = f"{carried}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {word} this value."
     return judge(text, peak, capacity, "g", None, bound, violated)

@@ -41,8 +41,7 @@ class DisplacementCheck(ResultModel):
     capacity_pga_g: float | None = fact("the same times the factor (alpha_PGA is their ratio)", "g")
     return_period_years: float | None = fact("return period of the action; null where not known", "year")
     capacity_return_period_years: float | None = fact(
-        "return period of the action that is carried, between those of the limit states of [code]; null outside them",
-        "year",
+        "return period of the action that is carried, between those of the limit states of [code]; null outside them", "year"
     )
     verdict: Literal["holds", "fails", ""] = fact("verdict of the check; empty without a demand or a capacity")
     clause: str = fact("clauses of demand and capacity")
@@ -97,9 +96,14 @@ class Verification(ResultModel):
         if early:
             named = f" The curve ends before the base shear has dropped by 20 %: the capacity is a lower bound.{named}"
         return judge(
-            f"{self.told(check)} {carried}{named}", check.demand_pga_g, check.capacity_pga_g, "g", None,
-            "lower" if early else None, self.violated if check.verdict == "holds" else (),
-        )  # fmt: skip
+            f"{self.told(check)} {carried}{named}",
+            check.demand_pga_g,
+            check.capacity_pga_g,
+            "g",
+            None,
+            "lower" if early else None,
+            self.violated if check.verdict == "holds" else (),
+        )
 
     def told(self, check: DisplacementCheck) -> str:
         """A check in one sentence."""
@@ -110,11 +114,7 @@ class Verification(ResultModel):
         demand = "beyond collapse" if check.demand_m is None else f"{1e3 * check.demand_m:.3g} mm"
         ratio = ""
         limit = check.greatest_strength_ratio
-        if (
-            limit is not None
-            and check.strength_ratio is not None
-            and check.factor * check.strength_ratio > 0.999 * limit
-        ):
+        if limit is not None and check.strength_ratio is not None and check.factor * check.strength_ratio > 0.999 * limit:
             ratio = f" (limited by q*: {check.strength_ratio:.3g}, at most {limit:g})"
         return (
             f"{self.code} at {check.limit_state}: the displacement check {check.verdict} (push {check.push}, {self.method}). "

@@ -40,8 +40,7 @@ def vtu(
 
     def fields(data: Mapping[str, np.ndarray] | None) -> str:
         return "".join(
-            _data(n, _three(np.asarray(v, dtype=float)) if np.ndim(v) == 2 and np.shape(v)[1] == 2 else v)
-            for n, v in (data or {}).items()
+            _data(n, _three(np.asarray(v, dtype=float)) if np.ndim(v) == 2 and np.shape(v)[1] == 2 else v) for n, v in (data or {}).items()
         )
 
     return (
@@ -55,10 +54,7 @@ def vtu(
 
 
 def vtu_faces(
-    xyz: np.ndarray,
-    faces: Sequence[np.ndarray],
-    point_data: Mapping[str, np.ndarray],
-    cell_data: Mapping[str, np.ndarray],
+    xyz: np.ndarray, faces: Sequence[np.ndarray], point_data: Mapping[str, np.ndarray], cell_data: Mapping[str, np.ndarray]
 ) -> bytes:
     """Faces of solids as polygons: xyz (nodes, 3) [m], each face as numbers of nodes."""
     connect, ends = np.concatenate(faces), np.cumsum([len(face) for face in faces])

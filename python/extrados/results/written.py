@@ -24,8 +24,9 @@ def sums_of(folder: Path) -> dict[str, str]:
     """The checksums of all files below a folder by their place in it."""
     return {
         path.relative_to(folder).as_posix(): files.sum_of(path)
-        for path in sorted(folder.rglob("*")) if path.is_file() and path.name != LIST
-    }  # fmt: skip
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name != LIST
+    }
 
 
 def noted(folder: Path) -> dict[str, list[str]]:
@@ -42,9 +43,7 @@ def note(folder: Path, *sums: dict[str, str]) -> None:
     names = sorted({name for one in sums for name in one})
     listed = {name: sorted({one[name] for one in sums if name in one}) for name in names}
     fresh = folder / f"{LIST}.new"
-    fresh.write_text(
-        json.dumps({"about": "checksums of the files that extrados wrote here", "files": listed}), encoding="utf-8"
-    )
+    fresh.write_text(json.dumps({"about": "checksums of the files that extrados wrote here", "files": listed}), encoding="utf-8")
     fresh.replace(folder / LIST)
 
 
@@ -97,9 +96,7 @@ def prune(folder: Path) -> bool:
 
 def beside(path: Path) -> Path:
     """The first of NAME-2, NAME-3 ... beside a path that is not there."""
-    stem, suffix = (
-        (path.name, "") if path.is_dir() else (path.stem, path.suffix)
-    )  # a folder tower-0.8 ends in no suffix
+    stem, suffix = (path.name, "") if path.is_dir() else (path.stem, path.suffix)  # a folder tower-0.8 ends in no suffix
     numbered = (path.with_name(f"{stem}-{k}{suffix}") for k in itertools.count(2))
     return next(other for other in numbered if not os.path.lexists(other))
 
@@ -132,9 +129,7 @@ def put(scratch: Path, folder: Path, belongs: Callable[[str], bool]) -> dict[str
         taken = os.path.lexists(folder / place) and not is_ours(folder, place, known)
         names[name] = beside(folder / place).relative_to(folder).as_posix() if taken else place
         if names[name] != name:
-            log.warning(
-                "%s: was not written by extrados or changed since; the new one is %s", folder / name, names[name]
-            )
+            log.warning("%s: was not written by extrados or changed since; the new one is %s", folder / name, names[name])
     fresh = {names[name]: value for name, value in new.items()}
     # noted before it is moved: whoever is killed in between leaves nothing that is taken for a stranger's
     note(folder, {name: value for name, sums in known.items() for value in sums[:1]}, fresh)

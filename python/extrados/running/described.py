@@ -26,12 +26,7 @@ def described(deck: Deck) -> dict[str, Any]:
     hold for all analyses."""
     floor = None if deck.motion is None else deck.motion.floor
     conditions = [] if floor is None else [floor_condition(floor)]
-    return {
-        "dimensions": _dimensions(deck),
-        "drawing": _drawing(deck),
-        "properties": _properties(deck),
-        "conditions": conditions,
-    }
+    return {"dimensions": _dimensions(deck), "drawing": _drawing(deck), "properties": _properties(deck), "conditions": conditions}
 
 
 def _drawing(deck: Deck) -> dict[str, Any]:
@@ -53,12 +48,18 @@ def _drawing(deck: Deck) -> dict[str, Any]:
     return {
         "outlines": [_rounded(outline) for outline in assembly.outlines],
         "supports": [_rounded([assembly.p[j], assembly.q[j]]) for j in grounded],
-        "earth": None if earth is None else {
-            "start": _rounded(earth.line.start), "end": _rounded(earth.line.end), "formation": round(earth.formation, 4),
+        "earth": None
+        if earth is None
+        else {
+            "start": _rounded(earth.line.start),
+            "end": _rounded(earth.line.end),
+            "formation": round(earth.formation, 4),
             "road": round(earth.road, 4),
         },
-        "depth_m": float(assembly.depth), "spandrel_m": _spandrel(deck.structure), "crown_m": None if crown is None else float(crown),
-    }  # fmt: skip
+        "depth_m": float(assembly.depth),
+        "spandrel_m": _spandrel(deck.structure),
+        "crown_m": None if crown is None else float(crown),
+    }
 
 
 def _spandrel(structure: Any) -> float:
@@ -85,9 +86,7 @@ def _dimensions(deck: Deck) -> list[dict[str, Any]]:
 
 def _properties(deck: Deck) -> list[dict[str, Any]]:
     building = deck.building
-    tables: dict[str, Table | None] = {
-        name: getattr(building, name) for name in ("structure", *WHOLE, "supports", "initial")
-    }
+    tables: dict[str, Table | None] = {name: getattr(building, name) for name in ("structure", *WHOLE, "supports", "initial")}
     tables |= {f"materials.{name}": table for name, table in building.materials.items()}
     for name in ("ties", "dampers", "hinges"):
         tables |= {f"{name}.{one.name}": one for one in getattr(building, name)}
@@ -109,10 +108,17 @@ def _rows(name: str, table: Table) -> list[dict[str, Any]]:
                 found += _rows(f"{name}.{key}{f' {k}' if len(within) > 1 else ''}", one)
             continue
         extra = field.json_schema_extra
-        found.append({
-            "table": name, "key": key, "value": _plain(value), "unit": unit_of(type(table), key), "about": field.description or "",
-            "from": "deck" if given else "default", "source": str(extra.get("source", "")) if isinstance(extra, dict) else "",
-        })  # fmt: skip
+        found.append(
+            {
+                "table": name,
+                "key": key,
+                "value": _plain(value),
+                "unit": unit_of(type(table), key),
+                "about": field.description or "",
+                "from": "deck" if given else "default",
+                "source": str(extra.get("source", "")) if isinstance(extra, dict) else "",
+            }
+        )
     return found
 
 

@@ -156,9 +156,7 @@ class _Kept:
 
 
 #: What a building is said to be, table by table
-_TABLES = frozenset(
-    {"structure", "material", "materials", "joints", "supports", "initial", "ties", "dampers", "hinges"}
-)
+_TABLES = frozenset({"structure", "material", "materials", "joints", "supports", "initial", "ties", "dampers", "hinges"})
 
 
 class _Seen:
@@ -189,14 +187,7 @@ class _Seen:
         _watch(own, lambda name: self.parts.add(f"own.{name}"))
         _watch(given, lambda name: self.parts.add(f"deck.{name}"))
         tables = [t for a, t in zip(self.whole.analyses, self.whole.tables, strict=False) if a is options]
-        parts = {
-            **vars(self.whole),
-            "building": given,
-            "analyses": [options],
-            "buildings": [own],
-            "data": data,
-            "tables": tables,
-        }
+        parts = {**vars(self.whole), "building": given, "analyses": [options], "buildings": [own], "data": data, "tables": tables}
         deck = _WatchedDeck(**parts)
         _watch(deck, self.parts.add)
         return deck

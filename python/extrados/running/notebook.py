@@ -46,8 +46,7 @@ def table_of(title: str, keys: Sequence[str], rows: Sequence[Mapping[str, Any]],
     heads = [html.escape(name + (f" [{units[name]}]" if units.get(name) else "")) for name in names]
     head = "".join(f'<th style="{STYLE}">{one}</th>' for one in heads)
     body = "".join(
-        "<tr>" + "".join(f'<td style="{STYLE}">{html.escape(_cell(row.get(name)))}</td>' for name in names) + "</tr>"
-        for row in shown
+        "<tr>" + "".join(f'<td style="{STYLE}">{html.escape(_cell(row.get(name)))}</td>' for name in names) + "</tr>" for row in shown
     )
     left = f"<p>{len(rows) - len(shown)} more members: see frame().</p>" if len(rows) > len(shown) else ""
     return f"<div><b>{html.escape(title)}</b><table><tr>{head}</tr>{body}</table>{left}</div>"

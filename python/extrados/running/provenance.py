@@ -10,12 +10,7 @@ from extrados._build_info import BUILD_TYPE, C_COMPILER, COMMIT, COMPILER, VERSI
 
 def provenance() -> dict[str, str]:
     """Version, commit ("-dirty" where files differ from it) and compilers of this copy."""
-    return {
-        "version": VERSION,
-        "commit": _commit(),
-        "compiler": f"{COMPILER}, {C_COMPILER}",
-        "build_type": BUILD_TYPE,
-    }
+    return {"version": VERSION, "commit": _commit(), "compiler": f"{COMPILER}, {C_COMPILER}", "build_type": BUILD_TYPE}
 
 
 def computed() -> dict[str, str]:
@@ -37,8 +32,7 @@ def _commit() -> str:
 
     with contextlib.suppress(OSError, subprocess.TimeoutExpired):
         answer = subprocess.run(
-            ["git", "-C", str(root), "describe", "--always", "--dirty", "--exclude=*"],
-            capture_output=True, text=True, timeout=5,
-        )  # fmt: skip
+            ["git", "-C", str(root), "describe", "--always", "--dirty", "--exclude=*"], capture_output=True, text=True, timeout=5
+        )
         return answer.stdout.strip() if answer.returncode == 0 else ""
     return ""

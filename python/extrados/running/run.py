@@ -38,13 +38,7 @@ class Run(Stored):
         parts = [part for result in results for part in result.parts]
         results = [*results, *parts]
         when = computed()
-        run = cls(
-            None,
-            partial(_head, deck, parts, when),
-            store.rows(results),
-            store.arrays_of(results),
-            store.typed_of(results),
-        )
+        run = cls(None, partial(_head, deck, parts, when), store.rows(results), store.arrays_of(results), store.typed_of(results))
         run.results = tuple(results)
         return run
 

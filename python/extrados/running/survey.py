@@ -183,14 +183,22 @@ def assess_folder(
     job = SurveyJob(names, list(texts.values()), str(folder.resolve()), str(out), figures)
     found = sweep(context, "survey-folder", job, len(names), "buildings", slow=True)
     rows = [
-        Assessed(names[k], str(found["overall"][i]), float(found["margin"][i]), str(found["strategy"][i]), str(found["status"][i]),
-                 str(found["statement"][i]), Path(str(found["folder"][i])))
+        Assessed(
+            names[k],
+            str(found["overall"][i]),
+            float(found["margin"][i]),
+            str(found["strategy"][i]),
+            str(found["status"][i]),
+            str(found["statement"][i]),
+            Path(str(found["folder"][i])),
+        )
         for i, k in enumerate(found.members)
-    ]  # fmt: skip
+    ]
     rows += [
         Assessed(name, "", np.nan, "", "wrong deck", str(error), out / name)
-        for name, error in decks.items() if isinstance(error, DeckError)
-    ]  # fmt: skip
+        for name, error in decks.items()
+        if isinstance(error, DeckError)
+    ]
     rows.sort(key=lambda row: (*row.order, row.building))
     _write(rows, out, figures)
     if found.complete:
@@ -212,19 +220,13 @@ def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
     runs: list[tuple[str, Stored | None]] = [
         (row.building, Run.read(row.folder) if row.status != "wrong deck" and (row.folder / "summary.json").exists() else None)
         for row in rows
-    ]  # fmt: skip
+    ]
     made = document(
-        out.name,
-        [(r.building, r.overall or r.status, r.least_margin, r.strategy, r.statement) for r in rows],
-        runs,
-        out,
-        figures,
+        out.name, [(r.building, r.overall or r.status, r.least_margin, r.strategy, r.statement) for r in rows], runs, out, figures
     )
     try:
         new = {
-            RANKING: text.getvalue().encode(
-                errors="backslashreplace"
-            ),  # names of files may hold bytes that are no text
+            RANKING: text.getvalue().encode(errors="backslashreplace"),  # names of files may hold bytes that are no text
             "ranking.html": html.page(made, out).encode(errors="backslashreplace"),
         }
         if typeset.available():

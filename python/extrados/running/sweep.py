@@ -56,21 +56,14 @@ class Members:
         try:
             live.update(dict(zip(self.keys, self.rows[k], strict=True)))
         except DeckError as error:  # values that each fit, but not one another
-            return {
-                f"{name}.{word}": told
-                for name in live.names
-                for word, told in (("status", "wrong"), ("reason", str(error)))
-            }
+            return {f"{name}.{word}": told for name in live.names for word, told in (("status", "wrong"), ("reason", str(error)))}
         found: dict[str, Any] = {_at(key): value_at(live.deck, live.names, key) for key in self.keys}
         for name in live.names:
             result = live.result(name)
             found |= {f"{name}.status": result.status, f"{name}.reason": result.reason}
             found |= {f"{name}.{key}": value for key, value in singles(result.results).items()}
             if result.verdict is not None:
-                found |= {
-                    f"{name}.verdict.outcome": result.verdict.outcome,
-                    f"{name}.verdict.ratio": result.verdict.ratio,
-                }
+                found |= {f"{name}.verdict.outcome": result.verdict.outcome, f"{name}.verdict.ratio": result.verdict.ratio}
         return found
 
 
@@ -183,9 +176,7 @@ class Sweep:
         if self.shape is None:
             coords = {name: (dims, self.column(name), self._told(name)) for name in self.keys}
         elif len(self.rows) < self.members:
-            raise ValueError(
-                f"{self.members - len(self.rows)} members are missing ({self.stopped}): no grid; see frame()"
-            )
+            raise ValueError(f"{self.members - len(self.rows)} members are missing ({self.stopped}): no grid; see frame()")
         else:
             dims, shape = tuple(self.keys), self.shape
             coords = {}
@@ -256,11 +247,7 @@ def _members(over: Any) -> tuple[list[str], list[list[Any]], tuple[int, ...] | N
     if hasattr(over, "to_dict") and hasattr(over, "columns"):  # a DataFrame
         over = over.to_dict("records")
     if isinstance(over, Mapping):
-        lists = {
-            str(key): values
-            for key, values in over.items()
-            if isinstance(values, Iterable) and not isinstance(values, str)
-        }
+        lists = {str(key): values for key, values in over.items() if isinstance(values, Iterable) and not isinstance(values, str)}
         axes = {key: found for key, values in lists.items() if (found := [as_deck(value) for value in values])}
         short = [key for key in over if str(key) not in axes]
         if short or not axes:
@@ -280,9 +267,11 @@ def _refuse(deck: Deck, keys: list[str], rows: list[list[Any]], shape: tuple[int
     live = Live(deck, 1)
     wrong: dict[str, None] = {}
     first = dict(zip(keys, rows[0], strict=True))
-    tried = [first] if shape is None else [
-        {**first, key: value} for k, key in enumerate(keys) for value in {repr(row[k]): row[k] for row in rows}.values()
-    ]  # fmt: skip
+    tried = (
+        [first]
+        if shape is None
+        else [{**first, key: value} for k, key in enumerate(keys) for value in {repr(row[k]): row[k] for row in rows}.values()]
+    )
     for changes in tried:
         try:
             live.update(changes)
@@ -314,6 +303,11 @@ def _told(deck: Deck, job: Members, shape: tuple[int, ...] | None, found: Swept)
             units[f"{analysis}.{fact.key}"], about[f"{analysis}.{fact.key}"] = fact.unit, fact.about
     columns = {name for row in rows for name in row}
     return Sweep(
-        job.keys, shape, rows, {n: u for n, u in units.items() if n in columns}, {n: a for n, a in about.items() if n in columns},
-        len(job.rows), found.stopped,
-    )  # fmt: skip
+        job.keys,
+        shape,
+        rows,
+        {n: u for n, u in units.items() if n in columns},
+        {n: a for n, a in about.items() if n in columns},
+        len(job.rows),
+        found.stopped,
+    )

@@ -17,30 +17,46 @@ Years = Annotated[float, Field(ge=1, le=1e5)]
 EDITIONS = {"NTC": ("2018",), "EN1998": ("2004",), "ASCE41": ("2013",), "NZSEE": ("2017",), "none": ()}
 #: Each code and edition in words
 NAMES = {
-    "NTC": "NTC 2018 with Circolare 7/2019", "EN1998": "EN 1998-1:2004 and EN 1998-3:2005", "ASCE41": "ASCE 41-13",
-    "NZSEE": "NZSEE/MBIE Guidelines C8 (2017) with NZS 1170.5", "none": "no code",
-}  # fmt: skip
+    "NTC": "NTC 2018 with Circolare 7/2019",
+    "EN1998": "EN 1998-1:2004 and EN 1998-3:2005",
+    "ASCE41": "ASCE 41-13",
+    "NZSEE": "NZSEE/MBIE Guidelines C8 (2017) with NZS 1170.5",
+    "none": "no code",
+}
 #: Limit states of each code; the first of DEFAULT is that of collapse prevention or life safety by which a report concludes
 LIMIT_STATES = {
-    "NTC": ("SLO", "SLD", "SLV", "SLC"), "EN1998": ("DL", "SD", "NC"), "ASCE41": ("IO", "LS", "CP"), "NZSEE": ("ULS",), "none": (),
-}  # fmt: skip
+    "NTC": ("SLO", "SLD", "SLV", "SLC"),
+    "EN1998": ("DL", "SD", "NC"),
+    "ASCE41": ("IO", "LS", "CP"),
+    "NZSEE": ("ULS",),
+    "none": (),
+}
 DEFAULT = {"NTC": "SLV", "EN1998": "SD", "ASCE41": "LS", "NZSEE": "ULS"}
 #: Confidence factor by knowledge level: Circ. 7/2019 Table C8.5.IV; EN 1998-3:2005 Table 3.1 (verify clause). For ASCE 41 1 over
 #: the knowledge factor of Table 6-1 (verify clause)
 KNOWLEDGE = {
-    "NTC": {"LC1": 1.35, "LC2": 1.2, "LC3": 1.0}, "EN1998": {"KL1": 1.35, "KL2": 1.2, "KL3": 1.0},
-    "ASCE41": {"minimum": 1.0 / 0.75, "usual": 1.0, "comprehensive": 1.0}, "NZSEE": {}, "none": {},
-}  # fmt: skip
+    "NTC": {"LC1": 1.35, "LC2": 1.2, "LC3": 1.0},
+    "EN1998": {"KL1": 1.35, "KL2": 1.2, "KL3": 1.0},
+    "ASCE41": {"minimum": 1.0 / 0.75, "usual": 1.0, "comprehensive": 1.0},
+    "NZSEE": {},
+    "none": {},
+}
 #: NTC 2018 Table 2.4.II, coefficient of use C_U; EN 1998-1 4.2.5, importance factor gamma_I, recommended values (verify clause)
-IMPORTANCE = {
-    "NTC": {"I": 0.7, "II": 1.0, "III": 1.5, "IV": 2.0}, "EN1998": {"I": 0.8, "II": 1.0, "III": 1.2, "IV": 1.4},
-}  # fmt: skip
+IMPORTANCE = {"NTC": {"I": 0.7, "II": 1.0, "III": 1.5, "IV": 2.0}, "EN1998": {"I": 0.8, "II": 1.0, "III": 1.2, "IV": 1.4}}
 #: NTC 2018 Table 3.2.I: probability of exceedance in the reference life V_R
 EXCEEDED = {"SLO": 0.81, "SLD": 0.63, "SLV": 0.10, "SLC": 0.05}
 #: NZS 1170.5 Table 3.5 (verify clause): return period [years], factor R
 RETURN_FACTOR = (
-    (20.0, 0.2), (25.0, 0.25), (50.0, 0.35), (100.0, 0.5), (250.0, 0.75), (500.0, 1.0), (1000.0, 1.3), (2000.0, 1.7), (2500.0, 1.8),
-)  # fmt: skip
+    (20.0, 0.2),
+    (25.0, 0.25),
+    (50.0, 0.35),
+    (100.0, 0.5),
+    (250.0, 0.75),
+    (500.0, 1.0),
+    (1000.0, 1.3),
+    (2000.0, 1.7),
+    (2500.0, 1.8),
+)
 #: The keys of the seismic action that each code takes
 ACTION = {
     "NTC": ("ground", "topography", "accelerations", "amplifications", "corner_periods"),
@@ -69,11 +85,9 @@ class Code(Table):
     limit_states: list[Literal["SLO", "SLD", "SLV", "SLC", "DL", "SD", "NC", "IO", "LS", "CP", "ULS"]] = key(
         [], "limit states that are checked; default SLV, SD, LS or ULS", max_length=4
     )
-    return_periods: list[Years] = key(
-        [], "return period in years of each limit state; default of NTC that of V_N C_U", max_length=4
-    )
-    knowledge_level: Literal["LC1", "LC2", "LC3", "KL1", "KL2", "KL3", "minimum", "usual", "comprehensive"] | None = (
-        key(None, "level of knowledge of the masonry; default the lowest of the code")
+    return_periods: list[Years] = key([], "return period in years of each limit state; default of NTC that of V_N C_U", max_length=4)
+    knowledge_level: Literal["LC1", "LC2", "LC3", "KL1", "KL2", "KL3", "minimum", "usual", "comprehensive"] | None = key(
+        None, "level of knowledge of the masonry; default the lowest of the code"
     )
     confidence_factor: float | None = key(
         None, "factor by which mean strengths are divided; default that of the knowledge level", ge=1, le=2
@@ -84,12 +98,8 @@ class Code(Table):
     accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
         [], "a_g on ground A for each limit state (NTC); a_gR, which gamma_I multiplies (EN 1998-1)", max_length=4
     )
-    amplifications: list[Annotated[float, Field(ge=1, le=10)]] = key(
-        [], "F_0 for each limit state, of NTC; default 2.5", max_length=4
-    )
-    corner_periods: list[Annotated[Time, Field(gt=0, le=2)]] = key(
-        [], "T_C* for each limit state, of NTC; default 0.35 s", max_length=4
-    )
+    amplifications: list[Annotated[float, Field(ge=1, le=10)]] = key([], "F_0 for each limit state, of NTC; default 2.5", max_length=4)
+    corner_periods: list[Annotated[Time, Field(gt=0, le=2)]] = key([], "T_C* for each limit state, of NTC; default 0.35 s", max_length=4)
     short_accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
         [], "S_XS at the site for each limit state, of ASCE 41", max_length=4
     )
@@ -98,9 +108,7 @@ class Code(Table):
     )
     long_period: Time = key(8.0, "T_L of ASCE 7", gt=0)
     hazard_factor: Annotated[float, Field(gt=0, le=1)] | None = key(None, "Z, hazard factor of NZS 1170.5")
-    research: list[Research] = key(
-        [], "formulas of other origin that are listed for comparison and decide nothing", max_length=6
-    )
+    research: list[Research] = key([], "formulas of other origin that are listed for comparison and decide nothing", max_length=6)
 
     @model_validator(mode="after")
     def _of_one_code(self) -> "Code":
@@ -109,9 +117,7 @@ class Code(Table):
             known = " or ".join(EDITIONS[own]) or "none"
             raise ValueError(f"edition: of {own} {known} is known, not {self.edition}")
         if strange := [s for s in self.limit_states if s not in LIMIT_STATES[own]]:
-            raise ValueError(
-                f"limit_states: {strange[0]} is no limit state of {own}; its own are {_list(LIMIT_STATES[own])}"
-            )
+            raise ValueError(f"limit_states: {strange[0]} is no limit state of {own}; its own are {_list(LIMIT_STATES[own])}")
         if len(set(self.limit_states)) < len(self.limit_states):
             raise ValueError("limit_states: one stands twice")
         if self.knowledge_level is not None and self.knowledge_level not in KNOWLEDGE[own]:
@@ -126,9 +132,7 @@ class Code(Table):
         count = len(self.states)
         for name in ("return_periods", *LISTS):
             if (values := getattr(self, name)) and len(values) != count:
-                raise ValueError(
-                    f"{name}: expected one value for each limit state ({_list(self.states)}), found {len(values)}"
-                )
+                raise ValueError(f"{name}: expected one value for each limit state ({_list(self.states)}), found {len(values)}")
         for name in ("amplifications", "corner_periods"):
             if getattr(self, name) and not self.accelerations:
                 raise ValueError(f"{name}: needs accelerations")
@@ -176,35 +180,26 @@ class Code(Table):
         k = self.states.index(state)
         match self.jurisdiction:
             case "NTC" if self.accelerations:
-                more = {
-                    n: getattr(self, f"{n}s")[k] for n in ("amplification", "corner_period") if getattr(self, f"{n}s")
-                }
+                more = {n: getattr(self, f"{n}s")[k] for n in ("amplification", "corner_period") if getattr(self, f"{n}s")}
                 return CodeSpectrum.model_construct(
-                    code="NTC",
-                    ground=self.ground,
-                    acceleration=self.accelerations[k],
-                    topography=self.topography,
-                    **more,
+                    code="NTC", ground=self.ground, acceleration=self.accelerations[k], topography=self.topography, **more
                 )
             case "EN1998" if self.accelerations:
                 importance = IMPORTANCE["EN1998"][self.importance or "II"]
                 return CodeSpectrum.model_construct(
-                    code=f"EN1998-{self.spectrum_type}",
-                    ground=self.ground,
-                    acceleration=importance * self.accelerations[k],
+                    code=f"EN1998-{self.spectrum_type}", ground=self.ground, acceleration=importance * self.accelerations[k]
                 )
             case "ASCE41" if self.short_accelerations:
                 return CodeSpectrum.model_construct(
-                    code="ASCE7",
-                    sds=self.short_accelerations[k],
-                    sd1=self.one_second_accelerations[k],
-                    long_period=self.long_period,
+                    code="ASCE7", sds=self.short_accelerations[k], sd1=self.one_second_accelerations[k], long_period=self.long_period
                 )
             case "NZSEE" if self.hazard_factor is not None:
                 return CodeSpectrum.model_construct(
-                    code="NZS1170", ground=self.ground, hazard_factor=self.hazard_factor,
+                    code="NZS1170",
+                    ground=self.ground,
+                    hazard_factor=self.hazard_factor,
                     return_factor=return_factor(self.return_period(state) or 500.0),
-                )  # fmt: skip
+                )
         return None
 
 

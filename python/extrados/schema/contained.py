@@ -40,10 +40,7 @@ LARGEST = 2_000_000_000  # bytes that a reader may give of a small file
 FILES = 4  # that are open at a time: numpy and HDF5 open one twice
 ARRAY = "\0array"  # the key under which an array's number stands; no text of a file begins so
 TUPLE = "\0tuple"
-_LENGTH, _CODE = (
-    struct.Struct("<Q"),
-    struct.Struct("<i"),
-)  # of the request before it; of the reader's end after its answer
+_LENGTH, _CODE = (struct.Struct("<Q"), struct.Struct("<i"))  # of the request before it; of the reader's end after its answer
 
 
 class Unreadable(Exception):
@@ -68,9 +65,7 @@ def read_contained(
     room, most = ROOM + ROOM_PER_BYTE * size, LARGEST + size
     seconds = (most_seconds or SECONDS) + int(SECONDS_PER_BYTE * size)
     path = None if isinstance(source, bytes) else str(source)
-    given = {
-        "reader": reader, "path": path, "options": options, "room": room, "seconds": seconds, "libraries": list(libraries)
-    }  # fmt: skip
+    given = {"reader": reader, "path": path, "options": options, "room": room, "seconds": seconds, "libraries": list(libraries)}
     words = json.dumps(given).encode()
     with tempfile.TemporaryFile() as file:  # a pipe of an unread content would block
         file.writelines((_LENGTH.pack(len(words)), words, content))
@@ -135,10 +130,13 @@ class _Server:
         ours, theirs = socket.socketpair()
         with theirs:
             process = subprocess.Popen(
-                python_command("extrados.schema.contained"), stdin=theirs.fileno(), stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL, env=environment(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1"),
+                python_command("extrados.schema.contained"),
+                stdin=theirs.fileno(),
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env=environment(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1"),
                 start_new_session=True,  # Ctrl-C is for this process, whose sockets end the others
-            )  # fmt: skip
+            )
         return process, ours
 
     def end(self) -> None:

@@ -19,11 +19,25 @@ QUANTITY = re.compile(rf"({NUMBER}) +({FACTOR}(?: ?[*/] ?{FACTOR})*)", re.ASCII)
 LONGEST = 60
 
 _EXAMPLE = {
-    "m": "20 cm", "s": "0.2 s", "m/s^2": "0.5 g", "m/s": "12 cm/s", "Hz": "2 Hz", "deg": "157.5 deg",
-    "kg/m^3": "2000 kg/m^3", "Pa": "3 MPa", "N": "55.6 kN", "N/m": "60 N/m", "Pa/m": "10 GPa/m",
-    "rad/s": "3 rad/s", "kg*m^2": "12 kg*m^2", "m^2": "0.4 in^2", "m^3/s": "0.75 gallon/min",
-    "N*s/m": "40 kN*s/m", "N*m": "5 kN*m", "N*m*s": "30 kN*m*s",
-}  # fmt: skip
+    "m": "20 cm",
+    "s": "0.2 s",
+    "m/s^2": "0.5 g",
+    "m/s": "12 cm/s",
+    "Hz": "2 Hz",
+    "deg": "157.5 deg",
+    "kg/m^3": "2000 kg/m^3",
+    "Pa": "3 MPa",
+    "N": "55.6 kN",
+    "N/m": "60 N/m",
+    "Pa/m": "10 GPa/m",
+    "rad/s": "3 rad/s",
+    "kg*m^2": "12 kg*m^2",
+    "m^2": "0.4 in^2",
+    "m^3/s": "0.75 gallon/min",
+    "N*s/m": "40 kN*s/m",
+    "N*m": "5 kN*m",
+    "N*m*s": "30 kN*m*s",
+}
 
 
 #: SI unit -> units that need no library, with their factors: reading pint's definitions takes half a second

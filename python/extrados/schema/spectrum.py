@@ -28,8 +28,14 @@ class CodeSpectrum(Table):
 
     @model_validator(mode="after")
     def _has_values(self) -> "CodeSpectrum":
-        need = {"EN1998-1": ("acceleration",), "EN1998-2": ("acceleration",), "NTC": ("acceleration",),
-                "ASCE7": ("sds", "sd1"), "NZS1170": ("hazard_factor",), "table": ("table",)}[self.code]  # fmt: skip
+        need = {
+            "EN1998-1": ("acceleration",),
+            "EN1998-2": ("acceleration",),
+            "NTC": ("acceleration",),
+            "ASCE7": ("sds", "sd1"),
+            "NZS1170": ("hazard_factor",),
+            "table": ("table",),
+        }[self.code]
         missing = [name for name in need if getattr(self, name) is None]
         if missing:
             raise ValueError(f"code {self.code} needs {' and '.join(missing)}")

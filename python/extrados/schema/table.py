@@ -57,14 +57,15 @@ class FloorBelow(Table):
 
     height: Length = key(about="height z of the floor above the foundation", gt=0)
     building_height: Length = key(about="height H of the building", gt=0)
-    building_period: Time | None = key(
-        None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
-    )
+    building_period: Time | None = key(None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6")
     building_damping: float = key(0.05, "damping ratio of the building", gt=0, le=0.3)
     storeys: int | None = key(
-        None, "storeys N of the building: gamma_1 = 3 N/(2 N + 1); default one for each begun 3 m of its height", ge=1, le=50,
+        None,
+        "storeys N of the building: gamma_1 = 3 N/(2 N + 1); default one for each begun 3 m of its height",
+        ge=1,
+        le=50,
         source="Circ. 7/2019 [C7.2.10]",
-    )  # fmt: skip
+    )
 
     @property
     def levels(self) -> int:
@@ -104,6 +105,4 @@ def override_of(model: type[Table], module: str) -> type[Table]:
         bounded: Any = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
         asked = Field(None, description=field.description, json_schema_extra=field.json_schema_extra)
         fields[name] = (bounded | None, asked)
-    return create_model(
-        f"{model.__name__}Override", __base__=_Built, __doc__=model.__doc__, __module__=module, **fields
-    )
+    return create_model(f"{model.__name__}Override", __base__=_Built, __doc__=model.__doc__, __module__=module, **fields)

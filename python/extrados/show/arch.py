@@ -35,18 +35,13 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         rows = -(-count // columns)
         wide, high = np.ptp(np.concatenate(blocks), axis=0)
         tall = float(np.clip(3.0 * high / wide + 0.8, 2.0, 4.0))
-        with style.figure(3.2 * columns, tall * rows, rows=rows, columns=columns, sharex=True, sharey=True) as (
-            fig,
-            axes,
-        ):
+        with style.figure(3.2 * columns, tall * rows, rows=rows, columns=columns, sharex=True, sharey=True) as (fig, axes):
             for ax in axes[count:]:
                 ax.set_axis_off()
             for k, (ax, when, pose) in enumerate(zip(axes, times.numbers, poses, strict=False)):
                 style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, pose, strict=True)])
                 if lines is not None:
-                    ax.plot(
-                        *lines.numbers[k].T, color=style.THRUST, marker=".", markersize=3, scalex=False, scaley=False
-                    )
+                    ax.plot(*lines.numbers[k].T, color=style.THRUST, marker=".", markersize=3, scalex=False, scaley=False)
                 ax.set_title(f"{when:.3f} s")
                 style.section_axes(ax)
                 ax.label_outer()
@@ -73,35 +68,28 @@ def _draw_history(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for sign in (1, -1):
             ground.axhline(sign * r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.7)
         ground.set_ylabel("ground [g]")
-        rotation.plot(
-            t, 1e3 * run.array(name, "rotation"), color=style.THRUST, label="lower block" if r.stack else None
-        )
+        rotation.plot(t, 1e3 * run.array(name, "rotation"), color=style.THRUST, label="lower block" if r.stack else None)
         if r.stack:
-            rotation.plot(
-                t, 1e3 * run.array(name, "rotation_upper"), color=style.GROUND, linewidth=0.9, label="upper block"
-            )
+            rotation.plot(t, 1e3 * run.array(name, "rotation_upper"), color=style.GROUND, linewidth=0.9, label="upper block")
         for sign in (1, -1):
             rotation.axhline(1e3 * sign * r.critical_rotation_rad, color=style.EDGE, linestyle=":", linewidth=0.8)
-        reached = 1e3 * np.concatenate(
-            [run.array(name, what) for what in ("rotation", *(["rotation_upper"] if r.stack else []))]
-        )
+        reached = 1e3 * np.concatenate([run.array(name, what) for what in ("rotation", *(["rotation_upper"] if r.stack else []))])
         low, high = reached.min(initial=0.0), reached.max(initial=0.0)
         if low == high:  # it has not rocked
             low, high = -1e3 * r.critical_rotation_rad, 1e3 * r.critical_rotation_rad
         rotation.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
-        rotation.plot(
-            run.array(name, "impact_time"),
-            np.zeros(len(run.array(name, "impact_time"))),
-            "k|",
-            markersize=8,
-            label="impacts",
-        )
+        rotation.plot(run.array(name, "impact_time"), np.zeros(len(run.array(name, "impact_time"))), "k|", markersize=8, label="impacts")
         rotation.set_ylabel("rotation [mrad]\n+ to +x")
         style.legend_above(rotation)
-        style.energies(energy, "energy", [
-            (t, run.array(name, "kinetic"), {"label": "kinetic"}), (t, run.array(name, "potential"), {"label": "potential"}),
-            (t, run.array(name, "ledger"), {"label": "supplied less lost", "color": "k", "linestyle": "--", "linewidth": 0.8}),
-        ])  # fmt: skip
+        style.energies(
+            energy,
+            "energy",
+            [
+                (t, run.array(name, "kinetic"), {"label": "kinetic"}),
+                (t, run.array(name, "potential"), {"label": "potential"}),
+                (t, run.array(name, "ledger"), {"label": "supplied less lost", "color": "k", "linestyle": "--", "linewidth": 0.8}),
+            ],
+        )
         style.legend_above(energy)
         needed = run.array(name, "required_friction").max(axis=1) if len(t) else t
         friction.plot(t, np.minimum(needed, 2.0), color=style.HINGE, linewidth=0.8)
@@ -147,11 +135,15 @@ def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             rotation.plot(time, 1e3 * turned, linewidth=0.8, label=who)
         rotation.set_ylabel("rotation [mrad]\n+ to +x")
         style.legend_above(rotation)
-        style.energies(energy, "energy", [
-            (time, run.array(name, "contacts_kinetic_energy"), {"label": "kinetic"}),
-            (time, run.array(name, "contacts_friction_energy"), {"label": "lost in friction"}),
-            (time, run.array(name, "contacts_damping_energy"), {"label": "lost at impacts"}),
-        ])  # fmt: skip
+        style.energies(
+            energy,
+            "energy",
+            [
+                (time, run.array(name, "contacts_kinetic_energy"), {"label": "kinetic"}),
+                (time, run.array(name, "contacts_friction_energy"), {"label": "lost in friction"}),
+                (time, run.array(name, "contacts_damping_energy"), {"label": "lost at impacts"}),
+            ],
+        )
         style.legend_above(energy)
         slip.plot(time, 1e3 * np.abs(run.array(name, "contacts_slip")).max(axis=1), color=style.HINGE, linewidth=0.9)
         slip.set_ylabel("greatest slip\n[mm]")
@@ -187,27 +179,14 @@ def film_rocking(run: Stored, name: str, folder: Path) -> None:
         ground.plot(history, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
         ground.set_ylabel("ground [g]")
         upper = "rotation_upper" in run.arrays[name]  # of two stacked blocks
-        rotation.plot(
-            history,
-            1e3 * run.array(name, "rotation"),
-            color=style.HINGE,
-            linewidth=1.0,
-            label="lower block" if upper else None,
-        )
+        rotation.plot(history, 1e3 * run.array(name, "rotation"), color=style.HINGE, linewidth=1.0, label="lower block" if upper else None)
         if run.results_of(name, Rocking).hand_over:
             after = run.array(name, "contacts_time")
             ground.plot(after, run.array(name, "contacts_ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
             for _, turned in _turned_most(run, name):
                 rotation.plot(after, 1e3 * turned, linewidth=0.8)
         if upper:
-            rotation.plot(
-                history,
-                1e3 * run.array(name, "rotation_upper"),
-                "--",
-                color=style.GROUND,
-                linewidth=1.0,
-                label="upper block",
-            )
+            rotation.plot(history, 1e3 * run.array(name, "rotation_upper"), "--", color=style.GROUND, linewidth=1.0, label="upper block")
             rotation.legend()
         rotation.set_ylabel("rotation [mrad], + to +x")
         rotation.set_xlabel("time [s]")
@@ -251,18 +230,11 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
         base.set_ylim(edges.min(), edges.max())
         base.set_ylabel("base that pushes\nx [m]")
         sinking.plot(t, 1e3 * run.array(name, "sinking"), color=style.THRUST, linewidth=0.9)
-        sinking.axhline(
-            1e3 * run.results_of(name, Rocking).soft_base.sinking_at_rest_m,
-            color=style.EDGE,
-            linestyle=":",
-            linewidth=0.8,
-        )
+        sinking.axhline(1e3 * run.results_of(name, Rocking).soft_base.sinking_at_rest_m, color=style.EDGE, linestyle=":", linewidth=0.8)
         sinking.set_ylabel("settlement of its\nmiddle [mm]")
         sinking.invert_yaxis()
         sinking.set_xlabel("time [s]")
-        moving = np.flatnonzero(
-            np.abs(run.array(name, "rotation")) > 0.02 * np.abs(run.array(name, "rotation")).max(initial=0.0)
-        )
+        moving = np.flatnonzero(np.abs(run.array(name, "rotation")) > 0.02 * np.abs(run.array(name, "rotation")).max(initial=0.0))
         if len(moving):
             sinking.set_xlim(max(0.0, t[moving[0]] - 0.5), min(t[-1], t[moving[-1]] + 0.5))
         saved = style.save(fig, folder, f"{name}-base")
@@ -292,9 +264,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
     shown = np.where(moving[part, None], np.minimum(friction[part], 1.0), np.nan)
     with style.figure(8.0, 3.6, columns=2, width_ratios=[2.4, 1]) as (fig, (over_time, along)):
         joints = np.arange(friction.shape[1])
-        mesh = over_time.pcolormesh(
-            t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True
-        )
+        mesh = over_time.pcolormesh(t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
         fig.colorbar(mesh, ax=over_time, label="friction needed (1 and above)")
         over_time.set_xlabel("time [s]")
         over_time.set_ylabel("joint")
@@ -304,9 +274,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
         along.set_ylabel("joint")
         for ax in (over_time, along):
             style.numbers(ax.yaxis)
-        return style.save(
-            fig, folder, f"{name}-friction"
-        ), "Friction needed at the joints while it rocks (white: at rest)."
+        return style.save(fig, folder, f"{name}-friction"), "Friction needed at the joints while it rocks (white: at rest)."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -333,22 +301,13 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         for one in r.amplitudes_by_rule or []:
             curve = np.array(one.amplitudes_g, dtype=float)[order]
             ax.plot(d, curve, linewidth=1.2, linestyle="-.", label=f"rule {one.rule}, $c_v$ {one.restitution:.2f}")
-        for values, text in (
-            (r.sliding_from_g, "blocks slide from"),
-            (r.hinges_elsewhere_from_g, "hinges elsewhere from"),
-        ):
+        for values, text in ((r.sliding_from_g, "blocks slide from"), (r.hinges_elsewhere_from_g, "hinges elsewhere from")):
             if any(value is not None for value in values):
                 ax.plot(d, np.array(values, dtype=float)[order], ".", markersize=3.0, label=text)
         ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linewidth=0.8, linestyle=":")
-        for code, text in enumerate(
-            ("no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
-        ):
+        for code, text in enumerate(("no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
-        ax.set_xlabel(
-            {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(
-                r.pulse, "period T_p [s]"
-            )
-        )
+        ax.set_xlabel({"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]"))
         ax.set_ylabel("amplitude [g]")
         ax.set_ylim(0.0, a[-1])
         ax.set_xlim(*((d[0], d[-1]) if len(d) > 1 else (0.5 * d[0], 1.5 * d[0])))
@@ -381,13 +340,7 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         curve.axhline(gamma, linestyle=":", color=style.EDGE, linewidth=0.8)
         for k, i in enumerate(r.impulses):
             color = style.THRUST if i.verdict == "fails" else style.SAFE
-            curve.plot(
-                i.period_s,
-                abs(i.amplitude_g),
-                "o" if k == 0 else "s",
-                color=color,
-                markersize=7 if k == 0 else 5,
-            )
+            curve.plot(i.period_s, abs(i.amplitude_g), "o" if k == 0 else "s", color=color, markersize=7 if k == 0 else 5)
         at = [(i.period_s, abs(i.amplitude_g)) for i in r.impulses]
         style.letters(curve, at, [str(i.rank) for i in r.impulses], style.EDGE)
         top = max([3.0 * gamma, *(1.3 * abs(i.amplitude_g) for i in r.impulses)])
@@ -400,19 +353,11 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         t = run.array(name, "time")
         record.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.6)
         for k, (amplitude, length, start) in enumerate(
-            zip(
-                run.array(name, "impulse_amplitude"),
-                run.array(name, "impulse_period"),
-                run.array(name, "impulse_start"),
-                strict=True,
-            )
+            zip(run.array(name, "impulse_amplitude"), run.array(name, "impulse_period"), run.array(name, "impulse_start"), strict=True)
         ):
             s = np.linspace(0.0, length, 100)
             record.plot(
-                start + s,
-                amplitude / GRAVITY * np.sin(2 * np.pi * s / length),
-                color=style.THRUST,
-                linewidth=1.6 if k == 0 else 1.0,
+                start + s, amplitude / GRAVITY * np.sin(2 * np.pi * s / length), color=style.THRUST, linewidth=1.6 if k == 0 else 1.0
             )
             record.annotate(str(k + 1), (start + 0.25 * length, amplitude / GRAVITY), fontsize=8)
         if len(r.impulses):
@@ -421,9 +366,4 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         record.set_xlabel("time [s]")
         record.set_ylabel("ground acceleration [g]")
         record.set_title("Impulses of the motion")
-        return [
-            (
-                style.save(fig, folder, name),
-                "Impulses against the failure curve, and their times in the motion.",
-            )
-        ]
+        return [(style.save(fig, folder, name), "Impulses against the failure curve, and their times in the motion.")]

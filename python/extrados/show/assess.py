@@ -9,13 +9,13 @@ from extrados.results.assess import Agreement, Assess, StrategyVerdict
 from extrados.results.store import Stored
 from extrados.show import style
 
-OUTCOMES = {
-    "stands": style.SAFE, "collapses": style.THRUST, "cannot-stand": style.THRUST, "open": "#d98200", "not-applicable": "#9a9a9a",
-}  # fmt: skip
+OUTCOMES = {"stands": style.SAFE, "collapses": style.THRUST, "cannot-stand": style.THRUST, "open": "#d98200", "not-applicable": "#9a9a9a"}
 RELATIONS: dict[Agreement, tuple[str, str]] = {
-    "agree": ("#cfe3d6", "same verdict"), "apart": ("#f7e7a8", "same verdict, margins far apart"),
-    "open": ("#e4e4e4", "one of them open"), "disagree": ("#e9a79d", "stands against collapses"),
-}  # fmt: skip
+    "agree": ("#cfe3d6", "same verdict"),
+    "apart": ("#f7e7a8", "same verdict, margins far apart"),
+    "open": ("#e4e4e4", "one of them open"),
+    "disagree": ("#e9a79d", "stands against collapses"),
+}
 #: Where arrows end that show a margin of unknown end
 REACH = 1.35
 
@@ -23,12 +23,7 @@ REACH = 1.35
 def draw_assess(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Margins of all strategies, their agreement, and the motion with what statics bears."""
     r = run.results_of(name, Assess)
-    found = [
-        _margins(r, folder, name),
-        _agreement(r, folder, name),
-        _hazard(run, r, name, folder),
-        _tornado(r, folder, name),
-    ]
+    found = [_margins(r, folder, name), _agreement(r, folder, name), _hazard(run, r, name, folder), _tornado(r, folder, name)]
     return [one for one in found if one is not None]
 
 
@@ -104,13 +99,7 @@ def _agreement(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
                     _cell(ax, j, i, OUTCOMES[row.outcome], row.verdict_words, "white")
                 else:
                     relation = r.agreement[a][b]
-                    _cell(
-                        ax,
-                        j,
-                        i,
-                        RELATIONS[relation][0],
-                        {"agree": "=", "apart": "~", "disagree": "x", "open": "?"}[relation],
-                    )
+                    _cell(ax, j, i, RELATIONS[relation][0], {"agree": "=", "apart": "~", "disagree": "x", "open": "?"}[relation])
         ax.set_xlim(-0.5, n - 0.5)
         ax.set_ylim(n - 0.5, -0.5)
         ax.set_aspect("equal")
@@ -152,8 +141,13 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
         ax.plot(time, ground, color=style.EDGE, linewidth=0.7, label="ground acceleration")
         for row, line in zip(rows, ("--", ":", "-."), strict=False):
             for k, side in enumerate((1.0, -1.0)):
-                ax.axhline(side * (row.capacity or 0.0), color=style.THRUST, linewidth=1.0, linestyle=line,
-                           label=f"capacity by {row.label}" if k == 0 else None)  # fmt: skip
+                ax.axhline(
+                    side * (row.capacity or 0.0),
+                    color=style.THRUST,
+                    linewidth=1.0,
+                    linestyle=line,
+                    label=f"capacity by {row.label}" if k == 0 else None,
+                )
         told = ""
         if r.hazard.pulse_amplitude_g is not None and r.hazard.pulse_period_s is not None:
             told = f" Its primary impulse has {r.hazard.pulse_amplitude_g:.3g} g over {r.hazard.pulse_period_s:.3g} s."
@@ -195,7 +189,7 @@ def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
                     if value is not None and here is not None:
                         ax.plot(
                             [here, value], [k + 0.13 * up * apart] * 2, color=colour, linewidth=5.0 if apart else 8.0, solid_capstyle="butt"
-                        )  # fmt: skip
+                        )
             ax.plot([], [], color="#d98200", linewidth=8.0, label="value below")
             ax.plot([], [], color=style.HINGE, linewidth=8.0, label="value above")
             if here is not None:
@@ -210,9 +204,12 @@ def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         axes[0].set_ylim(len(rows) - 0.4, -0.6)
         style.legend_below(fig, axes[0])
         saved = style.save(fig, folder, f"{name}-sensitivity")
-    turned = [f"{row.key} {value:.3g}{f' {row.unit}' if row.unit else ''} ({label})" for row in rows
-              for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns),
-                                   ("discrete elements", row.dem_turns)) if value is not None]  # fmt: skip
+    turned = [
+        f"{row.key} {value:.3g}{f' {row.unit}' if row.unit else ''} ({label})"
+        for row in rows
+        for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns), ("discrete elements", row.dem_turns))
+        if value is not None
+    ]
     told = f" Verdicts change at: {'; '.join(turned)}." if turned else " No value that was run changes a verdict."
     if any(row.dem_base is not None for row in rows):
         told += " Discrete elements: displacement of their blocks over that of collapse."

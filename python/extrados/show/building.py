@@ -64,9 +64,7 @@ class Sheet:
         self.corner: dict[str, np.ndarray] = {}
         for view, size in zip(views, sizes, strict=True):
             at = x if beside else 0.5 * (WIDTH - size[0])
-            self.corner[view.name] = (
-                np.array([at + _aside(view, self.scale), top - size[1] + view.below]) - 1e3 / self.scale * view.low
-            )
+            self.corner[view.name] = np.array([at + _aside(view, self.scale), top - size[1] + view.below]) - 1e3 / self.scale * view.low
             self.ax.text(at + 0.5 * size[0], top - 3.0, view.name, ha="center", va="center", fontsize=8, weight="bold")
             if beside:
                 x += size[0] + GAP
@@ -102,16 +100,21 @@ class Sheet:
                 self.ax.plot(*np.array([here, there]).T, **(ink | {"linewidth": 0.25}))
         middle = start + at * (end - start) + ((-1.6, 0.0) if upright else (0.0, 1.6 if aside else -1.8))
         self.ax.text(
-            *style.pair(middle), text, fontsize=7, color=INK, ha="center", va="center", rotation=90 if upright else 0, zorder=7,
+            *style.pair(middle),
+            text,
+            fontsize=7,
+            color=INK,
+            ha="center",
+            va="center",
+            rotation=90 if upright else 0,
+            zorder=7,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
-        )  # fmt: skip
+        )
 
     def finish(self, words: Language, title: str, cells: Sequence[str]) -> None:
         """Frame, title strip and scale bar."""
         frame: dict[str, Any] = {"color": "black", "linewidth": 0.8, "zorder": 1}
-        box = np.array(
-            [[1.0, 1.0], [WIDTH - 1.0, 1.0], [WIDTH - 1.0, self.height - 1.0], [1.0, self.height - 1.0], [1.0, 1.0]]
-        )
+        box = np.array([[1.0, 1.0], [WIDTH - 1.0, 1.0], [WIDTH - 1.0, self.height - 1.0], [1.0, self.height - 1.0], [1.0, 1.0]])
         self.ax.plot(*box.T, **frame)
         self.ax.plot([1.0, WIDTH - 1.0], [STRIP, STRIP], **frame)
         edges = (1.0, 62.0, 124.0, WIDTH - 1.0)
@@ -123,9 +126,7 @@ class Sheet:
         x, y, long = edges[1] + 6.0, 5.0, 1e3 * step / self.scale
         for k in range(4):
             ends = np.array([[k, 0.0], [k + 1, 0.0], [k + 1, 1.0], [k, 1.0]]) * (0.25 * long, 1.2) + (x, y)
-            self.ax.add_patch(
-                Polygon(ends, facecolor="black" if k % 2 == 0 else "white", edgecolor="black", linewidth=0.5)
-            )
+            self.ax.add_patch(Polygon(ends, facecolor="black" if k % 2 == 0 else "white", edgecolor="black", linewidth=0.5))
         for part, value in ((0.0, 0.0), (0.5, 0.5 * step), (1.0, step)):
             unit = " m" if part == 1.0 else ""
             self.ax.text(x + part * long, y + 2.0, f"{words.given(value)}{unit}", fontsize=7, ha="center", va="bottom")
@@ -189,9 +190,7 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
     ends = [y for piece in pieces for y in piece] or [float(low[1]), float(high[1])]
     if earth is not None:
         ends.append(earth["road"])
-    across = View(
-        words("Cross-section A–A"), np.array([0.0, min(ends)]), np.array([depth, max(ends)]), LINE, 2.0 * LINE
-    )
+    across = View(words("Cross-section A–A"), np.array([0.0, min(ends)]), np.array([depth, max(ends)]), LINE, 2.0 * LINE)
     with style.canvas() as fig:
         sheet = Sheet(fig, [section, across])
         thin = len(outlines) > 200
@@ -211,9 +210,7 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
         for a, b in pieces:
             sheet.stone(across, [[0.0, a], [depth, a], [depth, b], [0.0, b]], thin)
         for support in drawing["supports"]:
-            sheet.ax.plot(
-                *sheet.to_paper(section, support).T, color="black", linewidth=1.6, zorder=3, solid_capstyle="butt"
-            )
+            sheet.ax.plot(*sheet.to_paper(section, support).T, color="black", linewidth=1.6, zorder=3, solid_capstyle="butt")
         for end, up in ((low[1], -1.0), (high[1], 1.0)):
             mark = sheet.to_paper(section, [[cut, end]])[0]
             line = np.array([[mark[0], mark[1] + 0.5 * up], [mark[0], mark[1] + 3.0 * up]])
@@ -227,10 +224,7 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
         saved = style.save(fig, folder, NAME)
     told = "; ".join(f"{name_of(words, row['name'])} {words.number(row['length_m'])} m" for row in rows)
     told = f" {told[:1].upper()}{told[1:]}." if told else ""
-    return (
-        saved,
-        f"{words('The building: section and cross-section at scale 1:{scale} on A4.', scale=sheet.scale)}{told}",
-    )
+    return (saved, f"{words('The building: section and cross-section at scale 1:{scale} on A4.', scale=sheet.scale)}{told}")
 
 
 def heading(deck: dict[str, Any]) -> str:
@@ -263,9 +257,18 @@ def name_of(words: Language, name: str) -> str:
 
 #: Names of dimensions that report and drawing tell
 DIMENSIONS = (
-    "clear span", "rise", "thickness at the crown", "width at the base", "width", "height", "thickness", "width of the left buttress",
-    "width of the right buttress", "width of the left pier", "width of the right pier",
-)  # fmt: skip
+    "clear span",
+    "rise",
+    "thickness at the crown",
+    "width at the base",
+    "width",
+    "height",
+    "thickness",
+    "width of the left buttress",
+    "width of the right buttress",
+    "width of the left pier",
+    "width of the right pier",
+)
 
 
 def _earth(sheet: Sheet, view: View, earth: dict[str, Any]) -> None:
@@ -299,9 +302,7 @@ def _levels(rows: list[dict[str, Any]]) -> list[int]:
     found = []
     for row in rows:
         a, b = sorted((row["start"][0], row["end"][0]))
-        level = next(
-            (k for k, there in enumerate(taken) if all(b <= c + 1e-9 or d <= a + 1e-9 for c, d in there)), len(taken)
-        )
+        level = next((k for k, there in enumerate(taken) if all(b <= c + 1e-9 or d <= a + 1e-9 for c, d in there)), len(taken))
         if level == len(taken):
             taken.append([])
         taken[level].append((a, b))
@@ -323,10 +324,17 @@ def _dimensions(sheet: Sheet, view: View, rows: list[dict[str, Any]], levels: li
             middle = np.array([max(a[0], b[0]) + 5.0, max(a[1], b[1]) + 2.5])
             sheet.ax.plot(*np.array([a, b]).T, color=INK, linewidth=1.0, zorder=6)
             sheet.ax.annotate(
-                text, style.pair(0.5 * (a + b)), xytext=style.pair(middle), textcoords="data", fontsize=7, color=INK, zorder=7, va="center",
+                text,
+                style.pair(0.5 * (a + b)),
+                xytext=style.pair(middle),
+                textcoords="data",
+                fontsize=7,
+                color=INK,
+                zorder=7,
+                va="center",
                 arrowprops={"arrowstyle": "-", "color": INK, "linewidth": 0.4},
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
-            )  # fmt: skip
+            )
         else:
             sheet.dimension(a, b, text, at=0.6 if abs(b[1] - a[1]) > abs(b[0] - a[0]) else 0.25)
 
@@ -353,9 +361,16 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
             turn = np.degrees(np.arctan2(along[1], along[0]))
             told = f"{wall['name']}: {words.number(float(np.linalg.norm(end - start)))} m, {words.quantity(thick, 'm')}"
             sheet.ax.text(
-                *style.pair(place), told, color=INK, ha="center", va="center", rotation=90.0 - (90.0 - turn) % 180.0, fontsize=7, zorder=7,
+                *style.pair(place),
+                told,
+                color=INK,
+                ha="center",
+                va="center",
+                rotation=90.0 - (90.0 - turn) % 180.0,
+                fontsize=7,
+                zorder=7,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
-            )  # fmt: skip
+            )
         for a, b in itertools.pairwise(storeys):
             here = sheet.to_paper(upright, [[0.0, a], [0.0, b], [upright.high[0], a], [upright.high[0], b]])
             sheet.dimension(here[0], here[1], words.number(float(b - a)), -LINE)
@@ -365,10 +380,6 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
         sheet.finish(words, _titled(deck), cells)
         saved = style.save(fig, folder, NAME)
     *first, last = [words.number(h) for h in structure["storeys"]]
-    heights = (
-        f"{words('Storeys, from the ground up')}: {', '.join([*first, last])} m"
-        if first
-        else f"{words('Storey')}: {last} m"
-    )
+    heights = f"{words('Storeys, from the ground up')}: {', '.join([*first, last])} m" if first else f"{words('Storey')}: {last} m"
     told = words("length of each wall on its middle plane, and its greatest thickness")
     return saved, f"{words('Plan of the building')}: {told}. {heights}."

@@ -19,9 +19,12 @@ SINGLE = int | float | str | None
 FILM, SHOWN = ("film", "line"), ("shown", "point")
 #: Blocks in space: how the page calls their arrays, and how results do
 SOLIDS = {
-    "vertex": "solid_vertex", "face": "solid_face", "face_start": "solid_face_start", "face_body": "solid_face_block",
+    "vertex": "solid_vertex",
+    "face": "solid_face",
+    "face_start": "solid_face_start",
+    "face_body": "solid_face_block",
     "body_centre": "solid_centroid",
-}  # fmt: skip
+}
 Arrays = dict[str, np.ndarray]
 Chart = dict[str, Any]
 
@@ -41,8 +44,7 @@ def _chart(title: str, x: dict[str, Any], y: dict[str, Any], series: list[dict[s
 def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     """Words of a run and, where an analysis is named, its charts, its body and the arrays that these name."""
     rows = [
-        {k: row.get(k) for k in ("name", "kind", "status", "reason", "answer", "warnings", "verdict", "seconds")}
-        for row in run.analyses
+        {k: row.get(k) for k in ("name", "kind", "status", "reason", "answer", "warnings", "verdict", "seconds")} for row in run.analyses
     ]
     deck = run.summary["deck"]
     words: dict[str, Any] = {"title": deck.get("title") or deck["path"], "deck": deck["path"], "analyses": rows}
@@ -61,9 +63,13 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     results = run.analysis(name)["results"]
     numbers = [[k, v] for k, v in results.items() if isinstance(v, SINGLE)]
     words |= {
-        "analysis": name, "kind": kind, "charts": made.charts, "body": made.body, "numbers": numbers[:60],
+        "analysis": name,
+        "kind": kind,
+        "charts": made.charts,
+        "body": made.body,
+        "numbers": numbers[:60],
         "tables": made.tables + [t for k, v in results.items() if (t := _rows(k, v)) is not None],
-    }  # fmt: skip
+    }
     return words, made.out
 
 
@@ -78,12 +84,7 @@ def _rows(name: str, value: Any) -> dict[str, Any] | None:
     columns = list(dict.fromkeys(k for row in value for k, v in row.items() if isinstance(v, SINGLE)))[:MOST_COLUMNS]
     columns = [k for k in columns if any(row.get(k) not in (None, "") for row in value)]
     rows = [[row.get(k) if isinstance(row.get(k), SINGLE) else None for k in columns] for row in value[:MOST_ROWS]]
-    return {
-        "title": name.replace("_", " "),
-        "columns": columns,
-        "rows": rows,
-        "left_out": max(0, len(value) - MOST_ROWS),
-    }
+    return {"title": name.replace("_", " "), "columns": columns, "rows": rows, "left_out": max(0, len(value) - MOST_ROWS)}
 
 
 class Shown:
@@ -103,9 +104,7 @@ class Shown:
             if name in self.arrays:
                 self.out[name] = self.arrays[name][keep]
 
-    def _draw(
-        self, title: str, x: dict[str, Any], y: dict[str, Any], series: list[dict[str, Any]], **more: Any
-    ) -> None:
+    def _draw(self, title: str, x: dict[str, Any], y: dict[str, Any], series: list[dict[str, Any]], **more: Any) -> None:
         self.charts.append(_chart(title, x, y, series, **more))
 
     def _pulses(self, title: str, x: dict[str, Any], series: list[dict[str, Any]], **more: Any) -> None:
@@ -138,18 +137,11 @@ class Shown:
 
     def _lines(self, *names: str) -> list[dict[str, str]]:
         """Stored lines of thrust, of states that are named."""
-        words = {
-            "collapse": "at collapse, load to +x",
-            "least": "least thrust",
-            "most": "greatest thrust",
-            "central": "most central",
-        }
+        words = {"collapse": "at collapse, load to +x", "least": "least thrust", "most": "greatest thrust", "central": "most central"}
         found = []
         for name in names:
             if f"{name}_line" in self.arrays:
-                self.out[f"{name}_line"], self.out[f"{name}_start"] = (
-                    self.arrays[f"{name}_line"], self.arrays[f"{name}_line_start"]
-                )  # fmt: skip
+                self.out[f"{name}_line"], self.out[f"{name}_start"] = (self.arrays[f"{name}_line"], self.arrays[f"{name}_line_start"])
                 found.append({"name": name, "label": words[name]})
         return found
 
@@ -160,16 +152,16 @@ class Shown:
         for name, source in SOLIDS.items():
             self.out[name] = self.arrays[source]
         self.out |= {"body_time": np.linspace(0.0, 1.0, 24), "pose": self.arrays["mechanism_pose"]}
-        self.body = {
-            "sort": "space",
-            "unit": "",
-            "label": "mechanism",
-            "swings": True,
-            "push": self._results.load_direction_deg,
-        }
+        self.body = {"sort": "space", "unit": "", "label": "mechanism", "swings": True, "push": self._results.load_direction_deg}
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
-            self._draw("Capacity over the direction of the push", _axis("rose_direction", "direction in plan", "deg"), _axis("", "collapse acceleration", "g"), [_series("rose_capacity", "capacity", sort="both")], least=0.0)  # fmt: skip
+            self._draw(
+                "Capacity over the direction of the push",
+                _axis("rose_direction", "direction in plan", "deg"),
+                _axis("", "collapse acceleration", "g"),
+                [_series("rose_capacity", "capacity", sort="both")],
+                least=0.0,
+            )
 
     def pushover(self) -> None:
         """Base shear over displacement of every sense or stage, and the building as it cracks under the first of them."""
@@ -194,12 +186,16 @@ class Shown:
         bends = [bool(a.numbers[0]) for a in self.run.series(self.name, "bends")]
         faces = [row for part in parts for row in part]
         self.out |= {
-            "vertex": self.arrays["node"], "face": np.concatenate(faces), "face_start": np.cumsum([0, *map(len, faces)]),
-            "body_time": events[pick], "state_load": self.arrays["state_load"][pick], "state_held": self._held(events[pick]),
+            "vertex": self.arrays["node"],
+            "face": np.concatenate(faces),
+            "face_start": np.cumsum([0, *map(len, faces)]),
+            "body_time": events[pick],
+            "state_load": self.arrays["state_load"][pick],
+            "state_held": self._held(events[pick]),
             "state_moved": self.arrays["state_displacement"][pick],
             "state_tone": self._cracked(parts, bends, self.arrays["state_width"][pick]),
             "state_width": self.arrays["state_width"][pick].max(axis=1),
-        }  # fmt: skip
+        }
         self.body = {"sort": "space", "unit": "", "label": "event", "walls": True}
 
     def _cracked(self, parts: list[np.ndarray], bends: list[bool], width: np.ndarray) -> np.ndarray:
@@ -234,7 +230,12 @@ class Shown:
         if "collapse_friction" in self.arrays:
             self.out["joint"] = np.arange(len(self.arrays["collapse_friction"]))
             self.send("collapse_friction", "collapse_normal")
-            self._draw("Friction needed at collapse", _axis("joint", "joint", ""), _axis("", "coefficient of friction", ""), [_series("collapse_friction", "needed", sort="points")])  # fmt: skip
+            self._draw(
+                "Friction needed at collapse",
+                _axis("joint", "joint", ""),
+                _axis("", "coefficient of friction", ""),
+                [_series("collapse_friction", "needed", sort="points")],
+            )
 
     def thrust(self) -> None:
         """The lines of least and greatest thrust."""
@@ -250,18 +251,18 @@ class Shown:
         turns = [_series("rotation", "rotation", factor=1e3)]
         if "rotation_upper" in self.arrays:  # of two stacked blocks
             self.send("rotation_upper", keep=keep)
-            turns = [
-                _series("rotation", "lower block", factor=1e3),
-                _series("rotation_upper", "upper block", factor=1e3, dashed=True),
-            ]
+            turns = [_series("rotation", "lower block", factor=1e3), _series("rotation_upper", "upper block", factor=1e3, dashed=True)]
         self.charts += [
-            _chart("Rotation", time, _axis("", "rotation", "mrad"), turns,
-                   marks="impact_time", cursor=True),
+            _chart("Rotation", time, _axis("", "rotation", "mrad"), turns, marks="impact_time", cursor=True),
             _chart("Ground", time, _axis("", "acceleration", "g"), [_series("ground", "ground", factor=1 / GRAVITY)], cursor=True),
-            _chart("Energy", time, _axis("", "energy", "J"),
-                   [_series("kinetic", "kinetic"), _series("potential", "potential"), _series("ledger", "supplied less lost", dashed=True)],
-                   cursor=True),
-        ]  # fmt: skip
+            _chart(
+                "Energy",
+                time,
+                _axis("", "energy", "J"),
+                [_series("kinetic", "kinetic"), _series("potential", "potential"), _series("ledger", "supplied less lost", dashed=True)],
+                cursor=True,
+            ),
+        ]
         if "film_time" in self.arrays:
             lines = {"line": self.arrays["film_line"]} if "film_line" in self.arrays else {}
             self._moving(self.arrays["film_time"], self.arrays["film_pose"], "s", "time", **lines)
@@ -300,28 +301,12 @@ class Shown:
             self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
         if "ground" in self.arrays:
             self.out["ground"] = self.arrays["ground"][fine]
-            self._draw(
-                "Ground",
-                axis,
-                _axis("", "acceleration", "g"),
-                [_series("ground", "ground", factor=1 / GRAVITY)],
-                cursor=True,
-            )
-        energies = [
-            k
-            for k in ("work", "kinetic", "potential", "elastic", "damping", "friction")
-            if f"{k}_energy" in self.arrays
-        ]
+            self._draw("Ground", axis, _axis("", "acceleration", "g"), [_series("ground", "ground", factor=1 / GRAVITY)], cursor=True)
+        energies = [k for k in ("work", "kinetic", "potential", "elastic", "damping", "friction") if f"{k}_energy" in self.arrays]
         for kind in energies:
             self.out[f"{kind}_energy"] = self.arrays[f"{kind}_energy"][fine]
         if energies:
-            self._draw(
-                "Energy",
-                axis,
-                _axis("", "energy", "kJ"),
-                [_series(f"{k}_energy", k, factor=1e-3) for k in energies],
-                cursor=True,
-            )
+            self._draw("Energy", axis, _axis("", "energy", "kJ"), [_series(f"{k}_energy", k, factor=1e-3) for k in energies], cursor=True)
 
     def supports(self) -> None:
         """What opens as supports move, or the thrust on the way to collapse."""
@@ -330,11 +315,7 @@ class Shown:
             self.out["force_x"], self.out["force_y"] = self.arrays["force"].T
             rows = [_series("force_x", "horizontal", factor=1e-3), _series("force_y", "vertical", factor=1e-3)]
             self._draw(
-                "Force on the support",
-                _axis("movement", "movement of the support", "mm", 1e3),
-                _axis("", "force", "kN"),
-                rows,
-                cursor=True,
+                "Force on the support", _axis("movement", "movement of the support", "mm", 1e3), _axis("", "force", "kN"), rows, cursor=True
             )
         film = next((f for f in (FILM, SHOWN) if f"{f[0]}_movement" in self.arrays), None)
         if film is not None:
@@ -344,9 +325,7 @@ class Shown:
         elif "settled_pose" in self.arrays:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)
-            self._moving(
-                share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement"
-            )
+            self._moving(share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement")
 
     def sla(self) -> None:
         """The load curve, and the wall as it cracks."""
@@ -399,14 +378,7 @@ class Shown:
         if "measured_displacement" in self.arrays:
             self.send("measured_displacement", "measured_least", "measured_greatest")
             series.append(
-                _series(
-                    "measured_greatest",
-                    "measured",
-                    x="measured_displacement",
-                    lower="measured_least",
-                    factor=1e-3,
-                    sort="band",
-                )
+                _series("measured_greatest", "measured", x="measured_displacement", lower="measured_least", factor=1e-3, sort="band")
             )
         self._draw("Load and displacement", axis, _axis("", "load", "kN"), series, trace="state")
 
@@ -417,9 +389,7 @@ class Shown:
             unit = self.run.arrays[self.name]["grid"].unit
             about = self.run.arrays[self.name]["grid"].about
             rows = []
-            for colour, stage in enumerate(
-                ("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_")
-            ):
+            for colour, stage in enumerate(("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_")):
                 words = stage.strip("_").replace("_", " ") or "collapse"
                 low = f"{stage}lower" if stage else "curve_lower"
                 high = low.replace("lower", "upper")
@@ -428,22 +398,11 @@ class Shown:
                     rows.append(_series(high, f"band of {words}", lower=low, sort="band", colour=colour))
                 if f"{stage}curve" in a:
                     self.send(f"{stage}curve")
-                    rows.append(
-                        _series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_"), colour=colour)
-                    )
+                    rows.append(_series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_"), colour=colour))
             self.send("grid", "stripe_level", "stripe_collapse_probability")
             if "stripe_level" in a:
-                rows.append(
-                    _series("stripe_collapse_probability", "share that collapsed", x="stripe_level", sort="points")
-                )
-            self._draw(
-                "Fragility",
-                _axis("grid", about or "intensity", unit),
-                _axis("", "probability", ""),
-                rows,
-                least=0.0,
-                most=1.0,
-            )
+                rows.append(_series("stripe_collapse_probability", "share that collapsed", x="stripe_level", sort="points"))
+            self._draw("Fragility", _axis("grid", about or "intensity", unit), _axis("", "probability", ""), rows, least=0.0, most=1.0)
         if "duration" in a and "lower" in a:
             self.send("duration", "lower", "upper")
             rows = [_series("upper", "95 % interval", lower="lower", sort="band")]
@@ -451,17 +410,26 @@ class Shown:
                 if key not in ("duration", "lower", "upper") and np.shape(a[key]) == np.shape(a["duration"]):
                     self.send(key)
                     rows.append(_series(key, key.replace("_", " "), sort="both"))
-            self._draw(
-                "Over durations", _axis("duration", "duration", "s"), _axis("", "share", ""), rows, least=0.0, most=1.0
-            )
+            self._draw("Over durations", _axis("duration", "duration", "s"), _axis("", "share", ""), rows, least=0.0, most=1.0)
         if "bin_edge" in a and "bin_count" in a:
             self.out["bin_middle"] = 0.5 * (a["bin_edge"][1:] + a["bin_edge"][:-1])
             self.send("bin_count")
-            self._draw("Greatest rotations", _axis("bin_middle", "greatest rotation over the critical one", ""), _axis("", "runs", ""), [_series("bin_count", "runs", sort="bars")], least=0.0)  # fmt: skip
+            self._draw(
+                "Greatest rotations",
+                _axis("bin_middle", "greatest rotation over the critical one", ""),
+                _axis("", "runs", ""),
+                [_series("bin_count", "runs", sort="bars")],
+                least=0.0,
+            )
         if "pga" in a and "peak_ratio" in a:
             keep = self._over_time(len(a["pga"]))
             self.send("pga", "peak_ratio", keep=keep)
-            self._draw("Members", _axis("pga", "peak ground acceleration", "g"), _axis("", "rotation over critical", ""), [_series("peak_ratio", "members", sort="points")])  # fmt: skip
+            self._draw(
+                "Members",
+                _axis("pga", "peak ground acceleration", "g"),
+                _axis("", "rotation over critical", ""),
+                [_series("peak_ratio", "members", sort="points")],
+            )
 
     def failure_domain(self) -> None:
         """The lowest amplitudes that cause collapse over the lengths of pulses."""
@@ -507,13 +475,20 @@ class Shown:
             self.out |= {f"size_{k}": size, f"value_{k}": value}
             unit = rows[name]["unit"]
             factor, shown = {"N": (1e-3, "kN"), "Pa": (1e-6, "MPa")}.get(unit, (1.0, unit))
-            self._draw(name, _axis(f"size_{k}", "size", shown, factor), _axis("", "value", self._results.unit), [_series(f"value_{k}", name)])  # fmt: skip
+            self._draw(
+                name, _axis(f"size_{k}", "size", shown, factor), _axis("", "value", self._results.unit), [_series(f"value_{k}", name)]
+            )
         self.charts = self.charts[:12]
 
     def moving_load(self) -> None:
         """The live-load factor over the place of the load."""
         self.send("place", "capacity")
-        self._draw("Collapse load", _axis("place", "place of the first axle", "m"), _axis("", "load", "kN"), [_series("capacity", "capacity", factor=1e-3)])  # fmt: skip
+        self._draw(
+            "Collapse load",
+            _axis("place", "place of the first axle", "m"),
+            _axis("", "load", "kN"),
+            [_series("capacity", "capacity", factor=1e-3)],
+        )
         if "mechanism_pose" in self.arrays and "outline" in self.arrays:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)
@@ -523,20 +498,14 @@ class Shown:
         """The motion, and its primary impulses beside the pulses that bring the structure down."""
         self.out |= {"time": self.arrays["time"], "ground": self.arrays["ground"] / GRAVITY}
         self._draw("Ground", _axis("time", "time", "s"), _axis("", "acceleration", "g"), [_series("ground", "ground")])
-        self.send(
-            "period",
-            "failing_amplitude",
-            "failing_amplitude_own",
-            "computed_period",
-            "computed_amplitude",
-            "impulse_period",
-        )
+        self.send("period", "failing_amplitude", "failing_amplitude_own", "computed_period", "computed_amplitude", "impulse_period")
         self.out["impulse_amplitude"] = np.abs(self.arrays["impulse_amplitude"]) / GRAVITY
         known = [
-            _series("failing_amplitude", "fails (Eq. 5.8)"), _series("failing_amplitude_own", "fails, its own fit", dashed=True),
+            _series("failing_amplitude", "fails (Eq. 5.8)"),
+            _series("failing_amplitude_own", "fails, its own fit", dashed=True),
             _series("computed_amplitude", "fails, computed", x="computed_period"),
             _series("impulse_amplitude", "impulses of the motion", x="impulse_period", sort="points"),
-        ]  # fmt: skip
+        ]
         rows = [r for r in known if np.isfinite(np.asarray(self.out.get(r["array"], np.nan), dtype=float)).any()]
         self._pulses("Pulses that cause collapse", _axis("period", "period", "s"), rows)
 
@@ -545,52 +514,63 @@ class Shown:
         r = self._results
         rows = []
         for k, curve in enumerate(r.curves):
-            self.out[f"duration_{k}"], self.out[f"amplitude_{k}"] = (
-                self.arrays["duration"][k],
-                self.arrays["amplitude"][k],
-            )
+            self.out[f"duration_{k}"], self.out[f"amplitude_{k}"] = (self.arrays["duration"][k], self.arrays["amplitude"][k])
             rows.append(_series(f"amplitude_{k}", curve.label, x=f"duration_{k}", dashed=k % 2 == 1))
         if r.impulses:
             self.out["impulse_period"] = np.array([i.period_s for i in r.impulses])
             self.out["impulse_amplitude"] = np.array([abs(i.amplitude_g) for i in r.impulses])
             rows.append(_series("impulse_amplitude", "impulses of motions", x="impulse_period", sort="points"))
-        self._pulses(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)  # fmt: skip
+        self._pulses(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)
 
     def local_mechanism(self) -> None:
         """The capacity curve of the mechanism."""
         if "displacement" not in self.arrays:
             return
         self.send("displacement", "acceleration")
-        self._draw("Capacity of the mechanism as it moves", _axis("displacement", "displacement", "m"), _axis("", "acceleration", "g"), [_series("acceleration", "capacity")], least=0.0)  # fmt: skip
+        self._draw(
+            "Capacity of the mechanism as it moves",
+            _axis("displacement", "displacement", "m"),
+            _axis("", "acceleration", "g"),
+            [_series("acceleration", "capacity")],
+            least=0.0,
+        )
 
     def survey(self) -> None:
         """The capacity of each section, the weakest first."""
         names, gamma = self.arrays["section_name"].astype(str), self.arrays["gamma"]
         order = np.argsort(np.where(np.isfinite(gamma), gamma, np.inf), kind="stable")
         self.out |= {"rank": np.arange(1, len(order) + 1), "capacity": gamma[order]}
-        self._draw("Capacity of the sections, the weakest first", _axis("rank", "rank", ""), _axis("", "collapse acceleration", "g"), [_series("capacity", "capacity", sort="points")], least=0.0)  # fmt: skip
+        self._draw(
+            "Capacity of the sections, the weakest first",
+            _axis("rank", "rank", ""),
+            _axis("", "collapse acceleration", "g"),
+            [_series("capacity", "capacity", sort="points")],
+            least=0.0,
+        )
         rows = [[str(names[k]), float(gamma[k]) if np.isfinite(gamma[k]) else None] for k in order.tolist()]
         self.tables.append(
-            {"title": "sections", "columns": ["section", "capacity [g]"], "rows": rows[:MOST_ROWS], "left_out": max(0, len(rows) - MOST_ROWS)}
-        )  # fmt: skip
+            {
+                "title": "sections",
+                "columns": ["section", "capacity [g]"],
+                "rows": rows[:MOST_ROWS],
+                "left_out": max(0, len(rows) - MOST_ROWS),
+            }
+        )
 
     def others(self) -> None:
         """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""
         found = self.run.arrays[self.name]
-        axes = {
-            n: a
-            for n, a in found.items()
-            if a.dims == (n,) and np.size(a.numbers) > 1 and np.asarray(a.numbers).dtype.kind in "fiu"
-        }
+        axes = {n: a for n, a in found.items() if a.dims == (n,) and np.size(a.numbers) > 1 and np.asarray(a.numbers).dtype.kind in "fiu"}
         for axis, about in axes.items():
-            rows = [
-                n
-                for n, a in found.items()
-                if a.dims == (axis,) and n != axis and np.asarray(a.numbers).dtype.kind in "fiu"
-            ]
+            rows = [n for n, a in found.items() if a.dims == (axis,) and n != axis and np.asarray(a.numbers).dtype.kind in "fiu"]
             keep = self._over_time(np.size(about.numbers))
             for unit in dict.fromkeys(found[n].unit for n in rows):
                 some = [n for n in rows if found[n].unit == unit][:6]
                 self.send(axis, *some, keep=keep)
-                self._draw(", ".join(n.replace("_", " ") for n in some), _axis(axis, axis.replace("_", " "), about.unit), _axis("", some[0].replace("_", " ") if len(some) == 1 else "", unit), [_series(n, n.replace("_", " ")) for n in some])  # fmt: skip
+                self._draw(
+                    ", ".join(n.replace("_", " ") for n in some),
+                    _axis(axis, axis.replace("_", " "), about.unit),
+                    _axis("", some[0].replace("_", " ") if len(some) == 1 else "", unit),
+                    [_series(n, n.replace("_", " ")) for n in some],
+                )
         self.charts = self.charts[:12]

@@ -15,7 +15,7 @@ def document(names: tuple[str, str], found: Comparison) -> Document:
         ("Verdicts", found.verdicts, ("analysis", "before", "after", "after / before")),
         ("Deck", found.deck, ("key", "before", "after", "after / before")),
         ("Program", found.program, ("", "before", "after", "")),
-    ):  # fmt: skip
+    ):
         if rows:
             blocks += [Heading(title), Table(head, [row(c) for c in rows], (2.6, 2.0, 2.0, 1.0))]
     only = [(n, "before") for n in found.only_old] + [(n, "after") for n in found.only_new]

@@ -22,9 +22,7 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
     r = run.results_of(name, FailureCurves)
     duration, amplitude = run.array(name, "duration"), run.array(name, "amplitude")
     natural, slender = run.array(name, "natural_time"), bool(run.array(name, "slender").all())
-    first = {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(
-        r.pulse, "period T_p [s]"
-    )
+    first = {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]")
     # beyond 0.6 of the map a line has less than three times the contrast to paper
     shades = matplotlib.colormaps["cividis"](np.linspace(0.0, 0.6, len(r.curves)))
     fits = [(text, run.array(name, key), line) for key, text, line in FITS if key in run.arrays[name]]
@@ -46,25 +44,24 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
             falls = [sum(c.run_outcomes[k] == "collapse" for c in r.curves) for k in range(len(places))]
             for marker, colour, text, some in (
                 ("o", style.THRUST, "causes collapse of all", [k for k, n in enumerate(falls) if n == len(r.curves)]),
-                (
-                    "^",
-                    style.MODES[2],
-                    "causes collapse of some",
-                    [k for k, n in enumerate(falls) if 0 < n < len(r.curves)],
-                ),
+                ("^", style.MODES[2], "causes collapse of some", [k for k, n in enumerate(falls) if 0 < n < len(r.curves)]),
                 ("s", style.SAFE, "causes no collapse", [k for k, n in enumerate(falls) if n == 0]),
             ):
                 if some:
-                    plain.plot(*places[some].T, marker, color=colour, markeredgecolor=style.EDGE, markersize=5,
-                               label=f"impulse of a motion that {text}")  # fmt: skip
+                    plain.plot(
+                        *places[some].T,
+                        marker,
+                        color=colour,
+                        markeredgecolor=style.EDGE,
+                        markersize=5,
+                        label=f"impulse of a motion that {text}",
+                    )
             style.letters(plain, places, [str(k + 1) for k in range(len(places))], style.EDGE)
         plain.set_ylim(0.0, top)
         plain.set_xlim(0.0, None)
         plain.set_xlabel(first)
         plain.set_ylabel("amplitude [g]")
-        plain.set_title(
-            f"Lowest failing {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}"
-        )
+        plain.set_title(f"Lowest failing {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}")
         scaled.set_ylim(0.0, None)
         if slender:
             scaled.set_xlabel("frequency of the pulse over p")

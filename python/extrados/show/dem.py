@@ -8,16 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from extrados.results.dem import (
-    HINGED_FIRST,
-    HINGED_SECOND,
-    DemDomain,
-    DemParameters,
-    DemRun,
-    DemTilt,
-    SolidDemRun,
-    SolidDemTilt,
-)
+from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, DemDomain, DemParameters, DemRun, DemTilt, SolidDemRun, SolidDemTilt
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, solid_dem, style
@@ -107,9 +98,17 @@ class Scene:
             style.draw_hinges(ax, points)
         if arrows > 0.0:
             ax.quiver(
-                place[:, 0], place[:, 1], rate[:, 0] * arrows, rate[:, 1] * arrows, angles="xy", scale_units="xy",
-                scale=1.0, color=style.THRUST, width=0.005, zorder=6,
-            )  # fmt: skip
+                place[:, 0],
+                place[:, 1],
+                rate[:, 0] * arrows,
+                rate[:, 1] * arrows,
+                angles="xy",
+                scale_units="xy",
+                scale=1.0,
+                color=style.THRUST,
+                width=0.005,
+                zorder=6,
+            )
         ax.set_xlim(left, right)
         ax.set_ylim(bottom, top)
         ax.set_aspect("equal")
@@ -165,10 +164,7 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     fastest = max((float(np.hypot(*rate[k, :, :2].T).max()) for k in picks), default=0.0)
     left, right, bottom, top = scene.window
     arrows = 0.15 * max(right - left, top - bottom) / fastest if fastest > 1e-6 else 0.0
-    with style.figure(9.5, 3.1 * rows * min(1.6, max(0.4, scene.aspect)) + 0.4, rows=rows, columns=columns) as (
-        fig,
-        axes,
-    ):
+    with style.figure(9.5, 3.1 * rows * min(1.6, max(0.4, scene.aspect)) + 0.4, rows=rows, columns=columns) as (fig, axes):
         for ax, k in zip(axes, picks, strict=False):
             scene.draw(ax, k, arrows)
             ax.set_title(f"{run.array(name, 'time')[k]:.3f} s")
@@ -197,11 +193,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if rigid is not None and len(tracked) == 1:
             other = run.arrays[rigid["name"]]
             top.plot(
-                other["time"].numbers,
-                1e3 * other["rotation"].numbers,
-                color="#999999",
-                linewidth=2.4,
-                label="rocking by one mechanism",
+                other["time"].numbers, 1e3 * other["rotation"].numbers, color="#999999", linewidth=2.4, label="rocking by one mechanism"
             )
         for i in most:
             top.plot(time, 1e3 * rotation[:, i], label=label[int(i)])
@@ -219,9 +211,14 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     time = run.array(name, "time")
     words = {
-        "work": "work of the ground", "kinetic": "kinetic", "potential": "potential (gravity)", "elastic": "elastic",
-        "damping": "lost in damping", "friction": "lost in friction", "residual": "residual",
-    }  # fmt: skip
+        "work": "work of the ground",
+        "kinetic": "kinetic",
+        "potential": "potential (gravity)",
+        "elastic": "elastic",
+        "damping": "lost in damping",
+        "friction": "lost in friction",
+        "residual": "residual",
+    }
     with style.figure(8.0, 5.4, rows=2, sharex=True) as (fig, (top, low)):
         style.energies(top, "kinetic energy", [(time, run.array(name, "kinetic_energy"), {"color": style.THRUST})])
         top.set_title("Drops are impacts")
@@ -262,13 +259,9 @@ def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     colours = ListedColormap([style.HINGE, "#f4f1ea", style.THRUST, "#d9a400"])
     with style.figure(8.0, min(7.0, 1.6 + 0.18 * hinge.shape[1])) as (fig, (ax,)):
         norm = BoundaryNorm([-1.5, -0.5, 0.5, 1.5, 2.5], 4)
-        mesh = ax.pcolormesh(
-            time, np.arange(hinge.shape[1]), hinge.T, cmap=colours, norm=norm, shading="nearest", rasterized=True
-        )
+        mesh = ax.pcolormesh(time, np.arange(hinge.shape[1]), hinge.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
         bar = fig.colorbar(mesh, ax=ax, ticks=[-1, 0, 1, 2])
-        bar.ax.set_yticklabels(
-            ["hinge, first end\n(of a ring: intrados)", "closed", "hinge, second end\n(of a ring: extrados)", "open"]
-        )
+        bar.ax.set_yticklabels(["hinge, first end\n(of a ring: intrados)", "closed", "hinge, second end\n(of a ring: extrados)", "open"])
         style.numbers(ax.yaxis)
         ax.set_xlabel("time [s]")
         ax.set_ylabel("joint")
@@ -289,9 +282,11 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             for k, row in enumerate(rows):
                 if row.varied == kind:
                     ax.plot(
-                        times[k].numbers, 1e3 * turns[k].numbers,
-                        label=f"{'' if kind == 'friction' else 'x '}{row.value:g} ({row.outcome})", linewidth=0.9,
-                    )  # fmt: skip
+                        times[k].numbers,
+                        1e3 * turns[k].numbers,
+                        label=f"{'' if kind == 'friction' else 'x '}{row.value:g} ({row.outcome})",
+                        linewidth=0.9,
+                    )
             ax.set_title(kind, loc="left")
             ax.set_ylabel("rotation [mrad]")
             style.legend_above(ax)
@@ -314,22 +309,14 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.plot(run.array(name, "elements_mode_II"), amplitude, "s-", label="discrete elements, mode II")
         for mode, mark in (("mode_I", "--"), ("mode_II", ":")):
             if mode in run.arrays[name]:
-                ax.plot(
-                    run.array(name, mode),
-                    amplitude,
-                    mark,
-                    color="black",
-                    label=f"four hinges, {mode.replace('_', ' ')}",
-                )
+                ax.plot(run.array(name, mode), amplitude, mark, color="black", label=f"four hinges, {mode.replace('_', ' ')}")
         ax.set_xlabel("t_p [s]" if run.results_of(name, DemDomain).pulse == "step" else "T_p [s]")
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
     drawn = [(saved, "Shortest failing pulses; to the right of a curve it collapses.")]
-    return (
-        [*drawn, _both_solvers(run, name, folder)] if run.results_of(name, DemDomain).cross_check is not None else drawn
-    )
+    return [*drawn, _both_solvers(run, name, folder)] if run.results_of(name, DemDomain).cross_check is not None else drawn
 
 
 def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -337,9 +324,7 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     check, fails = run.results_of(name, DemDomain).cross_check, run.array(name, "fails")
     amplitude, duration = np.meshgrid(run.array(name, "amplitude"), run.array(name, "duration"), indexing="ij")
     first, second = (
-        ("nonsmooth", "compliant")
-        if run.results_of(name, DemDomain).curves[0].solver == "nonsmooth"
-        else ("compliant", "nonsmooth")
+        ("nonsmooth", "compliant") if run.results_of(name, DemDomain).curves[0].solver == "nonsmooth" else ("compliant", "nonsmooth")
     )
     kinds = (
         (fails[0] & fails[1], "collapses by both", {"marker": "s", "color": style.HINGE}),

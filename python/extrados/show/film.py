@@ -47,15 +47,7 @@ def clock(time: float, speed: float) -> str:
     return f"{time:.2f} s" + ("" if speed == 1.0 else f", at {speed:g} of real time")
 
 
-def write(
-    fig: Figure,
-    path: Path,
-    kind: str,
-    rate: int,
-    frames: np.ndarray,
-    draw: Callable[[int], Any],
-    moving: Sequence[Artist],
-) -> None:
+def write(fig: Figure, path: Path, kind: str, rate: int, frames: np.ndarray, draw: Callable[[int], Any], moving: Sequence[Artist]) -> None:
     """Draw pictures in turn and write them as a film: what moves anew in each, all else once."""
     fig.set_dpi(DPI)
     style.lay_out(fig)  # pictures must not wobble
@@ -95,9 +87,7 @@ def gif(images: list[Image.Image], rate: int) -> bytes:
     palette.putpalette([value for _, colour in counted for value in colour] + spread)
     first, *rest = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     out = io.BytesIO()
-    first.save(
-        out, "GIF", save_all=True, append_images=rest, duration=max(20, round(1000 / rate)), loop=0, optimize=False
-    )
+    first.save(out, "GIF", save_all=True, append_images=rest, duration=max(20, round(1000 / rate)), loop=0, optimize=False)
     return out.getvalue()
 
 
@@ -106,12 +96,34 @@ def _mp4(path: Path, drawn: Iterator[np.ndarray], rate: int) -> None:
     with tempfile.TemporaryFile() as told:
         process = subprocess.Popen(
             [
-                ffmpeg() or "ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
-                "-s", f"{PIXELS[0]}x{PIXELS[1]}", "-framerate", str(rate), "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p",
-                "-crf", "20", "-movflags", "+faststart", str(path),
+                ffmpeg() or "ffmpeg",
+                "-y",
+                "-loglevel",
+                "error",
+                "-f",
+                "rawvideo",
+                "-pix_fmt",
+                "rgb24",
+                "-s",
+                f"{PIXELS[0]}x{PIXELS[1]}",
+                "-framerate",
+                str(rate),
+                "-i",
+                "-",
+                "-c:v",
+                "libx264",
+                "-pix_fmt",
+                "yuv420p",
+                "-crf",
+                "20",
+                "-movflags",
+                "+faststart",
+                str(path),
             ],
-            stdin=subprocess.PIPE, stdout=told, stderr=told,
-        )  # fmt: skip
+            stdin=subprocess.PIPE,
+            stdout=told,
+            stderr=told,
+        )
         assert process.stdin is not None
         try:
             with contextlib.suppress(BrokenPipeError):  # it says why
@@ -148,9 +160,7 @@ def poses_window(ax: Axes, stones: Stones, poses: np.ndarray) -> None:
     window(ax, np.concatenate([still, near - half, near + half]))
 
 
-def history(
-    ax: Axes, target: Path, time: np.ndarray, speed: float, show: Callable[[int], None], cursors: list, moving: list
-) -> None:
+def history(ax: Axes, target: Path, time: np.ndarray, speed: float, show: Callable[[int], None], cursors: list, moving: list) -> None:
     """The film of a history beside its charts: `show` puts what moves, `moving`, to a step of time [s]; the cursors of
     the charts and a clock over `ax` go with it."""
     kind = target.suffix[1:]

@@ -45,9 +45,7 @@ def side_by_side(tasks: list[Callable[[], Given]], workers: int, longest: float 
                     value, error = pipe.recv()
                 except (EOFError, OSError):
                     process.join(_LOOK)
-                    raise Lost(
-                        f"its process ended with code {process.exitcode}; -9 is often for want of memory"
-                    ) from None
+                    raise Lost(f"its process ended with code {process.exitcode}; -9 is often for want of memory") from None
                 _end(pipe, process)
                 del running[pipe]
                 if error is not None:
@@ -67,9 +65,7 @@ def side_by_side(tasks: list[Callable[[], Given]], workers: int, longest: float 
 def _begun(task: Callable[[], Given]) -> tuple[Connection, BaseProcess]:
     """Our end of the pipe of a new process that computes a task, and the process."""
     ours, theirs = Pipe(duplex=False)
-    process = multiprocessing.get_context("fork").Process(
-        target=_compute, args=(task, theirs, os.getpid()), daemon=True
-    )
+    process = multiprocessing.get_context("fork").Process(target=_compute, args=(task, theirs, os.getpid()), daemon=True)
     with warnings.catch_warnings(), theirs:
         # Python warns of the idle threads of the numerical libraries, which drawing does not use
         warnings.filterwarnings("ignore", ".*multi-threaded.*fork", DeprecationWarning)

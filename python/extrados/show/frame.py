@@ -33,20 +33,17 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
                 seen.add(row.pattern)
                 main = row.eccentricity == 0.0
                 ax.plot(
-                    1e3 * sign * np.array(row.control_displacement_m), 1e-3 * sign * np.array(row.base_shear_N),
-                    color=PATTERNS.get(row.pattern, style.EDGE), linewidth=1.3 if main else 0.6, label=label,
-                )  # fmt: skip
+                    1e3 * sign * np.array(row.control_displacement_m),
+                    1e-3 * sign * np.array(row.base_shear_N),
+                    color=PATTERNS.get(row.pattern, style.EDGE),
+                    linewidth=1.3 if main else 0.6,
+                    label=label,
+                )
                 if row.ultimate_displacement_m is not None and main:
                     moved, shear = np.array(row.control_displacement_m), np.array(row.base_shear_N)
                     before = shear[moved < row.ultimate_displacement_m]
                     at = before[-1] if len(before) else shear[0]
-                    ax.plot(
-                        1e3 * sign * row.ultimate_displacement_m,
-                        1e-3 * sign * at,
-                        "o",
-                        color=style.EDGE,
-                        markersize=3.5,
-                    )
+                    ax.plot(1e3 * sign * row.ultimate_displacement_m, 1e-3 * sign * at, "o", color=style.EDGE, markersize=3.5)
             ax.axhline(0.0, color=style.EDGE, linewidth=0.6)
             ax.axvline(0.0, color=style.EDGE, linewidth=0.6)
             ax.set_xlabel("control displacement [mm]")
@@ -62,10 +59,7 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
         )
     )
     for angle in angles:
-        number = min(
-            (k for k, row in enumerate(r.runs, 1) if row.direction_deg == angle),
-            key=lambda k: r.runs[k - 1].peak_base_shear_N,
-        )
+        number = min((k for k, row in enumerate(r.runs, 1) if row.direction_deg == angle), key=lambda k: r.runs[k - 1].peak_base_shear_N)
         row = r.runs[number - 1]
         state = run.array(name, f"state_{number}")
         told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"
@@ -83,28 +77,11 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
     wide = float(np.clip(0.55 * total, 5.0, 11.0))
     with style.figure(wide, wide * float(height.max()) / total + 1.5) as (fig, (ax,)):
         for w in range(len(length)):
-            ax.add_patch(
-                Rectangle(
-                    (first[w], 0.0), length[w], height[w], facecolor="#b9b2a3", edgecolor=style.EDGE, linewidth=0.6
-                )
-            )
+            ax.add_patch(Rectangle((first[w], 0.0), length[w], height[w], facecolor="#b9b2a3", edgecolor=style.EDGE, linewidth=0.6))
         for (a, b, low, high), w, value in zip(part, of.astype(int), state.astype(int), strict=True):
-            ax.add_patch(
-                Rectangle(
-                    (first[w] + a, low),
-                    b - a,
-                    high - low,
-                    facecolor=COLOURS[value],
-                    edgecolor=style.EDGE,
-                    linewidth=0.4,
-                )
-            )
+            ax.add_patch(Rectangle((first[w] + a, low), b - a, high - low, facecolor=COLOURS[value], edgecolor=style.EDGE, linewidth=0.4))
         for w, a, b, low, high in holes:
-            ax.add_patch(
-                Rectangle(
-                    (first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6
-                )
-            )
+            ax.add_patch(Rectangle((first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6))
         for w, label in enumerate(run.results_of(name, FramePushover).walls):
             ax.text(first[w] + 0.5 * length[w], 1.01 * height[w], label, ha="center", va="bottom", fontsize=8)
         ax.set_xlim(-0.3, total + 0.3)
@@ -132,9 +109,17 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for k, ax in enumerate(axes):
             ax.plot(place[:, 0], place[:, 1], ".", color=style.STONE, markersize=3)
             ax.quiver(
-                place[:, 0], place[:, 1], scale * shape[k, :, 0], scale * shape[k, :, 1], place[:, -1], angles="xy", scale_units="xy",
-                scale=1.0, width=0.006, cmap="viridis",
-            )  # fmt: skip
+                place[:, 0],
+                place[:, 1],
+                scale * shape[k, :, 0],
+                scale * shape[k, :, 1],
+                place[:, -1],
+                angles="xy",
+                scale_units="xy",
+                scale=1.0,
+                width=0.006,
+                cmap="viridis",
+            )
             ax.set_aspect("equal")
             for set_limit, axis in ((ax.set_xlim, 0), (ax.set_ylim, 1)):
                 ends = np.concatenate([place[:, axis], place[:, axis] + scale * shape[k, :, axis]])
@@ -186,20 +171,12 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
             drift, fell = 100.0 * run.array(name, "drift"), run.array(name, "exceeded")[:, -1] == 1
             for which, word, mark in ((~fell, "no collapse", "."), (fell, "collapse", "x")):
                 shown = np.minimum(drift[which], LARGEST_DRIFT)
-                axes[1].plot(
-                    run.array(name, "intensity")[which], shown, mark, color=style.THRUST, markersize=4, label=word
-                )
+                axes[1].plot(run.array(name, "intensity")[which], shown, mark, color=style.THRUST, markersize=4, label=word)
             axes[1].set_yscale("log")
             axes[1].legend()
             axes[1].set_xlabel(f"{r.intensity} [g]")
             axes[1].set_ylabel("greatest drift of a pier [%]")
         saved = style.save(fig, folder, f"{name}-fragility")
-    caption = f"Fragility over {r.motions} motions: fitted curves" + (
-        ", and shares at the levels" if r.levels_g else ""
-    )
-    caption += (
-        f"; right: greatest drift of every run, at most {LARGEST_DRIFT:g} %."
-        if history
-        else "; steps: shares of the motions."
-    )
+    caption = f"Fragility over {r.motions} motions: fitted curves" + (", and shares at the levels" if r.levels_g else "")
+    caption += f"; right: greatest drift of every run, at most {LARGEST_DRIFT:g} %." if history else "; steps: shares of the motions."
     return [(saved, caption)]

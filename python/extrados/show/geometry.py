@@ -12,13 +12,7 @@ from matplotlib.colors import to_rgb
 from extrados.results.solid_files import Solid
 from extrados.show import scene, style
 
-COLOURS = {
-    "closed": style.GROUND,
-    "open": "#d98200",
-    "overlap": style.THRUST,
-    "loose end": "#d98200",
-    "sole": style.HINGE,
-}
+COLOURS = {"closed": style.GROUND, "open": "#d98200", "overlap": style.THRUST, "loose end": "#d98200", "sole": style.HINGE}
 MOST_ZOOMS = 4
 MOST_NUMBERED = 40
 
@@ -33,9 +27,7 @@ class Mark:
     between: str
 
 
-def draw_survey(
-    folder: Path, name: str, outlines: list[np.ndarray], joints: np.ndarray, ground: np.ndarray, marks: list[Mark]
-) -> Path:
+def draw_survey(folder: Path, name: str, outlines: list[np.ndarray], joints: np.ndarray, ground: np.ndarray, marks: list[Mark]) -> Path:
     """Write folder/NAME.png and .svg; joints and ground (k, 4) x, y, x, y [m]. The worst places are shown enlarged."""
     points = np.concatenate(outlines)
     tall = float(np.ptp(points[:, 1]) / max(np.ptp(points[:, 0]), 1e-9))
@@ -54,9 +46,14 @@ def draw_survey(
             if len(here):
                 small = status == "closed"
                 ax.plot(
-                    *here.T, "." if small else "o", color=colour, markersize=2.0 if small else 7.0, zorder=4,
-                    markerfacecolor=colour if small else "none", label=f"{status} ({len(here)})",
-                )  # fmt: skip
+                    *here.T,
+                    "." if small else "o",
+                    color=colour,
+                    markersize=2.0 if small else 7.0,
+                    zorder=4,
+                    markerfacecolor=colour if small else "none",
+                    label=f"{status} ({len(here)})",
+                )
         numbered = amiss[:MOST_NUMBERED]
         if numbered:
             style.letters(ax, np.array([m.place for m in numbered]), [str(number[id(m)]) for m in numbered], "black")
@@ -96,12 +93,7 @@ SHRUNK = 0.82  # of their size: stones of the exploded drawing, so that what lie
 
 
 def draw_stones(
-    folder: Path,
-    name: str,
-    parts: Sequence[Solid],
-    owner: np.ndarray,
-    contacts: Sequence[np.ndarray],
-    grounded: np.ndarray,
+    folder: Path, name: str, parts: Sequence[Solid], owner: np.ndarray, contacts: Sequence[np.ndarray], grounded: np.ndarray
 ) -> None:
     """Write folder/NAME.png and .svg: solids as they stand, and shrunk about their middles with the contacts between them,
     those on the ground in another colour."""
@@ -114,17 +106,15 @@ def draw_stones(
     whole = scene.Faces(points, faces, block)
     whose = np.repeat(owner, [len(p.vertices) for p in parts])
     count = int(owner.max()) + 1
-    middle = (
-        np.stack([np.bincount(whose, x, count) for x in points.T], axis=1)
-        / np.bincount(whose, minlength=count)[:, None]
-    )
+    middle = np.stack([np.bincount(whose, x, count) for x in points.T], axis=1) / np.bincount(whose, minlength=count)[:, None]
     shrunk = middle[whose] + SHRUNK * (points - middle[whose])
     first = len(points) + np.cumsum([0, *map(len, contacts)])
     sheets = [np.arange(a, a + len(c)) for a, c in zip(first[:-1].tolist(), contacts, strict=True)]
     both = scene.Faces(
-        np.concatenate([shrunk, *contacts]), [*faces, *sheets, *(s[::-1] for s in sheets)],
+        np.concatenate([shrunk, *contacts]),
+        [*faces, *sheets, *(s[::-1] for s in sheets)],
         np.concatenate([block, *[np.where(grounded, count + 1, count)] * 2]),
-    )  # fmt: skip
+    )
     stone = np.tile(to_rgb(style.STONE), (count, 1))
     colours = np.vstack([stone, to_rgb(style.HINGE), to_rgb(style.GROUND)])
     with style.figure(10.5, 5.0, columns=2) as (fig, axes):

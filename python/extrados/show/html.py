@@ -52,13 +52,23 @@ def page(document: Document, folder: Path) -> str:
     opening, blocks = _numbered(document.opening, numbers), _numbered([*document.blocks, *document.annex], numbers)
     images = {
         b.name: base64.b64encode((folder / f"{b.name}.svg").read_bytes()).decode()
-        for _, b, _ in (*opening, *blocks) if isinstance(b, Figure)
-    }  # fmt: skip
-    return jinja2.Environment(autoescape=True).from_string(TEMPLATE).render(
-        document=document, opening=opening, blocks=blocks, images=images, looks={document.words(look): look for look in LOOKS},
-        long=re.compile(r"\S{28}"), logo=_logo(document, folder),
-        contents=[b.text for _, b, _ in blocks if isinstance(b, Heading) and b.level == 1],
-    )  # fmt: skip
+        for _, b, _ in (*opening, *blocks)
+        if isinstance(b, Figure)
+    }
+    return (
+        jinja2.Environment(autoescape=True)
+        .from_string(TEMPLATE)
+        .render(
+            document=document,
+            opening=opening,
+            blocks=blocks,
+            images=images,
+            looks={document.words(look): look for look in LOOKS},
+            long=re.compile(r"\S{28}"),
+            logo=_logo(document, folder),
+            contents=[b.text for _, b, _ in blocks if isinstance(b, Heading) and b.level == 1],
+        )
+    )
 
 
 def _logo(document: Document, folder: Path) -> str:

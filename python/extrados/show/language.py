@@ -66,9 +66,7 @@ class Language:
 
     def quantity(self, value: float, unit: str, given: bool = False) -> str:
         """A value in SI as engineers write it: kN, MPa, mm, with three figures, or with those that were given."""
-        factor, shown, _ = next(
-            (row for row in reversed(UNITS.get(unit, ())) if abs(value) >= row[2]), (1.0, unit, 0.0)
-        )
+        factor, shown, _ = next((row for row in reversed(UNITS.get(unit, ())) if abs(value) >= row[2]), (1.0, unit, 0.0))
         shown = re.sub(r"\^(\d)", lambda found: "⁰¹²³⁴⁵⁶⁷⁸⁹"[int(found[1])], shown)
         text = self.given(value * factor) if given else self.number(value * factor)
         return f"{text} {self(shown)}".strip()

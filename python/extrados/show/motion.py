@@ -25,9 +25,12 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for k, impulse in enumerate(r.impulses):
             s = np.linspace(0.0, impulse.period_s, 100)
             acc.plot(
-                impulse.start_s + s, impulse.amplitude_g * np.sin(2 * np.pi * s / impulse.period_s),
-                color=style.THRUST, linewidth=1.6 if k == 0 else 0.9, label="strongest impulses" if k == 0 else None,
-            )  # fmt: skip
+                impulse.start_s + s,
+                impulse.amplitude_g * np.sin(2 * np.pi * s / impulse.period_s),
+                color=style.THRUST,
+                linewidth=1.6 if k == 0 else 0.9,
+                label="strongest impulses" if k == 0 else None,
+            )
         acc.set_ylabel("acceleration [g]")
         if said := ", ".join(part for part in (r.title, r.station) if part):
             acc.set_title(said)
@@ -35,13 +38,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             acc.legend(loc="upper right")
         vel.plot(t, 100 * run.array(name, "velocity"), color=style.HINGE, linewidth=0.9)
         if r.wavelet_pulse.indicator > 0.5:
-            vel.plot(
-                t,
-                100 * run.array(name, "pulse_velocity"),
-                color=style.THRUST,
-                linewidth=0.9,
-                label="extracted velocity pulse",
-            )
+            vel.plot(t, 100 * run.array(name, "pulse_velocity"), color=style.THRUST, linewidth=0.9, label="extracted velocity pulse")
             vel.legend(loc="upper right")
         vel.set_ylabel("velocity\n[cm/s]")
         dis.plot(t, 100 * run.array(name, "displacement"), color=style.EDGE, linewidth=0.9)
@@ -79,9 +76,12 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         _fourier_axes(fourier, run.array(name, "frequency"), run.array(name, "fourier"), faint=smoothed)
         if smoothed:
             fourier.loglog(
-                run.array(name, "smooth_frequency"), 100 * run.array(name, "fourier_smooth"), color=style.THRUST,
-                linewidth=1.2, label="smoothed (Konno and Ohmachi)",
-            )  # fmt: skip
+                run.array(name, "smooth_frequency"),
+                100 * run.array(name, "fourier_smooth"),
+                color=style.THRUST,
+                linewidth=1.2,
+                label="smoothed (Konno and Ohmachi)",
+            )
             fourier.legend(loc="lower left", fontsize=7)
             caption += ", raw and smoothed by Konno and Ohmachi's window (b = 40)"
         found.append((style.save(fig, folder, f"{name}-spectra"), f"{caption}."))
@@ -92,9 +92,13 @@ def _fourier_axes(ax: Axes, frequency: np.ndarray, amplitude: np.ndarray, faint:
     """A raw Fourier spectrum; faint where a smoothed one is drawn over it."""
     inside = (frequency >= 0.05) & (frequency <= 50.0)
     ax.loglog(
-        frequency[inside], 100 * amplitude[inside], color=style.HINGE, linewidth=0.6, alpha=0.45 if faint else 1.0,
+        frequency[inside],
+        100 * amplitude[inside],
+        color=style.HINGE,
+        linewidth=0.6,
+        alpha=0.45 if faint else 1.0,
         label="raw" if faint else None,
-    )  # fmt: skip
+    )
     top = 100 * amplitude[inside].max(initial=1e-12)
     ax.set_ylim(top * 1e-4, 2 * top)
     ax.set_xlabel("frequency [Hz]")
@@ -137,43 +141,23 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             _fourier_axes(axes[1], run.array(name, "frequency"), run.array(name, "fourier"))
             if "line" in arrays:
                 axes[1].loglog(
-                    run.array(name, "line"),
-                    100 * run.array(name, "line_spectrum"),
-                    "o-",
-                    color=style.THRUST,
-                    markersize=3,
-                    label="target",
+                    run.array(name, "line"), 100 * run.array(name, "line_spectrum"), "o-", color=style.THRUST, markersize=3, label="target"
                 )
                 axes[1].legend(loc="lower left")
         found.append(
             (
                 style.save(fig, folder, f"{name}-spectra"),
                 "Response spectra of the set"
-                + (
-                    "; root mean square Fourier amplitude (the sum of few lines has peaks at them)."
-                    if columns == 2
-                    else "."
-                ),
+                + ("; root mean square Fourier amplitude (the sum of few lines has peaks at them)." if columns == 2 else "."),
             )
         )
     with style.figure(5.0, 3.6) as (fig, (ax,)):
-        ax.plot(
-            run.array(name, "impulse_period"),
-            run.array(name, "impulse_amplitude"),
-            ".",
-            color=style.THRUST,
-            markersize=4,
-        )
+        ax.plot(run.array(name, "impulse_period"), run.array(name, "impulse_amplitude"), ".", color=style.THRUST, markersize=4)
         ax.set_xlabel("period of the primary impulse [s]")
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.set_ylim(bottom=0.0)
-        found.append(
-            (
-                style.save(fig, folder, f"{name}-impulses"),
-                "Primary impulses: the single sine that fits each motion best.",
-            )
-        )
+        found.append((style.save(fig, folder, f"{name}-impulses"), "Primary impulses: the single sine that fits each motion best."))
     return found
 
 
@@ -189,11 +173,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             ax.loglog(f, factor * run.array(name, "flow_limit"), color=style.HINGE, label="flow")
             for k, mass in enumerate(run.array(name, "mass")):
                 ax.loglog(
-                    f,
-                    factor * run.array(name, "force_limit")[k],
-                    "--" if k else "-",
-                    color=style.THRUST,
-                    label=f"force, {mass:.4g} kg",
+                    f, factor * run.array(name, "force_limit")[k], "--" if k else "-", color=style.THRUST, label=f"force, {mass:.4g} kg"
                 )
             ax.fill_between(
                 f,
@@ -212,10 +192,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         acc.set_ylabel("acceleration amplitude [g]")
         dis.legend(loc="lower left")
         found.append(
-            (
-                style.save(fig, folder, f"{name}-capacity"),
-                "Capacity of the table for harmonic motion, as displacement and as acceleration.",
-            )
+            (style.save(fig, folder, f"{name}-capacity"), "Capacity of the table for harmonic motion, as displacement and as acceleration.")
         )
     if "drive_time" in arrays:
         r = run.results_of(name, ShakeTable)
@@ -223,9 +200,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         with style.figure(8.0, 5.0, rows=3, sharex=True) as (fig, (dis, vel, acc)):
             dis.plot(t, 100 * run.array(name, "drive_displacement"), color=style.HINGE)
             for sign in (1, -1):
-                dis.axhline(
-                    100 * sign * arrays["stroke_limit"].numbers[0], color=style.EDGE, linestyle="--", linewidth=0.8
-                )
+                dis.axhline(100 * sign * arrays["stroke_limit"].numbers[0], color=style.EDGE, linestyle="--", linewidth=0.8)
                 vel.axhline(100 * sign * r.max_velocity_m_s, color=style.EDGE, linestyle="--", linewidth=0.8)
             vel.plot(t, 100 * run.array(name, "drive_velocity"), color=style.HINGE)
             acc.plot(
@@ -235,9 +210,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
                 linewidth=0.6,
                 label="target",
             )
-            acc.plot(
-                t, run.array(name, "drive_acceleration") / GRAVITY, color=style.THRUST, linewidth=0.6, label="played"
-            )
+            acc.plot(t, run.array(name, "drive_acceleration") / GRAVITY, color=style.THRUST, linewidth=0.6, label="played")
             acc.legend(loc="upper right", ncols=2)
             dis.set_ylabel("displacement\n[cm]")
             vel.set_ylabel("velocity\n[cm/s]")

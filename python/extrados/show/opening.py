@@ -18,18 +18,38 @@ Figures = list[tuple[str, str]]
 MECHANISMS = ("-collapse", "-mechanism")
 #: Kinds of analysis in words
 TITLES = {
-    "tilt": "Collapse acceleration by limit analysis", "thrust": "Thrust lines", "sweep": "Variation of one value",
-    "survey": "Survey of sections", "imperfections": "Uncertainty of the survey", "supports": "Moving supports",
-    "moving-load": "Moving load", "rocking": "Rocking under the motion", "failure-domain": "Failure domain of a pulse",
-    "failure-curves": "Failure curves of sines", "assessment": "Assessment by primary impulses", "fragility": "Fragility",
-    "resonance": "Resonance", "rocking-spectrum": "Rocking spectrum", "harmonic-map": "Map of harmonic motions",
-    "code-checks": "Checks of codes", "local-mechanism": "Local mechanism by codes", "motion": "Ground motion",
-    "shake-table": "Shake table", "sla": "Sequentially linear analysis", "pushover": "Pushover", "dem": "Discrete elements",
-    "dem-domain": "Failure domain of discrete elements", "assess": "Comparison of the strategies", "strengthen": "Strengthening",
-    "dem-parameters": "Parameters of discrete elements", "frame-modes": "Modes of the frame",
-    "frame-pushover": "Pushover of the frame", "frame-history": "Response of the frame to the motion",
-    "frame-fragility": "Fragility of the frame", "modes": "Natural frequencies",
-}  # fmt: skip
+    "tilt": "Collapse acceleration by limit analysis",
+    "thrust": "Thrust lines",
+    "sweep": "Variation of one value",
+    "survey": "Survey of sections",
+    "imperfections": "Uncertainty of the survey",
+    "supports": "Moving supports",
+    "moving-load": "Moving load",
+    "rocking": "Rocking under the motion",
+    "failure-domain": "Failure domain of a pulse",
+    "failure-curves": "Failure curves of sines",
+    "assessment": "Assessment by primary impulses",
+    "fragility": "Fragility",
+    "resonance": "Resonance",
+    "rocking-spectrum": "Rocking spectrum",
+    "harmonic-map": "Map of harmonic motions",
+    "code-checks": "Checks of codes",
+    "local-mechanism": "Local mechanism by codes",
+    "motion": "Ground motion",
+    "shake-table": "Shake table",
+    "sla": "Sequentially linear analysis",
+    "pushover": "Pushover",
+    "dem": "Discrete elements",
+    "dem-domain": "Failure domain of discrete elements",
+    "assess": "Comparison of the strategies",
+    "strengthen": "Strengthening",
+    "dem-parameters": "Parameters of discrete elements",
+    "frame-modes": "Modes of the frame",
+    "frame-pushover": "Pushover of the frame",
+    "frame-history": "Response of the frame to the motion",
+    "frame-fragility": "Fragility of the frame",
+    "modes": "Natural frequencies",
+}
 #: A safety factor below this is thin
 THIN = 1.5
 #: Analyses that the table of the first page lists
@@ -123,27 +143,33 @@ def _comparison(run: Stored, lead: dict[str, Any], words: Language) -> Table:
 
     if isinstance(r, Assess):
         rows = [
-            (s.label, words(s.verdict_words if s.status == "ok" else s.status), number(s.demand, s.unit), number(s.capacity, s.unit), s.margin_told(""))
+            (
+                s.label,
+                words(s.verdict_words if s.status == "ok" else s.status),
+                number(s.demand, s.unit),
+                number(s.capacity, s.unit),
+                s.margin_told(""),
+            )
             for s in r.verdicts
-        ]  # fmt: skip
-        return Table(
-            tuple(map(words, ("strategy", "verdict", "demand", "capacity", "margin"))), rows, (2.4, 1.2, 1.2, 1.2, 1.2)
-        )
+        ]
+        return Table(tuple(map(words, ("strategy", "verdict", "demand", "capacity", "margin"))), rows, (2.4, 1.2, 1.2, 1.2, 1.2))
     verified = getattr(r, "verification", None)
     if verified is not None and verified.checks:
         return Table(tuple(map(words, COLUMNS)), rows_of(verified), WIDTHS)
     judged = [a for a in run.analyses if a["verdict"]]
     if len(judged) > 1 and not isinstance(r, Checked):
         rows = [
-            (title_of(words, a["name"], a["kind"]), words(OUTCOMES[w["outcome"]]), number(w["demand"], w["unit"]),
-             number(w["capacity"], w["unit"]), number(w["ratio"], ""))
-            for a in [lead, *(a for a in judged if a is not lead)][:MOST] for w in [a["verdict"]]
-        ]  # fmt: skip
-        return Table(
-            tuple(map(words, ("analysis", "verdict", "demand", "capacity", "safety factor"))),
-            rows,
-            (2.6, 1.3, 1.2, 1.2, 1.2),
-        )
+            (
+                title_of(words, a["name"], a["kind"]),
+                words(OUTCOMES[w["outcome"]]),
+                number(w["demand"], w["unit"]),
+                number(w["capacity"], w["unit"]),
+                number(w["ratio"], ""),
+            )
+            for a in [lead, *(a for a in judged if a is not lead)][:MOST]
+            for w in [a["verdict"]]
+        ]
+        return Table(tuple(map(words, ("analysis", "verdict", "demand", "capacity", "safety factor"))), rows, (2.6, 1.3, 1.2, 1.2, 1.2))
     head: tuple[str, ...] = tuple(map(words, ("demand", "capacity", "safety factor")))
     row: tuple[str, ...] = (number(v["demand"], v["unit"]), number(v["capacity"], v["unit"]), number(v["ratio"], ""))
     if isinstance(r, Checked) and r.clause:
@@ -163,14 +189,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
         for s in judged:
             groups[s.verdict_words] = groups.get(s.verdict_words, 0) + 1
         told = ", ".join(f"{n} {words(word)}" for word, n in groups.items()) or words("none")
-        said.append(
-            words(
-                "{judged} of {all} strategies have a verdict: {groups}.",
-                judged=len(judged),
-                all=len(r.verdicts),
-                groups=told,
-            )
-        )
+        said.append(words("{judged} of {all} strategies have a verdict: {groups}.", judged=len(judged), all=len(r.verdicts), groups=told))
         said.append(
             words("Unexplained differences between strategies: {count}.", count=len(r.unexplained))
             if r.unexplained
@@ -185,9 +204,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
             said.append(words("The deck names no code; the report applies {code}.", code=r.code))
         if "verify clause" in (r.clause or ""):
             said.append(words("The clause was not verified against the standard. Compare it before use."))
-        open_parts = [
-            a["name"] for a in run.analyses if isinstance(run[a["name"]], Checked) and a["verdict"]["ratio"] is None
-        ]
+        open_parts = [a["name"] for a in run.analyses if isinstance(run[a["name"]], Checked) and a["verdict"]["ratio"] is None]
         if open_parts:
             said.append(words("No check decides for: {parts}.", parts=", ".join(open_parts)))
     verified = getattr(r, "verification", None)
@@ -204,9 +221,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
     if v["bound"] in ("upper", "lower"):
         said.append(words(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound."))
     if v["violated"]:
-        said.append(
-            f"{words('Assumptions that do not hold: {count}.', count=len(v['violated']))}{_first(words, v['violated'])}"
-        )
+        said.append(f"{words('Assumptions that do not hold: {count}.', count=len(v['violated']))}{_first(words, v['violated'])}")
     warnings = sum(len(a["warnings"]) for a in run.analyses)
     if warnings:
         said.append(words("Warnings in this report: {count}.", count=warnings))
@@ -221,14 +236,12 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
             "Check the geometry, the density and the supports of the deck. If they are right, prop the structure before anything else."
         )
     if outcome == "collapses":
-        sized = words("Size the intervention with an analysis of kind strengthen.") if "strengthen" in kinds.ANALYSES else (
-            words("Add ties, thickness or a buttress to the deck, and run it again.")
-        )  # fmt: skip
-        grown = (
-            words("The capacity must grow by a factor of {factor}.", factor=words.number(1.0 / factor)) + " "
-            if factor
-            else ""
+        sized = (
+            words("Size the intervention with an analysis of kind strengthen.")
+            if "strengthen" in kinds.ANALYSES
+            else (words("Add ties, thickness or a buttress to the deck, and run it again."))
         )
+        grown = words("The capacity must grow by a factor of {factor}.", factor=words.number(1.0 / factor)) + " " if factor else ""
         return f"{grown}{sized}"
     if outcome == "open":
         if v["violated"]:
@@ -236,12 +249,8 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
                 return words("Resolve the first assumption that does not hold.")
             return f"Resolve the first assumption that does not hold: {v['violated'][0]}"
         if isinstance(r, Assess) and r.not_done:
-            return words(
-                "Finish the steps that the time limit cut off, with a larger budget: {step}.", step=r.not_done[0]
-            )
-        return words(
-            "Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first."
-        )
+            return words("Finish the steps that the time limit cut off, with a larger budget: {step}.", step=r.not_done[0])
+        return words("Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first.")
     if outcome == "stands":
         if factor is not None and factor < THIN:
             return words(
@@ -260,9 +269,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
     return (
         words("No implemented rule covers this element. Use limit analysis and rocking dynamics (kind assess).")
         if isinstance(r, Checked)
-        else words(
-            "The report gives a capacity without a demand. Give the action of the site, a motion or a load, and run the deck again."
-        )
+        else words("The report gives a capacity without a demand. Give the action of the site, a motion or a load, and run the deck again.")
     )
 
 

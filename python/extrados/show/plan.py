@@ -39,17 +39,23 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
             along = (wall.end - wall.start) / np.linalg.norm(wall.end - wall.start)
             side = 0.5 * wall.thickness * np.array([-along[1], along[0]])
             outline = [wall.start + side, wall.end + side, wall.end - side, wall.start - side]
-            plan.add_collection(
-                PolyCollection([outline], facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7)
+            plan.add_collection(PolyCollection([outline], facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7))
+            plan.annotate(
+                "",
+                wall.start + 0.62 * (wall.end - wall.start),
+                wall.start + 0.5 * (wall.end - wall.start),
+                arrowprops={"arrowstyle": "->", "color": style.HINGE, "linewidth": 0.8},
             )
             plan.annotate(
-                "", wall.start + 0.62 * (wall.end - wall.start), wall.start + 0.5 * (wall.end - wall.start),
-                arrowprops={"arrowstyle": "->", "color": style.HINGE, "linewidth": 0.8},
-            )  # fmt: skip
-            plan.annotate(
-                wall.name, 0.5 * (wall.start + wall.end), xytext=(-8 * along[1], 8 * along[0]),
-                textcoords="offset points", ha="center", va="center", fontsize=8, color=style.HINGE,
-            )  # fmt: skip
+                wall.name,
+                0.5 * (wall.start + wall.end),
+                xytext=(-8 * along[1], 8 * along[0]),
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                fontsize=8,
+                color=style.HINGE,
+            )
         plan.autoscale_view()
         plan.margins(0.15)
         plan.set_aspect("equal")
@@ -63,9 +69,14 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
             for joint, ends in wall.joints:
                 ax.add_collection(LineCollection(list(ends), colors=style.THRUST, linewidths=1.6, zorder=3))
                 ax.annotate(
-                    f"joint {joint}", ends.reshape(-1, 2).mean(axis=0), xytext=(4, 4), textcoords="offset points",
-                    fontsize=7, color=style.THRUST, zorder=4,
-                )  # fmt: skip
+                    f"joint {joint}",
+                    ends.reshape(-1, 2).mean(axis=0),
+                    xytext=(4, 4),
+                    textcoords="offset points",
+                    fontsize=7,
+                    color=style.THRUST,
+                    zorder=4,
+                )
             for height in levels:
                 ax.axhline(height, color=style.HINGE, linewidth=0.6, linestyle=":")
             ax.autoscale_view()
@@ -87,7 +98,7 @@ def draw_shells(folder: Path, name: str, parts: list[tuple[str, np.ndarray, np.n
     with style.canvas(9.4, 4.6) as fig:
         for ax, view, title in zip(
             fig.subplots(1, 2), (scene.View(-60.0, 28.0), scene.View(-90.0, 90.0)), ("from a corner", "from above"), strict=True
-        ):  # fmt: skip
+        ):
             axes = view.axes
             shapes, depth, colors = [], [], []
             for _, corner, thickness in parts:
@@ -97,22 +108,10 @@ def draw_shells(folder: Path, name: str, parts: list[tuple[str, np.ndarray, np.n
                 colors += [shades[int(np.abs(thick - t).argmin())] for t in thickness]
             order = np.argsort(depth, kind="stable")
             ax.add_collection(
-                PolyCollection(
-                    [shapes[k] for k in order],
-                    facecolors=[colors[k] for k in order],
-                    edgecolors="#b3a98f",
-                    linewidths=0.3,
-                )
+                PolyCollection([shapes[k] for k in order], facecolors=[colors[k] for k in order], edgecolors="#b3a98f", linewidths=0.3)
             )
             held = feet @ axes.T
-            ax.plot(
-                *held[:, :2].T,
-                "^",
-                color=style.HINGE,
-                markersize=4,
-                linestyle="none",
-                zorder=3.0 if view.elevation == 90.0 else 0.5,
-            )
+            ax.plot(*held[:, :2].T, "^", color=style.HINGE, markersize=4, linestyle="none", zorder=3.0 if view.elevation == 90.0 else 0.5)
             ax.autoscale_view()
             ax.margins(0.05)
             ax.set_aspect("equal")
@@ -121,10 +120,12 @@ def draw_shells(folder: Path, name: str, parts: list[tuple[str, np.ndarray, np.n
             ax.set_xlabel("x [m]" if view.elevation == 90.0 else "across the view [m]")
             ax.set_ylabel("y [m]" if view.elevation == 90.0 else "up the view [m]")
         fig.legend(
-            [Patch(facecolor=shade, edgecolor="#b3a98f") for shade in shades], [f"{1e3 * t:.4g} mm thick" for t in thick],
-            loc="outside lower center", ncols=min(6, len(thick)),
+            [Patch(facecolor=shade, edgecolor="#b3a98f") for shade in shades],
+            [f"{1e3 * t:.4g} mm thick" for t in thick],
+            loc="outside lower center",
+            ncols=min(6, len(thick)),
             title=f"{sum(len(c) for _, c, _ in parts)} elements; triangles: nodes that are held",
-        )  # fmt: skip
+        )
         style.write(fig, folder, name)
     return folder / f"{name}.png"
 

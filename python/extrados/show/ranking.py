@@ -10,17 +10,10 @@ from extrados.show.telling import cell, kind_of
 
 
 def document(
-    title: str,
-    rows: list[tuple[str, str, float, str, str]],
-    runs: list[tuple[str, Stored | None]],
-    out: Path,
-    figures: bool,
+    title: str, rows: list[tuple[str, str, float, str, str]], runs: list[tuple[str, Stored | None]], out: Path, figures: bool
 ) -> Document:
     """rows: building, overall, least margin, its strategy, statement; runs: the stored run of each, below `out`."""
-    ranked = [
-        (str(k), name, overall, cell(least, ""), strategy)
-        for k, (name, overall, least, strategy, _) in enumerate(rows, 1)
-    ]
+    ranked = [(str(k), name, overall, cell(least, ""), strategy) for k, (name, overall, least, strategy, _) in enumerate(rows, 1)]
     blocks: list[Block] = [
         Heading("Ranking"),
         Table(("rank", "building", "overall", "least margin", "of"), ranked, (0.6, 2.4, 1.8, 1.2, 2.0)),
@@ -32,9 +25,7 @@ def document(
         blocks += [Heading(name, fresh=True)]
         if run is not None:
             deck = run.summary["deck"]
-            blocks.append(
-                Words(", ".join(w for w in dict.fromkeys((heading(deck), kind_of(deck))) if w not in ("", name)))
-            )
+            blocks.append(Words(", ".join(w for w in dict.fromkeys((heading(deck), kind_of(deck))) if w not in ("", name))))
         blocks.append(Words(statement, "answer"))
         if run is not None:
             blocks += _page(name, run, out, figures)
@@ -50,20 +41,8 @@ def _page(name: str, run: Stored, out: Path, figures: bool) -> list[Block]:
         found.append(Figure(f"{name}/figures/building", f"{told[:1].upper()}{told[1:]}.", 0.35))
     for a in there:
         r = run.results_of(a["name"], Assess)
-        rows = [
-            (
-                v.label,
-                v.verdict_words,
-                cell(v.demand, ""),
-                cell(v.capacity, ""),
-                v.unit,
-                v.margin_told(""),
-            )
-            for v in r.verdicts
-        ]
-        found.append(
-            Table(("strategy", "verdict", "demand", "capacity", "unit", "margin"), rows, (2.4, 1.0, 1.0, 1.0, 1.0, 1.2))
-        )
+        rows = [(v.label, v.verdict_words, cell(v.demand, ""), cell(v.capacity, ""), v.unit, v.margin_told("")) for v in r.verdicts]
+        found.append(Table(("strategy", "verdict", "demand", "capacity", "unit", "margin"), rows, (2.4, 1.0, 1.0, 1.0, 1.0, 1.2)))
         found += [Words(one.text) for one in r.reasons]
         if figures and (out / name / "figures" / f"{a['name']}-margins.svg").exists():
             found.append(Figure(f"{name}/figures/{a['name']}-margins", f"Hazard: {r.hazard.told}.", 0.6))

@@ -52,9 +52,7 @@ def frame_of(points: np.ndarray, view: View) -> tuple[float, float, float, float
     return low[0] - room, high[0] + room, low[1] - room, high[1] + room
 
 
-def picture(
-    solids: Faces, view: View, frame: tuple[float, float, float, float], colours: np.ndarray, pixels: int = PIXELS
-) -> np.ndarray:
+def picture(solids: Faces, view: View, frame: tuple[float, float, float, float], colours: np.ndarray, pixels: int = PIXELS) -> np.ndarray:
     """An image (height, width, 4) of solids within a frame [m]; colours (stones, 3) between 0 and 1, transparent around."""
     left, right, low, high = frame
     scale = FINE * pixels / max(right - left, high - low)
@@ -70,10 +68,7 @@ def picture(
     seen = number >= 0
     image[seen, :3], image[seen, 3] = shade[number[seen]], 1.0
     edge = np.zeros((height, width), dtype=bool)
-    for one, two in (
-        ((slice(1, None),), (slice(None, -1),)),
-        ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
-    ):
+    for one, two in (((slice(1, None),), (slice(None, -1),)), ((slice(None), slice(1, None)), (slice(None), slice(None, -1)))):
         edge[one] |= number[one] != number[two]
     image[edge] = (*to_rgb(style.EDGE), 1.0)
     small = image.reshape(height // FINE, FINE, width // FINE, FINE, 4)
@@ -102,9 +97,7 @@ def _fill(k: int, x: np.ndarray, y: np.ndarray, z: np.ndarray, depth: np.ndarray
         return
     px, py = np.arange(first, last + 1)[None, :], np.arange(below, above + 1)[:, None]
     inside = np.ones((above - below + 1, last - first + 1), dtype=bool)
-    for (ax, ay), (bx, by) in zip(
-        zip(x, y, strict=True), zip(np.roll(x, -1), np.roll(y, -1), strict=True), strict=True
-    ):
+    for (ax, ay), (bx, by) in zip(zip(x, y, strict=True), zip(np.roll(x, -1), np.roll(y, -1), strict=True), strict=True):
         inside &= (bx - ax) * (py - ay) - (by - ay) * (px - ax) >= 0.0
     plane, *_ = np.linalg.lstsq(np.column_stack([x, y, np.ones(len(x))]), z, rcond=None)
     here = plane[0] * px + plane[1] * py + plane[2]
@@ -157,17 +150,13 @@ def compass(ax: Axes, points: np.ndarray, view: View, push: float | None = None)
         arrow = view.axes[:2] @ np.array([np.cos(turn), np.sin(turn), 0.0])
         start = np.array([0.5 * (left + right), below])
         ax.annotate(
-            "", style.pair(start + 2.2 * size * arrow), style.pair(start), zorder=4,
+            "",
+            style.pair(start + 2.2 * size * arrow),
+            style.pair(start),
+            zorder=4,
             arrowprops={"arrowstyle": "-|>", "color": style.THRUST, "shrinkA": 0, "shrinkB": 0, "linewidth": 2.0, "mutation_scale": 14},
-        )  # fmt: skip
-        ax.text(
-            *style.pair(start - np.array([0.3 * size, 0.0])),
-            "push",
-            ha="right",
-            va="center",
-            fontsize=8,
-            color=style.THRUST,
         )
+        ax.text(*style.pair(start - np.array([0.3 * size, 0.0])), "push", ha="right", va="center", fontsize=8, color=style.THRUST)
     length = _round(0.22 * (right - left))
     end = np.array([right - 0.5 * size, below - 0.2 * size])
     ax.plot([end[0] - length, end[0]], [end[1]] * 2, color="black", linewidth=1.6, solid_capstyle="butt")

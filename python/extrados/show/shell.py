@@ -34,9 +34,7 @@ LEAST_WIDTH = 0.02
 
 def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
-    figures = [
-        _stage_curves(run, name, folder) if run.results_of(name, Pushover).stages else _curves(run, name, folder)
-    ]
+    figures = [_stage_curves(run, name, folder) if run.results_of(name, Pushover).stages else _curves(run, name, folder)]
     figures = [*draw_verification(run, name, folder), *figures]
     for prefix in _prefixes(run, name):
         if f"{prefix}state_event" not in run.arrays[name]:
@@ -80,14 +78,10 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                     continue
                 sign = -1.0 if stage.sense == "-" else 1.0
                 fine = run.array(name, f"{stage.prefix}event_state") > 0
-                d, p = (
-                    run.array(name, f"{stage.prefix}event_displacement"),
-                    run.array(name, f"{stage.prefix}event_load"),
-                )
+                d, p = (run.array(name, f"{stage.prefix}event_displacement"), run.array(name, f"{stage.prefix}event_load"))
                 ax.plot(
-                    1e3 * sign * d[fine], sign * p[fine] / 1e3, color=colors[k % len(colors)], linewidth=0.9,
-                    label=f"{k + 1}: {stage.name}",
-                )  # fmt: skip
+                    1e3 * sign * d[fine], sign * p[fine] / 1e3, color=colors[k % len(colors)], linewidth=0.9, label=f"{k + 1}: {stage.name}"
+                )
             ax.axhline(0.0, color="#999", linewidth=0.5)
             ax.axvline(0.0, color="#999", linewidth=0.5)
             push = of == "push"
@@ -113,9 +107,7 @@ def _wall_curves(ax: Axes, run: Stored, name: str, prefix: str) -> None:
     for k, wall in enumerate(_numbers(run, name, prefix).walls):
         shear = run.array(name, f"{prefix}state_wall_shear")[held, k] / 1e3
         if np.abs(shear).max() > 0.01 * np.abs(run.array(name, f"{prefix}event_load")).max() / 1e3:
-            ax.plot(
-                d, shear, marker=".", markersize=3, linewidth=0.9, linestyle=("--", ":", "-.")[k % 3], color="#8a6d3b"
-            )
+            ax.plot(d, shear, marker=".", markersize=3, linewidth=0.9, linestyle=("--", ":", "-.")[k % 3], color="#8a6d3b")
             ax.annotate(f"wall {wall.wall}", (d[0], shear[0]), fontsize=7, color="#8a6d3b", ha="right")
 
 
@@ -150,9 +142,12 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 label = "no equilibrium" if not prefix or (get("event_state") != 0).all() else None
                 ax.plot(d[inside], p[inside], "x", color=LOST, markersize=3, label=label)
             ax.plot(
-                1e3 * get(f"{prefix}envelope_displacement"), get(f"{prefix}envelope_load") / 1e3, color=color,
-                linewidth=1.5, label=f"push to {numbers.sense}",
-            )  # fmt: skip
+                1e3 * get(f"{prefix}envelope_displacement"),
+                get(f"{prefix}envelope_load") / 1e3,
+                color=color,
+                linewidth=1.5,
+                label=f"push to {numbers.sense}",
+            )
             step = (get(f"{prefix}event_step") > 0) & fine
             if step.any():
                 label = "equilibrium iterations" if not prefix else None
@@ -164,16 +159,16 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             if idea:
                 shift = get(f"{prefix}envelope_displacement")[0]
                 x = shift + np.array([0.0, idea.yield_displacement_m, idea.ultimate_displacement_m])
-                ax.plot(1e3 * x, np.array([0.0, idea.yield_load_N, idea.yield_load_N]) / 1e3, color=color,
-                        linestyle="--", linewidth=0.9, label=f"bilinear, ductility {idea.ductility:.2g}")  # fmt: skip
+                ax.plot(
+                    1e3 * x,
+                    np.array([0.0, idea.yield_load_N, idea.yield_load_N]) / 1e3,
+                    color=color,
+                    linestyle="--",
+                    linewidth=0.9,
+                    label=f"bilinear, ductility {idea.ductility:.2g}",
+                )
         if r.sliding_capacity_N is not None and r.sliding_capacity_N < 1.2 * ax.get_ylim()[1] * 1e3:
-            ax.axhline(
-                r.sliding_capacity_N / 1e3,
-                color=LOST,
-                linestyle=":",
-                linewidth=1.2,
-                label=f"slides on {r.sliding_level}",
-            )
+            ax.axhline(r.sliding_capacity_N / 1e3, color=LOST, linestyle=":", linewidth=1.2, label=f"slides on {r.sliding_level}")
         ax.set_xlabel("control displacement [mm]")
         ax.set_ylabel("base shear [kN]")
         ax.set_ylim(bottom=0.0)
@@ -243,21 +238,22 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
                     PolyCollection(
                         list(np.stack([along, place[..., 2]], axis=-1)), facecolors="white", edgecolors="#ece9e2", linewidths=0.3
                     )
-                )  # fmt: skip
+                )
             seen = np.flatnonzero((width[k] > LEAST_WIDTH * most) & (of >= 0))
             seen = seen[np.argsort(width[k][seen])]
             x, y = s[seen] + start[of[seen]], z[seen]
             way = 0.5 * length * np.column_stack([-np.sin(angle[k][seen]), np.cos(angle[k][seen])])
             middle = np.column_stack([x, y])
             drawn = LineCollection(
-                list(np.stack([middle - way, middle + way], axis=1)), cmap=CRACKS, norm=Normalize(0.0, 1e3 * most),
-                linewidths=0.6 + 1.8 * width[k][seen] / most, array=1e3 * width[k][seen],
-            )  # fmt: skip
+                list(np.stack([middle - way, middle + way], axis=1)),
+                cmap=CRACKS,
+                norm=Normalize(0.0, 1e3 * most),
+                linewidths=0.6 + 1.8 * width[k][seen] / most,
+                array=1e3 * width[k][seen],
+            )
             ax.add_collection(drawn)
             for w, word in enumerate(names):
-                ax.text(
-                    start[w] + 0.5 * walls[w, 4], level[-1] + 0.02 * level[-1], f"wall {word}", ha="center", va="bottom"
-                )
+                ax.text(start[w] + 0.5 * walls[w, 4], level[-1] + 0.02 * level[-1], f"wall {word}", ha="center", va="bottom")
                 ax.add_patch(_frame(start[w], walls[w, 4], level[-1]))
             for height in level[1:-1]:
                 ax.axhline(height, color="#b9c4cf", linewidth=0.6, linestyle=":")
@@ -302,19 +298,16 @@ def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str,
     with style.canvas(5.4 * len(shown) + 0.4, tall + 1.7) as fig:
         for ax, k in zip(fig.subplots(1, len(shown), squeeze=False).ravel(), shown, strict=True):
             for _, connect in _walls(run, name):
-                ax.add_collection(
-                    PolyCollection(node[connect][..., :2], facecolors="white", edgecolors="#ddd8cc", linewidths=0.3)
-                )
+                ax.add_collection(PolyCollection(node[connect][..., :2], facecolors="white", edgecolors="#ddd8cc", linewidths=0.3))
             seen = np.flatnonzero(width[k] > LEAST_WIDTH * most)
             seen = seen[np.argsort(width[k][seen])]
             way = np.cos(angle[k][seen, None]) * y_axis[seen] - np.sin(angle[k][seen, None]) * x_axis[seen]
             ends = np.stack([at[seen] - 0.5 * length * way, at[seen] + 0.5 * length * way], axis=1)[..., :2]
             ax.add_collection(
                 LineCollection(
-                    list(ends), colors=[OUTSIDE if s > 0.0 else INSIDE for s in side[k][seen]],
-                    linewidths=0.5 + 2.2 * width[k][seen] / most,
+                    list(ends), colors=[OUTSIDE if s > 0.0 else INSIDE for s in side[k][seen]], linewidths=0.5 + 2.2 * width[k][seen] / most
                 )
-            )  # fmt: skip
+            )
             ax.autoscale_view()
             ax.margins(0.04)
             ax.set_aspect("equal")
@@ -327,9 +320,12 @@ def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str,
             ax.set_title(_state_word(run, name, prefix, k))
         marks = [Line2D([], [], color=color, linewidth=2.0) for color in (OUTSIDE, INSIDE)]
         fig.legend(
-            marks, ["widest towards the extrados", "widest towards the intrados"], loc="outside lower center", ncols=2,
+            marks,
+            ["widest towards the extrados", "widest towards the intrados"],
+            loc="outside lower center",
+            ncols=2,
             title=f"cracks, the widest {1e3 * most:.3g} mm",
-        )  # fmt: skip
+        )
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-plan"), (
             "Cracks seen from above, at the greatest load and at the end: the widest through the thickness at each place, "
             "red if widest towards the extrados and blue if towards the intrados; line width in proportion."

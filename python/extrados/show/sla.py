@@ -47,9 +47,7 @@ def _outline(run: Stored, name: str) -> np.ndarray:
     sides = []
     for array in run.series(name, "elements"):
         corners = array.numbers[:, : CORNERS[array.numbers.shape[1]]]
-        sides += [
-            np.stack([corners[:, k], np.roll(corners, -1, axis=1)[:, k]], axis=1) for k in range(corners.shape[1])
-        ]
+        sides += [np.stack([corners[:, k], np.roll(corners, -1, axis=1)[:, k]], axis=1) for k in range(corners.shape[1])]
     edges, count = np.unique(np.sort(np.concatenate(sides), axis=1), axis=0, return_counts=True)
     return edges[count == 1]
 
@@ -146,8 +144,15 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.plot(grid, rows.mean(axis=0), color="#7b93ab", linestyle=":", label="their mean")
         for other in _incremental(run, name):
             at, load = (run.array(other, f"event_{n}") for n in ("displacement", "load"))
-            ax.plot(at * 1e3, load / 1e3, "o-", color="#8a8a8a", markersize=3, linewidth=0.8,
-                    label=f"incremental, {run.results_of(other, Sla).stop}")  # fmt: skip
+            ax.plot(
+                at * 1e3,
+                load / 1e3,
+                "o-",
+                color="#8a8a8a",
+                markersize=3,
+                linewidth=0.8,
+                label=f"incremental, {run.results_of(other, Sla).stop}",
+            )
         _measured(run, name, ax, True)
         lost = False
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
@@ -163,27 +168,45 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             if none.any():
                 ax.plot(d[none], p[none], "x", color=LOST, markersize=3, label="no equilibrium" if not lost else None)
                 lost = True
-            ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
-                    linewidth=1.4, label=f"envelope, load to {numbers.sense}")  # fmt: skip
+            ax.plot(
+                get(f"{prefix}envelope_displacement") * 1e3,
+                get(f"{prefix}envelope_load") / 1e3,
+                color=color,
+                linewidth=1.4,
+                label=f"envelope, load to {numbers.sense}",
+            )
             step = (get(f"{prefix}event_step") > 0) & fine
             if step.any():
-                ax.plot(d[step], p[step], ".", color=style.STEPS, markersize=4, zorder=3,
-                        label="equilibrium iterations" if not prefix else None)  # fmt: skip
+                ax.plot(
+                    d[step], p[step], ".", color=style.STEPS, markersize=4, zorder=3, label="equilibrium iterations" if not prefix else None
+                )
             if numbers.get("drop_displacement_m") is not None:
-                ax.axvline(1e3 * numbers["drop_displacement_m"], color="#777", linestyle=":", linewidth=0.9,
-                           label="drop to 80 % of the peak" if not prefix else None)  # fmt: skip
+                ax.axvline(
+                    1e3 * numbers["drop_displacement_m"],
+                    color="#777",
+                    linestyle=":",
+                    linewidth=0.9,
+                    label="drop to 80 % of the peak" if not prefix else None,
+                )
             if numbers.get("axial_loss_displacement_m") is not None:
-                ax.axvline(1e3 * numbers["axial_loss_displacement_m"], color=style.THRUST, linestyle="--", linewidth=0.9,
-                           label="axial capacity lost" if not prefix else None)  # fmt: skip
+                ax.axvline(
+                    1e3 * numbers["axial_loss_displacement_m"],
+                    color=style.THRUST,
+                    linestyle="--",
+                    linewidth=0.9,
+                    label="axial capacity lost" if not prefix else None,
+                )
             idea = numbers.bilinear
             if idea:
                 shift = get(f"{prefix}envelope_displacement")[0]
                 ax.plot(
                     (shift + np.array([0, idea.yield_displacement_m, idea.ultimate_displacement_m])) * 1e3,
                     np.array([0, idea.yield_load_N, idea.yield_load_N]) / 1e3,
-                    color=ENVELOPE if not prefix else color, linestyle="--" if not prefix else "-.", linewidth=0.9,
+                    color=ENVELOPE if not prefix else color,
+                    linestyle="--" if not prefix else "-.",
+                    linewidth=0.9,
                     label=f"bilinear of equal area, load to {numbers.sense}",
-                )  # fmt: skip
+                )
         # Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve
         there = [p for p in PREFIXES if f"{p}envelope_load" in run.arrays[name]]
         far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
@@ -191,8 +214,9 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         least, most = min(far.min(), 0.0), max(far.max(), 1e-12)
         enough = max(near_the_peak(*(get(f"{p}envelope_{n}") for n in ("displacement", "load"))) for p in there)
         cut = most > MOST_PLATEAU * enough > 0.0
-        ax.set_xlim(1.05e3 * max(least, -MOST_PLATEAU * enough) if cut else 1.05e3 * least,
-                    1.05e3 * (MOST_PLATEAU * enough if cut else most))  # fmt: skip
+        ax.set_xlim(
+            1.05e3 * max(least, -MOST_PLATEAU * enough) if cut else 1.05e3 * least, 1.05e3 * (MOST_PLATEAU * enough if cut else most)
+        )
         if len(loads):
             if "measured_greatest" in run.arrays[name]:
                 loads = np.append(loads, get("measured_greatest"))
@@ -212,11 +236,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 def _dropped(r: Sla) -> str:
     """A sentence on the events of all curves that are not drawn, because they lie out of reach."""
     count = sum(curve.events_out_of_reach for curve in (r, r.minus) if curve is not None)
-    return (
-        f" Not drawn: {count} events out of reach of small displacements or of ten times the peak load."
-        if count
-        else ""
-    )
+    return f" Not drawn: {count} events out of reach of small displacements or of ten times the peak load." if count else ""
 
 
 def near_the_peak(displacement: np.ndarray, load: np.ndarray) -> float:
@@ -233,13 +253,8 @@ def _measured(run: Stored, name: str, ax: Axes, here: bool) -> None:
     least, greatest = (run.array(name, f"measured_{end}") / 1e3 for end in ("least", "greatest"))
     band = bool((greatest > least).any())
     if band:
-        ax.fill_between(
-            test, least, greatest, color="#d9d9d9", linewidth=0, zorder=0.5, label="tests, least to greatest"
-        )
-    ax.plot(
-        test, 0.5 * (least + greatest), color="#8c8c8c", linewidth=1.2, zorder=0.6,
-        label="tests, mean" if band else "test",
-    )  # fmt: skip
+        ax.fill_between(test, least, greatest, color="#d9d9d9", linewidth=0, zorder=0.5, label="tests, least to greatest")
+    ax.plot(test, 0.5 * (least + greatest), color="#8c8c8c", linewidth=1.2, zorder=0.6, label="tests, mean" if band else "test")
 
 
 def _incremental(run: Stored, name: str) -> list[str]:
@@ -269,10 +284,7 @@ def _peak(run: Stored, name: str, prefix: str) -> int:
 def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     shown = [(prefix, s, f"event {run.array(name, f'{prefix}state_event')[s]}") for s in _peak_state(run, name, prefix)]
     title = _draw_cracks(run, name, folder, shown, f"{name}{SENSES[prefix]}-cracks")
-    return (
-        title,
-        f"Cracks on the deformed shape{OPPOSITE[prefix]}, at the peak and at the end; colour and thickness give the width.",
-    )
+    return (title, f"Cracks on the deformed shape{OPPOSITE[prefix]}, at the peak and at the end; colour and thickness give the width.")
 
 
 def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, int, str]], file: str) -> str:
@@ -313,9 +325,11 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
                 along = angle[wide] + turn
                 half = 0.42 * reach[wide][:, None] * np.column_stack([np.cos(along), np.sin(along)])
                 lines = LineCollection(
-                    list(np.stack([place[wide] - half, place[wide] + half], axis=1)), cmap=CRACKS,
-                    norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * np.minimum(width[wide] / most, 1.0),
-                )  # fmt: skip
+                    list(np.stack([place[wide] - half, place[wide] + half], axis=1)),
+                    cmap=CRACKS,
+                    norm=Normalize(0.0, 1e3 * most),
+                    linewidths=0.5 + 2.0 * np.minimum(width[wide] / most, 1.0),
+                )
                 lines.set_array(1e3 * width[wide])
                 ax.add_collection(lines)
                 drawn = lines
@@ -355,15 +369,10 @@ def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             style.section_axes(ax)
             ax.set_title(f"{title} principal stress")
         title = style.save(fig, folder, f"{name}{SENSES[prefix]}-stress")
-    return (
-        title,
-        f"Principal stresses{OPPOSITE[prefix]}, at the peak load ({load[s] / 1e3:.4g} kN); tension is positive.",
-    )
+    return (title, f"Principal stresses{OPPOSITE[prefix]}, at the peak load ({load[s] / 1e3:.4g} kN); tension is positive.")
 
 
-def _section(
-    run: Stored, name: str, folder: Path, i: int, height: Array, least: Array, greatest: Array
-) -> tuple[str, str]:
+def _section(run: Stored, name: str, folder: Path, i: int, height: Array, least: Array, greatest: Array) -> tuple[str, str]:
     y, about, lo, hi = height.numbers, height.about, least.numbers / 1e3, greatest.numbers / 1e3
     events = run.array(name, "state_event")
     # A section that is cracked through admits everything: nothing to show
@@ -379,8 +388,10 @@ def _section(
             ax.hlines(y[bounded], left[bounded], right[bounded], color="#9fb7c9", linewidth=2.0)
             ax.plot(low, y, "<", color=style.SAFE, markersize=4, label="lower limit")
             ax.plot(high, y, ">", color=style.THRUST, markersize=4, label="upper limit")
-            for value, color in ((np.nanmax(low), style.SAFE) if np.isfinite(low).any() else (None, ""),
-                                 (np.nanmin(high), style.THRUST) if np.isfinite(high).any() else (None, "")):  # fmt: skip
+            for value, color in (
+                (np.nanmax(low), style.SAFE) if np.isfinite(low).any() else (None, ""),
+                (np.nanmin(high), style.THRUST) if np.isfinite(high).any() else (None, ""),
+            ):
                 if value is not None:
                     ax.axvline(value, color=color, linestyle=":", linewidth=1.0)
             ax.set_title(f"event {event}")
@@ -418,14 +429,20 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
             ax = axes[0]
             fine = run.array(name, f"{prefix}event_state") > 0
             # The displacements of stones run away as they become a mechanism
-            axis, scale, words = ("load", 1e-3, "load [kN]") if run.results_of(name, Sla).hinges is not None else (
-                "displacement", 1e3, "control displacement [mm]")  # fmt: skip
+            axis, scale, words = (
+                ("load", 1e-3, "load [kN]")
+                if run.results_of(name, Sla).hinges is not None
+                else ("displacement", 1e3, "control displacement [mm]")
+            )
             way = scale * run.array(name, f"{prefix}event_{axis}")[fine]
             for k, array in enumerate(follow):
                 ax.plot(
-                    way, 1e-3 * array.numbers[fine], color=STAGES[k % len(STAGES)], label=_called(array),
+                    way,
+                    1e-3 * array.numbers[fine],
+                    color=STAGES[k % len(STAGES)],
+                    label=_called(array),
                     linestyle=("-", "--", ":")[k // len(STAGES) % 3],
-                )  # fmt: skip
+                )
             ax.axhline(0.0, color="#999", linewidth=0.5)
             ax.set_xlabel(words)
             ax.set_ylabel("force [kN], tension +")
@@ -437,9 +454,13 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
             for k, (place, force) in enumerate(zip(places, forces, strict=True)):
                 for s, line in zip(shown, ("-", "--"), strict=False):
                     ax.step(
-                        place.numbers, 1e-3 * force.numbers[s], line, where="mid", color=STAGES[k % len(STAGES)],
+                        place.numbers,
+                        1e-3 * force.numbers[s],
+                        line,
+                        where="mid",
+                        color=STAGES[k % len(STAGES)],
                         label=f"{_called(force)}, event {events[s]}",
-                    )  # fmt: skip
+                    )
             ax.axhline(0.0, color="#999", linewidth=0.5)
             ax.set_xlabel("distance from the start of the bar [m]")
             ax.set_ylabel("force [kN], tension +")
@@ -457,13 +478,8 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     with style.figure(7.0, 3.4) as (fig, (ax,)):
         state = get("state") > 0
         number = np.arange(1, len(state) + 1)[state]
-        ax.stackplot(
-            number, get("stored")[state], get("dissipated")[state], colors=["#cfe3d6", "#f2c28b"],
-            labels=["stored", "dissipated"],
-        )  # fmt: skip
-        ax.plot(
-            number, get("external")[state], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads"
-        )
+        ax.stackplot(number, get("stored")[state], get("dissipated")[state], colors=["#cfe3d6", "#f2c28b"], labels=["stored", "dissipated"])
+        ax.plot(number, get("external")[state], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads")
         ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="area of the teeth")
         style.numbers(ax.xaxis)
         ax.set_xlabel("event")

@@ -33,9 +33,7 @@ def film_sla(run: Stored, name: str, folder: Path) -> None:
     get = run.array
     kept = _told_states(run, name)
     xy, at = get(name, "node"), get(name, "point_xy")
-    events, load, moved, angle = (
-        get(name, f"state_{what}")[kept] for what in ("event", "load", "displacement", "angle")
-    )
+    events, load, moved, angle = (get(name, f"state_{what}")[kept] for what in ("event", "load", "displacement", "angle"))
     widths = [get(name, f"state_width_{d}")[kept] for d in "ns"]
     reach = get(name, "point_reach") if "point_reach" in run.arrays[name] else get(name, "point_band")
     span = np.ptp(xy, axis=0)
@@ -45,9 +43,7 @@ def film_sla(run: Stored, name: str, folder: Path) -> None:
         ax, (curve,) = film.axes(fig, 1)
         wall = PolyCollection(polygons(run, name, xy), facecolors=style.STONE, edgecolors="#cfc6b4", linewidths=0.25)
         ax.add_collection(wall)
-        cracks = [
-            LineCollection([], cmap=CRACKS, norm=matplotlib.colors.Normalize(0.0, 1e3 * most), zorder=4) for _ in widths
-        ]
+        cracks = [LineCollection([], cmap=CRACKS, norm=matplotlib.colors.Normalize(0.0, 1e3 * most), zorder=4) for _ in widths]
         for lines in cracks:
             ax.add_collection(lines)
         window(ax, np.concatenate([xy, *(xy + factor * u for u in moved)]))

@@ -56,9 +56,7 @@ class _Stage:
         return (high - low) / (right - left)
 
     def image(self, k: int) -> np.ndarray:
-        colours = (
-            np.array(to_rgb(style.STONE)) if not self.share.any() else MOVED(np.clip(self.share[k], 0.0, 1.0))[:, :3]
-        )
+        colours = np.array(to_rgb(style.STONE)) if not self.share.any() else MOVED(np.clip(self.share[k], 0.0, 1.0))[:, :3]
         colours = np.broadcast_to(colours, (self.pose.shape[1], 3))
         return scene.picture(faces_of(self.run, self.name, self.pose[k]), VIEW, self.frame, colours, self.pixels)
 
@@ -75,9 +73,7 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     columns = min(3, len(picks))
     rows = -(-len(picks) // columns)
     tilt = r if isinstance(r, SolidDemTilt) else None
-    with style.figure(
-        10.0, float(np.clip(3.3 * stage.aspect + 0.9, 2.6, 5.5)) * rows, rows=rows, columns=columns
-    ) as (fig, axes):  # fmt: skip
+    with style.figure(10.0, float(np.clip(3.3 * stage.aspect + 0.9, 2.6, 5.5)) * rows, rows=rows, columns=columns) as (fig, axes):
         for n, (ax, k) in enumerate(zip(axes, picks, strict=False)):
             stage.show(ax, k, tilt.load_direction_deg if tilt is not None and n == 0 else None)
             ax.set_title(f"{times[k]:.3f} s")
@@ -92,9 +88,7 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
     """What the colours of the stones tell [m]."""
-    bar = fig.colorbar(
-        ScalarMappable(Normalize(0.0, farthest), MOVED), ax=axes, shrink=0.6, pad=0.02, aspect=30, panchor=False
-    )
+    bar = fig.colorbar(ScalarMappable(Normalize(0.0, farthest), MOVED), ax=axes, shrink=0.6, pad=0.02, aspect=30, panchor=False)
     bar.set_label("displacement of a stone [m]")
 
 
@@ -117,9 +111,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         axes[3].set_ylabel("rotation [mrad]")
         axes[4].plot(time, run.array(name, "ground") / GRAVITY, color=style.EDGE, label="along")
         if both:
-            axes[4].plot(
-                time, run.array(name, "ground_across") / GRAVITY, color=style.THRUST, linewidth=0.8, label="across"
-            )
+            axes[4].plot(time, run.array(name, "ground_across") / GRAVITY, color=style.THRUST, linewidth=0.8, label="across")
             axes[4].legend(loc="upper right", ncols=2, fontsize=8)
         axes[4].set_ylabel("ground [g]")
         axes[4].set_xlabel("time [s]")
@@ -136,9 +128,7 @@ def _contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     colours = ListedColormap(["#f4f1ea", style.THRUST, style.HINGE])
     with style.figure(8.0, min(7.0, 1.6 + 0.18 * state.shape[1])) as (fig, (ax,)):
         norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
-        mesh = ax.pcolormesh(
-            time, np.arange(state.shape[1]), state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True
-        )
+        mesh = ax.pcolormesh(time, np.arange(state.shape[1]), state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
         bar = fig.colorbar(mesh, ax=ax, ticks=[0, 1, 2])
         bar.ax.set_yticklabels(["closed", "open at\nsome corners", "apart"])
         style.numbers(ax.yaxis)

@@ -79,12 +79,14 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
         axes[1].set_title(_title(r))
         bar = fig.colorbar(ScalarMappable(Normalize(0.0, 1.0), SPEED), ax=axes[1], shrink=0.6, pad=0.01)
         bar.set_label("speed of a stone over the fastest")
-        found = [(
-            style.save(fig, folder, f"{name}-mechanism"),
-            f"The stones, and the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, "
-            f"carried on; {r.moving_blocks} of {r.blocks} stones move."
-            + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
-        )]  # fmt: skip
+        found = [
+            (
+                style.save(fig, folder, f"{name}-mechanism"),
+                f"The stones, and the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, "
+                f"carried on; {r.moving_blocks} of {r.blocks} stones move."
+                + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
+            )
+        ]
     found.append(_draw_forces(run, name, folder, r, stones))
     angles, capacity = run.array(name, "rose_direction"), run.array(name, "rose_capacity")
     capacity = np.where(np.isfinite(capacity), capacity, np.nan)  # where nothing brings it down
@@ -120,14 +122,10 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         scene.ground(ax, stones.vertices, VIEW)
         scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
         ax.add_collection(
-            LineCollection(
-                list(np.stack([middle - half, middle + half], axis=1)), colors=style.THRUST, linewidths=1.1, zorder=3
-            )
+            LineCollection(list(np.stack([middle - half, middle + half], axis=1)), colors=style.THRUST, linewidths=1.1, zorder=3)
         )
         ax.plot(*middle.T, ".", color=style.THRUST, markersize=2.0, zorder=3)
-        ax.set_title(
-            f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the longest is {size.max() / 1e3:.3g} kN"
-        )
+        ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the longest is {size.max() / 1e3:.3g} kN")
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
         "Forces between the stones and from the ground at collapse, through the stones: each at the centre of its compression, "
@@ -135,9 +133,7 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
     )
 
 
-def _film(
-    run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray
-) -> None:
+def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray) -> None:
     """The mechanism as a film, where the deck asks for one: out and back, so that it goes on without a jump."""
     kind, speed = film.asked(run, name)
     if kind == "none":
@@ -182,14 +178,7 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
         rows = [row for row in r.non_dilatant or [] if row.load_path_g is not None]
         if rows:
             way = np.radians([row.direction_deg for row in rows])
-            ax.plot(
-                way,
-                [row.load_path_g for row in rows],
-                "s",
-                color=style.HINGE,
-                markersize=5,
-                label="design value by load paths",
-            )
+            ax.plot(way, [row.load_path_g for row in rows], "s", color=style.HINGE, markersize=5, label="design value by load paths")
             ax.plot(way, [row.least_g for row in rows], "_", color=style.HINGE, markersize=9, label="least state found")
             ax.legend(loc="lower left", bbox_to_anchor=(-0.17, -0.07), fontsize=7)
         ax.set_ylim(0.0, 1.15 * float(np.nanmax(radius)))
@@ -201,6 +190,5 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
             f"least {r.least_acceleration_g:.4f} g along {r.least_direction_deg % 360.0:g} deg (red)"
         )
         return style.save(fig, folder, f"{name}-rose"), (
-            "Capacity over the direction in plan of the push."
-            + (" The line is the upper bound by dilatant friction." if rows else "")
+            "Capacity over the direction in plan of the push." + (" The line is the upper bound by dilatant friction." if rows else "")
         )

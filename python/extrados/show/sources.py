@@ -3,7 +3,9 @@
 import re
 from collections.abc import Iterable, Sequence
 
-THESIS = "DeJong, M. J. (2009). Seismic assessment strategies for masonry structures. PhD dissertation, Massachusetts Institute of Technology"
+THESIS = (
+    "DeJong, M. J. (2009). Seismic assessment strategies for masonry structures. PhD dissertation, Massachusetts Institute of Technology"
+)
 HEYMAN = "Heyman, J. (1966). The stone skeleton. International Journal of Solids and Structures 2, 249-279."
 LIVESLEY = "Livesley, R. K. (1978). Limit analysis of structures formed from rigid blocks. International Journal for Numerical Methods in Engineering 12, 1853-1871."
 GILBERT = "Gilbert, M. and Melbourne, C. (1994). Rigid-block analysis of masonry structures. The Structural Engineer 72, 356-361."
@@ -13,12 +15,25 @@ MOREAU = "Moreau, J. J. (1988). Unilateral contact and dry friction in finite fr
 ROTS = "Rots, J. G. (2001). Sequentially linear continuum model for concrete fracture. In Fracture Mechanics of Concrete Structures, 831-839. Balkema."
 #: Publications of each kind of analysis
 METHODS = {
-    "tilt": (HEYMAN, LIVESLEY), "thrust": (HEYMAN,), "sweep": (HEYMAN, LIVESLEY), "survey": (HEYMAN, LIVESLEY),
-    "imperfections": (LIVESLEY,), "supports": (HEYMAN, LIVESLEY), "moving-load": (LIVESLEY, GILBERT), "rocking": (HOUSNER, f"{THESIS}."),
-    "failure-domain": (f"{THESIS}.",), "failure-curves": (f"{THESIS}.",), "assessment": (f"{THESIS}.",), "fragility": (HOUSNER,),
-    "rocking-spectrum": (HOUSNER,), "harmonic-map": (HOUSNER,), "dem": (CUNDALL, MOREAU), "dem-domain": (CUNDALL,),
-    "sla": (ROTS,), "pushover": (ROTS,),
-}  # fmt: skip
+    "tilt": (HEYMAN, LIVESLEY),
+    "thrust": (HEYMAN,),
+    "sweep": (HEYMAN, LIVESLEY),
+    "survey": (HEYMAN, LIVESLEY),
+    "imperfections": (LIVESLEY,),
+    "supports": (HEYMAN, LIVESLEY),
+    "moving-load": (LIVESLEY, GILBERT),
+    "rocking": (HOUSNER, f"{THESIS}."),
+    "failure-domain": (f"{THESIS}.",),
+    "failure-curves": (f"{THESIS}.",),
+    "assessment": (f"{THESIS}.",),
+    "fragility": (HOUSNER,),
+    "rocking-spectrum": (HOUSNER,),
+    "harmonic-map": (HOUSNER,),
+    "dem": (CUNDALL, MOREAU),
+    "dem-domain": (CUNDALL,),
+    "sla": (ROTS,),
+    "pushover": (ROTS,),
+}
 #: Publications that a key of the deck names by author and year
 NAMED = {"Gilbert and Melbourne 1994": GILBERT, "Housner 1963": HOUSNER, "Moreau 1988": MOREAU}
 #: Clauses of EN 1991-2:2003 that give the trains of this program

@@ -6,14 +6,7 @@ import numpy as np
 
 from extrados.results.codes import Checked
 from extrados.results.rocking import COLLAPSE, RECOVERY
-from extrados.results.statistics import (
-    Ensemble,
-    HarmonicMap,
-    OverDurations,
-    OverLevels,
-    Resonance,
-    RockingSpectrum,
-)
+from extrados.results.statistics import Ensemble, HarmonicMap, OverDurations, OverLevels, Resonance, RockingSpectrum
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import style
@@ -59,23 +52,8 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     n = max(r.count, 1)
     with style.figure(6.0, 3.8) as (fig, (ax,)):
         width = edges[1] - edges[0]
-        ax.bar(
-            edges[:-1],
-            100 * counts / n,
-            width=width,
-            align="edge",
-            color=style.STONE,
-            edgecolor=style.EDGE,
-            linewidth=0.6,
-        )
-        ax.bar(
-            [1.0 + width],
-            [100 * r.collapsed / n],
-            width=1.6 * width,
-            align="edge",
-            color=style.THRUST,
-            label="collapse",
-        )
+        ax.bar(edges[:-1], 100 * counts / n, width=width, align="edge", color=style.STONE, edgecolor=style.EDGE, linewidth=0.6)
+        ax.bar([1.0 + width], [100 * r.collapsed / n], width=1.6 * width, align="edge", color=style.THRUST, label="collapse")
         ax.set_axisbelow(True)
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
         ax.set_xlabel("greatest rotation over the critical rotation")
@@ -118,17 +96,8 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     with style.figure(9.0, 4.2, columns=2, sharex=True) as (fig, (left, right)):
         up, fell = outcome == RECOVERY, outcome == COLLAPSE
         place = place_of_collapse(ratio[up])
-        left.plot(
-            x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and recover"
-        )
-        left.plot(
-            x[fell],
-            np.full(int(fell.sum()), place),
-            "x",
-            color=style.THRUST,
-            markersize=4,
-            label=f"{int(fell.sum())} collapse",
-        )
+        left.plot(x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and recover")
+        left.plot(x[fell], np.full(int(fell.sum()), place), "x", color=style.THRUST, markersize=4, label=f"{int(fell.sum())} collapse")
         rest = int((outcome == 0).sum())
         left.set_xscale("log")
         left.set_yscale("log")
@@ -140,13 +109,10 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         share = np.where(fell, 1.0, 0.0)
         right.plot(x, share, "|", color=style.EDGE, alpha=0.4, markersize=5)
         if r.median is not None:
-            right.plot(grid, run.array(name, "curve"), color=style.THRUST,
-                       label=f"collapse: median {r.median:.3g}")  # fmt: skip
+            right.plot(grid, run.array(name, "curve"), color=style.THRUST, label=f"collapse: median {r.median:.3g}")
             low, high = run.array(name, "curve_lower"), run.array(name, "curve_upper")
             right.fill_between(grid, low, high, color=style.THRUST, alpha=0.15, linewidth=0)
-        limits = zip(
-            r.rotation_limits or [], *(run.series(name, f"limit{e}") for e in ("", "_lower", "_upper")), strict=True
-        )
+        limits = zip(r.rotation_limits or [], *(run.series(name, f"limit{e}") for e in ("", "_lower", "_upper")), strict=True)
         for k, (limit, curve, low, high) in enumerate(limits):
             line = right.plot(
                 grid,
@@ -175,8 +141,7 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     at, share = run.array(name, "contribution_intensity"), run.array(name, "contribution")
     with style.figure(9.0, 3.8, columns=2) as (fig, (left, right)):
         left.plot(x, rate, "o-", color=style.GROUND, markersize=4)
-        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--",
-                     label=f"collapse, {r.annual_collapse_rate:.2g} a year")  # fmt: skip
+        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--", label=f"collapse, {r.annual_collapse_rate:.2g} a year")
         low, high = (np.nan if v is None else v for v in r.annual_collapse_rate_interval)
         if np.isfinite(low):
             left.axhspan(low, high, color=style.THRUST, alpha=0.15, linewidth=0)
@@ -212,13 +177,9 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for (left, right), at, ground, time, rotation in zip(axes.reshape(n, 2), *series, strict=True):
             left.plot(at.numbers, ground.numbers, color=style.GROUND, linewidth=0.8)
             fell = rotation.about.endswith("collapse")
-            right.plot(
-                time.numbers, np.clip(rotation.numbers, -place, place), color=style.THRUST if fell else style.HINGE
-            )
+            right.plot(time.numbers, np.clip(rotation.numbers, -place, place), color=style.THRUST if fell else style.HINGE)
             left.set_title(f"{at.about}: ground [g]", fontsize=8, loc="left")
-            right.set_title(
-                f"rotation over the critical one: {'overturns' if fell else 'recovers'}", fontsize=8, loc="left"
-            )
+            right.set_title(f"rotation over the critical one: {'overturns' if fell else 'recovers'}", fontsize=8, loc="left")
             right.axhline(1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
             right.axhline(-1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
             right.set_ylim(-place, place)
@@ -236,10 +197,7 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     place = np.arange(len(values))
     with style.figure(7.5, 1.6 + 0.45 * len(values), columns=2, sharey=True) as (fig, axes):
         for ax, what, title in zip(axes, ("rotation", "collapse"), ("greatest rotation", "collapse"), strict=True):
-            for order, shift, color, text in (
-                ("total", 0.18, style.HINGE, "with interactions"),
-                ("first", -0.18, style.SAFE, "alone"),
-            ):
+            for order, shift, color, text in (("total", 0.18, style.HINGE, "with interactions"), ("first", -0.18, style.SAFE, "alone")):
                 index, low, high = (run.array(name, f"sensitivity_{what}_{order}{e}") for e in ("", "_lower", "_upper"))
                 ax.barh(place + shift, index, 0.34, color=color, label=text)
                 bars = np.maximum([index - low, high - index], 0.0)
@@ -269,25 +227,28 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ):
             value, low, high = (run.array(name, k) for k in (key, lower, upper))
             bars = np.maximum([value - low, high - value], 0.0)
-            ax.errorbar(
-                level,
-                value,
-                yerr=bars,
-                fmt="o",
-                color=color,
-                markersize=4,
-                capsize=2,
-                linewidth=0.9,
-                label=f"{label}, counted",
-            )
+            ax.errorbar(level, value, yerr=bars, fmt="o", color=color, markersize=4, capsize=2, linewidth=0.9, label=f"{label}, counted")
         if "stripe_rule_least" in arrays:
-            ax.fill_between(level, run.array(name, "stripe_rule_least"), run.array(name, "stripe_rule_most"), color=style.STONE, linewidth=0,
-                            label="collapse, between the impact rules")  # fmt: skip
+            ax.fill_between(
+                level,
+                run.array(name, "stripe_rule_least"),
+                run.array(name, "stripe_rule_most"),
+                color=style.STONE,
+                linewidth=0,
+                label="collapse, between the impact rules",
+            )
         for curve, band, color, style_, text, median, dispersion in (
             ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
-            ("first_collapse_curve", "first_collapse", style.HINGE, "-.", "collapse by the level", r.first_collapse_median,
-             r.first_collapse_dispersion),
-        ):  # fmt: skip
+            (
+                "first_collapse_curve",
+                "first_collapse",
+                style.HINGE,
+                "-.",
+                "collapse by the level",
+                r.first_collapse_median,
+                r.first_collapse_dispersion,
+            ),
+        ):
             if curve not in arrays:
                 continue
             label = f"{text}: median {median:.3g}, dispersion {dispersion:.2f}"
@@ -298,9 +259,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if "uplift_curve" in arrays:
             ax.plot(grid, run.array(name, "uplift_curve"), color=style.GROUND, linewidth=0.9)
         if "two_stage_curve" in arrays:
-            ax.plot(
-                grid, run.array(name, "two_stage_curve"), "--", color=style.EDGE, label="P(uplift) P(collapse | uplift)"
-            )
+            ax.plot(grid, run.array(name, "two_stage_curve"), "--", color=style.EDGE, label="P(uplift) P(collapse | uplift)")
         ax.set_xlim(0.0, 1.1 * level[-1])
         ax.set_ylim(-0.02, 1.02)
         ax.set_xlabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
@@ -331,8 +290,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="half of the motions")
         i, j = np.nonzero(risen)
         if len(i):
-            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3,
-                    label="stands again above a level that overturned it")  # fmt: skip
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="stands again above a level that overturned it")
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
         ax.axvline(place, color=style.EDGE, linewidth=0.6, linestyle=":")
         ax.set_xlim(-0.02, place + 0.03)
@@ -348,28 +306,21 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    d, mean, deviation = (
-        run.array(name, k) for k in ("duration", "mean_peak_rotation_ratio", "deviation_peak_rotation_ratio")
-    )
+    d, mean, deviation = (run.array(name, k) for k in ("duration", "mean_peak_rotation_ratio", "deviation_peak_rotation_ratio"))
     p, low, high = (run.array(name, k) for k in ("collapse_probability", "lower", "upper"))
     with style.figure(7.5, 3.6, columns=2) as (fig, (left, right)):
         left.errorbar(d, mean, yerr=deviation, fmt="o-", color=style.HINGE, capsize=3, markersize=4)
         left.set_ylim(bottom=0.0)
         left.set_ylabel("greatest rotation over the critical one")
         left.set_title("mean and standard deviation")
-        right.errorbar(
-            d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4
-        )
+        right.errorbar(d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4)
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
         right.set_title("share that collapses, 95 % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [
-            (
-                style.save(fig, folder, f"{name}-durations"),
-                "Greatest rotation (Fig. 6-8) and probability of collapse against the duration.",
-            )
+            (style.save(fig, folder, f"{name}-durations"), "Greatest rotation (Fig. 6-8) and probability of collapse against the duration.")
         ]
 
 
@@ -393,11 +344,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
     if "least_cap_ratio" not in arrays:
         return found
     with style.figure(6.0, 4.2) as (fig, (ax,)):
-        x, aspect, table = (
-            run.array(name, "initial_ratio"),
-            run.array(name, "aspect"),
-            run.array(name, "least_cap_ratio"),
-        )
+        x, aspect, table = (run.array(name, "initial_ratio"), run.array(name, "aspect"), run.array(name, "least_cap_ratio"))
         drawn = ax.contourf(x, aspect, table, levels=np.linspace(0.0, 0.5, 11), cmap="YlOrBr_r", extend="max")
         lines = ax.contour(x, aspect, table, levels=np.linspace(0.05, 0.5, 10), colors="k", linewidths=0.5)
         ax.clabel(lines, fontsize=7)
@@ -414,9 +361,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         )
     with style.figure(8.0, 3.6, columns=2, sharey=True) as (fig, (left, right)):
         s = run.array(name, "impulse_start")
-        for value, row in zip(
-            run.array(name, "impulse_period_ratio"), run.array(name, "energy_by_period"), strict=True
-        ):
+        for value, row in zip(run.array(name, "impulse_period_ratio"), run.array(name, "energy_by_period"), strict=True):
             left.plot(s, row, label=f"T_p = {value:g} T_n")
         for value, row in zip(run.array(name, "impulse_rotation"), run.array(name, "energy_by_rotation"), strict=True):
             right.plot(s, row, label=f"from {value:g} of the critical rotation")
@@ -498,7 +443,12 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             else ""
         )
         pale = " Pale bars: formulas for comparison." if any(not code for _, _, code in rows) else ""
-        return [(style.save(fig, folder, name), (
-            f"Demand over capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
-            f"{found.overall().statement}"
-        ))]  # fmt: skip
+        return [
+            (
+                style.save(fig, folder, name),
+                (
+                    f"Demand over capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
+                    f"{found.overall().statement}"
+                ),
+            )
+        ]

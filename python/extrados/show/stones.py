@@ -27,12 +27,8 @@ class Stones:
 
     def __init__(self, run: Stored, name: str, ax: Axes):
         self.outlines, self.centroid = outlines(run, name), run.array(name, "centroid")
-        self.drawn = PolyCollection(
-            self.outlines, facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7, zorder=2
-        )
-        ax.add_collection(
-            PolyCollection(self.outlines, facecolors="none", edgecolors="#cccccc", linewidths=0.5, zorder=1)
-        )
+        self.drawn = PolyCollection(self.outlines, facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7, zorder=2)
+        ax.add_collection(PolyCollection(self.outlines, facecolors="none", edgecolors="#cccccc", linewidths=0.5, zorder=1))
         ax.add_collection(self.drawn)
 
     def place(self, pose: np.ndarray, turn: float = 0.0) -> None:

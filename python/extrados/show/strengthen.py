@@ -69,9 +69,7 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
                 _tie(ax, one)
                 ax.set_title("\n".join(textwrap.wrap(f"{one.name}: {_told(one)}", WIDE)))
             style.section_axes(ax)
-        ends = [
-            np.array([one.start_m, one.end_m]) for one in r.interventions[: len(shown) - 1] if one.start_m is not None
-        ]
+        ends = [np.array([one.start_m, one.end_m]) for one in r.interventions[: len(shown) - 1] if one.start_m is not None]
         every = np.concatenate([points, *moved.values(), *ends])
         room = 0.05 * float(np.ptp(every, axis=0).max())
         for ax in axes:
@@ -95,10 +93,7 @@ def _mechanisms_in_space(run: Stored, r: Strengthen, name: str, folder: Path) ->
     moved = [solids.faces_of(run, name, pose, f"_{k}") for k, pose in zip(shown, poses, strict=True)]
     frame = scene.frame_of(np.concatenate([faces.vertices for faces in moved]), solids.VIEW)
     tall = (frame[3] - frame[2]) / (frame[1] - frame[0])
-    with style.figure(3.6 * len(shown) + 0.4, float(np.clip(3.6 * tall + 1.2, 3.2, 6.5)), columns=len(shown)) as (
-        fig,
-        axes,
-    ):
+    with style.figure(3.6 * len(shown) + 0.4, float(np.clip(3.6 * tall + 1.2, 3.2, 6.5)), columns=len(shown)) as (fig, axes):
         for ax, k, still, faces, pose in zip(axes, shown, rest, moved, poses, strict=True):
             colours = solids.SPEED(solids.speeds(still, faces, len(pose)))[:, :3]
             scene.show(ax, scene.picture(faces, solids.VIEW, frame, colours), frame)
@@ -107,9 +102,7 @@ def _mechanisms_in_space(run: Stored, r: Strengthen, name: str, folder: Path) ->
             value = "none" if r.value_before is None else f"{r.value_before:.3g}{unit}"
             title = f"Existing: {value}\n(target {r.target:.3g}{unit})"
             if k:
-                title = "\n".join(
-                    textwrap.wrap(f"{r.interventions[k - 1].name}: {_told(r.interventions[k - 1])}", WIDE)
-                )
+                title = "\n".join(textwrap.wrap(f"{r.interventions[k - 1].name}: {_told(r.interventions[k - 1])}", WIDE))
             ax.set_title(title)
             if f"solid_strand_{k}" in arrays:
                 lines = run.array(name, f"solid_strand_{k}") @ solids.VIEW.axes[:2].T
@@ -152,9 +145,7 @@ def _curves(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
                 ax.plot(size * factor, value, "-", color=colour, label=one.name)
                 turns = [piece.first * factor for piece in one.ranges[1:]]
                 if one.kind != "change" and turns:
-                    ax.plot(
-                        turns, [piece.capacity_first for piece in one.ranges[1:]], "o", color=colour, markersize=3.5
-                    )
+                    ax.plot(turns, [piece.capacity_first for piece in one.ranges[1:]], "o", color=colour, markersize=3.5)
                 if one.required_size is not None and one.capacity_after is not None:
                     ax.plot(one.required_size * factor, one.capacity_after, "*", color=colour, markersize=10, zorder=4)
             ax.axhline(r.target, color=style.EDGE, linewidth=1.0, linestyle="--", label="target")
@@ -186,13 +177,7 @@ def _places(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
             good = np.isfinite(rows[:, 2])
             colour = section.CHAIN_COLOURS[k % len(section.CHAIN_COLOURS)]
             ax.plot(rows[good, 2] / 1e3, place[good], "-o", color=colour, markersize=3.5, label=label)
-            ax.plot(
-                np.zeros((~good).sum()),
-                place[~good],
-                "x",
-                color=colour,
-                label=f"{label}: no force suffices" if (~good).any() else "_",
-            )
+            ax.plot(np.zeros((~good).sum()), place[~good], "x", color=colour, label=f"{label}: no force suffices" if (~good).any() else "_")
         ax.set_xlabel("required yield force [kN]")
         ax.set_ylabel("place, x of the middle [m]" if across else "height of the middle [m]")
         ax.set_xlim(left=0.0)
@@ -218,17 +203,11 @@ def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, st
             known = np.isfinite(value)
             if known.sum() > 1:
                 at = np.arange(len(cost))
-                points += list(
-                    zip(
-                        np.interp(dense, at[known], cost[known]), np.interp(dense, at[known], value[known]), strict=True
-                    )
-                )
+                points += list(zip(np.interp(dense, at[known], cost[known]), np.interp(dense, at[known], value[known]), strict=True))
             if one.cost is not None and one.capacity_after is not None:
                 ax.plot(one.cost, one.capacity_after, "*", color=colour, markersize=10, zorder=4)
         front = _front(points, falls)
-        ax.plot(
-            *front.T, color="black", linewidth=3.5, alpha=0.25, zorder=1, label="no alternative is cheaper and safer"
-        )
+        ax.plot(*front.T, color="black", linewidth=3.5, alpha=0.25, zorder=1, label="no alternative is cheaper and safer")
         ax.axhline(r.target, color=style.EDGE, linewidth=1.0, linestyle="--", label="target")
         ax.set_xlabel("cost by the weights of the deck")
         ax.set_ylabel(_axis(r))
@@ -253,10 +232,7 @@ def _front(points: list[tuple[float, float]], falls: bool) -> np.ndarray:
 def _fragility(pair: FragilityPair, name: str, folder: Path) -> tuple[str, str]:
     """Probabilities of collapse over the factor on the motions, with their intervals."""
     with style.figure(5.5, 3.8) as (fig, (ax,)):
-        for word, colour, label in (
-            ("before", style.THRUST, "existing building"),
-            ("after", style.SAFE, f"with {pair.name}"),
-        ):
+        for word, colour, label in (("before", style.THRUST, "existing building"), ("after", style.SAFE, f"with {pair.name}")):
             share = np.array([np.nan if p is None else p for p in getattr(pair, word)])
             low, high = getattr(pair, f"{word}_low"), getattr(pair, f"{word}_high")
             ax.fill_between(pair.levels, low, high, color=colour, alpha=0.2, linewidth=0.0)

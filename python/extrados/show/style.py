@@ -30,11 +30,21 @@ LETTER = "letter"
 RINGS = (9.0, 12.0, 18.0, 26.0)  # points from the place
 LEGEND_LINE, LEGEND_LETTER = 0.55, 0.062  # width of an entry of a legend without its letters, and of a letter [in]
 RC: "dict[RcKeyType, Any]" = {
-    "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 150,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
-    "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "lines.linewidth": 1.2, "svg.hashsalt": "extrados",
-    "legend.frameon": False, "figure.constrained_layout.use": True,
-}  # fmt: skip
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.labelsize": 9,
+    "legend.fontsize": 8,
+    "figure.dpi": 150,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.2,
+    "svg.hashsalt": "extrados",
+    "legend.frameon": False,
+    "figure.constrained_layout.use": True,
+}
 
 
 @contextmanager
@@ -45,9 +55,7 @@ def canvas(width: float = 7.0, height: float = 4.0) -> Iterator[Figure]:
 
 
 @contextmanager
-def figure(
-    width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options: Any
-) -> Iterator[tuple[Figure, np.ndarray]]:
+def figure(width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options: Any) -> Iterator[tuple[Figure, np.ndarray]]:
     """A figure in the common style; its axes come as a flat array."""
     with canvas(width, height) as fig:
         yield fig, fig.subplots(rows, columns, squeeze=False, **options).ravel()
@@ -123,9 +131,14 @@ def legend_above(ax: Axes, handles: list | None = None, labels: list[str] | None
     if handles is None or labels is None:
         handles, labels = ax.get_legend_handles_labels()
     ax.legend(
-        handles, labels, ncols=min(_columns(whole_figure(ax), labels), 4), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
+        handles,
+        labels,
+        ncols=min(_columns(whole_figure(ax), labels), 4),
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        borderaxespad=0.0,
         borderpad=0.1,
-    )  # fmt: skip
+    )
 
 
 def numbers(axis: Axis) -> None:
@@ -195,9 +208,18 @@ def letters(ax: Axes, points: Iterable[Any], labels: list[str], colour: str) -> 
     """Labels beside places; where each stands is settled as the figure is saved, so that none hides another."""
     for point, label in zip(points, labels, strict=False):
         ax.annotate(
-            label, point, textcoords="offset points", xytext=(0, 0), fontsize=8, color=colour, ha="center", va="center",
-            gid=LETTER, zorder=7, annotation_clip=False,
-        )  # fmt: skip
+            label,
+            point,
+            textcoords="offset points",
+            xytext=(0, 0),
+            fontsize=8,
+            color=colour,
+            ha="center",
+            va="center",
+            gid=LETTER,
+            zorder=7,
+            annotation_clip=False,
+        )
 
 
 def _spread(fig: Figure) -> None:
@@ -213,9 +235,7 @@ def _spread(fig: Figure) -> None:
         ax.apply_aspect()  # as the drawing will, after the layout
         places = ax.transData.transform(np.array([t.xy for t in texts]))
         drawn = [
-            _sampled(seen, 3.0 * pixel)
-            for line in ax.lines
-            if len(seen := _finite(line.get_transform().transform(line.get_xydata()))) > 1
+            _sampled(seen, 3.0 * pixel) for line in ax.lines if len(seen := _finite(line.get_transform().transform(line.get_xydata()))) > 1
         ]
         ink = np.concatenate([*drawn, np.empty((0, 2))])
         frame = ax.get_window_extent()

@@ -30,25 +30,37 @@ MOST_SHOWN, MOST_ROWS = 12, 4
 MOST_JOINTS, EDGE = 6, 1e-3
 #: Tables of the deck and what they are called
 GROUPS = (
-    ("Geometry", ("structure",)), ("Materials and joints", ("material", "materials", "joints")),
-    ("Supports, ties and the state at the start", ("supports", "ties", "dampers", "hinges", "initial")), ("Code and site", ("code",)),
-)  # fmt: skip
+    ("Geometry", ("structure",)),
+    ("Materials and joints", ("material", "materials", "joints")),
+    ("Supports, ties and the state at the start", ("supports", "ties", "dampers", "hinges", "initial")),
+    ("Code and site", ("code",)),
+)
 #: Of moving-load: keys of its partial factors
 FACTORS = {
-    "masonry": "weight of masonry", "fill": "weight of fill", "surfacing": "weight of surfacing", "live": "live load",
-    "dynamic": "dynamic factor", "strength": "compressive strength", "friction": "friction",
-}  # fmt: skip
+    "masonry": "weight of masonry",
+    "fill": "weight of fill",
+    "surfacing": "weight of surfacing",
+    "live": "live load",
+    "dynamic": "dynamic factor",
+    "strength": "compressive strength",
+    "friction": "friction",
+}
 #: Of moving-load: keys of its permissible limit state
 SERVICE = {
-    "live": "live load, permissible limit state", "strength_share": "permissible stress / compressive strength",
+    "live": "live load, permissible limit state",
+    "strength_share": "permissible stress / compressive strength",
     "passive_share": "passive pressure, permissible limit state / collapse",
-}  # fmt: skip
+}
 
 
 def told(
-    run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, day: str, office: Template | None = None,
+    run: Stored,
+    drawn: dict[str, Figures],
+    building: tuple[str, str] | None,
+    day: str,
+    office: Template | None = None,
     words: Language | None = None,
-) -> Document:  # fmt: skip
+) -> Document:
     """The whole report; drawn: figures with captions by analysis; building: its drawing; day: of the results; office: its template."""
     office, words = office or Template(), words or Language()
     deck, made = run.summary["deck"], run.summary["extrados"]
@@ -68,9 +80,7 @@ def told(
     first = governing_figure(run, drawn, building)
     shown = building if building is None or first is None or first.name != f"figures/{building[0]}" else None
     whole = any(a["kind"] == "assess" and a["results"] for a in run.analyses)
-    parts: list[
-        Block
-    ] = []  # the strategies of an assessment one by one, and the figures that the report has no room for
+    parts: list[Block] = []  # the strategies of an assessment one by one, and the figures that the report has no room for
     analyses: list[Block] = []
     for a in run.analyses:
         figures = [f for f in drawn.get(a["name"], []) if first is None or first.name != f"figures/{f[0]}"]
@@ -86,34 +96,36 @@ def told(
     if words.code != "en":
         note.append(
             Words(
-                words(
-                    "Sentences that the analyses write and captions of figures are printed in English, as the results hold them."
-                ),
-                "warn",
+                words("Sentences that the analyses write and captions of figures are printed in English, as the results hold them."), "warn"
             )
         )
     sections: dict[str, list[Block]] = {
-        "answer": _verdicts(run, words), "building": _building(run, deck, shown, words), "hazard": _hazard(run, deck, words),
-        "analyses": analyses, "factors": _factors(run, deck, words), "limits": _limits(run, words),
+        "answer": _verdicts(run, words),
+        "building": _building(run, deck, shown, words),
+        "hazard": _hazard(run, deck, words),
+        "analyses": analyses,
+        "factors": _factors(run, deck, words),
+        "limits": _limits(run, words),
         "bibliography": _bibliography(run, deck, words),
-    }  # fmt: skip
+    }
     blocks = [*note, *(block for name in office.table.sections for block in sections[name])]
     hidden = {name for _, name, _ in _own_tables(run, words)}
-    annex = [
-        *parts,
-        *_assumed(run, words),
-        *_defaults(deck, words),
-        *_numbers(run, hidden, words),
-        *_repeat(run, deck, made, words),
-    ]
+    annex = [*parts, *_assumed(run, words), *_defaults(deck, words), *_numbers(run, hidden, words), *_repeat(run, deck, made, words)]
     foot = f"{title}. extrados {made['version']} {made['commit']}, deck {deck['sha256'][:16]}"
     labels = office.table.signatures or [words("Author"), words("Reviewer")]
     names = {words("Author"): entries["author"], words("Reviewer"): entries["reviewer"]}
     return Document(
-        title, facts, blocks, foot, opening(run, drawn, building, words), annex,
-        tuple((label, names.get(label, "")) for label in labels), f"figures/logo{office.suffix}" if office.logo else "",
-        office.table.colour, words,
-    )  # fmt: skip
+        title,
+        facts,
+        blocks,
+        foot,
+        opening(run, drawn, building, words),
+        annex,
+        tuple((label, names.get(label, "")) for label in labels),
+        f"figures/logo{office.suffix}" if office.logo else "",
+        office.table.colour,
+        words,
+    )
 
 
 def annexed(document: Document) -> Document:
@@ -160,9 +172,7 @@ def _verdicts(run: Stored, words: Language) -> list[Block]:
     for a in run.analyses:
         v, name = a["verdict"], title_of(words, a["name"], a["kind"])
         if v:
-            demand, capacity = (
-                "" if v[key] is None else words.quantity(v[key], v["unit"]) for key in ("demand", "capacity")
-            )
+            demand, capacity = ("" if v[key] is None else words.quantity(v[key], v["unit"]) for key in ("demand", "capacity"))
             ratio = "" if v["ratio"] is None else words.number(v["ratio"])
             said = outcome_words(v["outcome"], isinstance(run[a["name"]], Checked))
             rows.append((name, words(said), demand, capacity, ratio))
@@ -180,44 +190,24 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         factor = v.margin_told("")
         if v.status == "ok":
             rows.append(
-                (
-                    v.label,
-                    words(v.verdict_words),
-                    _value(words, v.demand, v.unit),
-                    _value(words, v.capacity, v.unit),
-                    factor,
-                    v.statement,
-                )
+                (v.label, words(v.verdict_words), _value(words, v.demand, v.unit), _value(words, v.capacity, v.unit), factor, v.statement)
             )
         else:
             rows.append((v.label, words(v.status), "", "", "", v.reason))
     found: list[Block] = [Words(r.statement, "answer", _foreign(words))]
     found.append(
-        Table(
-            _heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words"),
-            rows,
-            (1.6, 0.9, 1.1, 1.1, 0.9, 3.6),
-        )
+        Table(_heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words"), rows, (1.6, 0.9, 1.1, 1.1, 0.9, 3.6))
     )
     found.append(
-        Words(
-            words(
-                "The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."
-            )
-        )
+        Words(words("The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."))
     )
     found.append(Words(f"{r.collapse_probability.statement} {r.collapse_probability.method}", "", _foreign(words)))
     found += _advice(r, words)
     if r.reasons:
         found.append(Heading(words("Why they differ"), 2))
         labels = {v.strategy: v.label for v in r.verdicts}
-        pairs = [
-            (one.rule, one.text, "; ".join(f"{labels[a]} and {labels[b]}" for a, b in one.explains))
-            for one in r.reasons
-        ]
-        found.append(
-            Table(_heads(words, "rule", "reason, with the numbers that show it", "explains"), pairs, (1.2, 4.6, 2.4))
-        )
+        pairs = [(one.rule, one.text, "; ".join(f"{labels[a]} and {labels[b]}" for a, b in one.explains)) for one in r.reasons]
+        found.append(Table(_heads(words, "rule", "reason, with the numbers that show it", "explains"), pairs, (1.2, 4.6, 2.4)))
     if r.unexplained:
         labels = {v.strategy: v.label for v in r.verdicts}
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
@@ -225,10 +215,18 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
     if r.sensitivity:
         found.append(Heading(words("Sensitivity of the verdicts"), 2))
         moved = [
-            (m.key, f"{cell(m.base)} {m.unit}".strip(), f"{m.low:.4g} to {m.high:.4g}", _both(m.tilt_low, m.tilt_high), cell(m.tilt_turns, ""),
-             _both(m.rocking_low, m.rocking_high), cell(m.rocking_turns, ""))
-            for m in r.sensitivity if m.dem_base is None
-        ]  # fmt: skip
+            (
+                m.key,
+                f"{cell(m.base)} {m.unit}".strip(),
+                f"{m.low:.4g} to {m.high:.4g}",
+                _both(m.tilt_low, m.tilt_high),
+                cell(m.tilt_turns, ""),
+                _both(m.rocking_low, m.rocking_high),
+                cell(m.rocking_turns, ""),
+            )
+            for m in r.sensitivity
+            if m.dem_base is None
+        ]
         head: tuple[str, ...] = (
             "key",
             "value",
@@ -240,29 +238,25 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         )
         found.append(Table(head, moved, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
         shaken = [
-            (m.key, f"{cell(m.base)} {m.unit}", f"{m.low:.3g} to {m.high:.3g}", cell(m.dem_base), _both(m.dem_low, m.dem_high), cell(m.dem_turns, ""))
-            for m in r.sensitivity if m.dem_base is not None
-        ]  # fmt: skip
-        if shaken:
-            found.append(
-                Words(
-                    "Values that only discrete elements consider: displacement of their blocks over that of collapse."
-                )
+            (
+                m.key,
+                f"{cell(m.base)} {m.unit}",
+                f"{m.low:.3g} to {m.high:.3g}",
+                cell(m.dem_base),
+                _both(m.dem_low, m.dem_high),
+                cell(m.dem_turns, ""),
             )
+            for m in r.sensitivity
+            if m.dem_base is not None
+        ]
+        if shaken:
+            found.append(Words("Values that only discrete elements consider: displacement of their blocks over that of collapse."))
             head = ("key", "value", "moved", "at the value", "varied", "rotates at")
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
         found.append(Heading(words("Further runs"), 2))
-        probed = [
-            (p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes
-        ]
-        found.append(
-            Table(
-                ("analysis", "difference from the deck", "verdict", "demand over capacity"),
-                probed,
-                (1.2, 4.0, 1.0, 1.2),
-            )
-        )
+        probed = [(p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes]
+        found.append(Table(("analysis", "difference from the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2)))
     if r.not_done:
         found.append(Words("Not done, or not decided: " + "; ".join(r.not_done) + ".", "warn"))
     return found
@@ -273,10 +267,15 @@ def _advice(r: Assess, words: Language) -> list[Block]:
     if r.advice is None:
         return []
     rows = [
-        (one.name, size_told(one) if one.meets_target else one.reason, cell(one.capacity_after, ""), one.next_mechanism,
-         r.advice.rocking.get(one.name, ""))
+        (
+            one.name,
+            size_told(one) if one.meets_target else one.reason,
+            cell(one.capacity_after, ""),
+            one.next_mechanism,
+            r.advice.rocking.get(one.name, ""),
+        )
         for one in r.advice.interventions
-    ]  # fmt: skip
+    ]
     head = ("intervention", "least size", "capacity after [g]", "then governs", "rocking under the hazard")
     return [Heading(words("Strengthening"), 2), Words(r.advice.statement), Table(head, rows, (1.4, 2.4, 0.8, 3.2, 1.2))]
 
@@ -317,9 +316,7 @@ def _counts(p: dict[str, Any], used: set[str]) -> bool:
 
 def _without_keys(text: str, keys: set[str]) -> str:
     """A sentence with the keys of the deck in words: "contact tolerance" for contact_tolerance."""
-    return re.sub(
-        r"[a-z]+(?:_[a-z]+)+", lambda found: found[0].replace("_", " ") if found[0] in keys else found[0], text
-    )
+    return re.sub(r"[a-z]+(?:_[a-z]+)+", lambda found: found[0].replace("_", " ") if found[0] in keys else found[0], text)
 
 
 def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:
@@ -353,7 +350,7 @@ def _properties(rows: list[dict[str, Any]], words: Language) -> Table:
     told = [
         (label_of(words, p["table"], p["key"]), value(p), *((p["about"].replace("`", ""),) if english else ()), words(p["from"]))
         for p in rows
-    ]  # fmt: skip
+    ]
     head = _heads(words, "property", "value", *(("meaning",) if english else ()), "from")
     return Table(head, told, (1.8, 1.4, 3.6, 0.7) if english else (2.6, 2.4, 1.0))
 
@@ -362,10 +359,7 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     rows = [p for p in deck.get("properties", []) if p["table"] == "motion"]
     if not rows:
         return []
-    found: list[Block] = [
-        Heading(words("Hazard")),
-        *(Words(text, "", _foreign(words)) for text in deck.get("conditions", [])),
-    ]
+    found: list[Block] = [Heading(words("Hazard")), *(Words(text, "", _foreign(words)) for text in deck.get("conditions", []))]
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             h = run.results_of(a["name"], Assess).hazard
@@ -379,12 +373,7 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
 def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language) -> list[Block]:
     """One analysis: its answer, warnings, figures, forces and stresses."""
     how = next(
-        (
-            run.results_of(b["name"], Assess).parts.get(a["name"], "")
-            for b in run.analyses
-            if b["kind"] == "assess" and b["results"]
-        ),
-        "",
+        (run.results_of(b["name"], Assess).parts.get(a["name"], "") for b in run.analyses if b["kind"] == "assess" and b["results"]), ""
     ).partition(": ")[2]
     foreign = _foreign(words)
     keys = {p["key"] for p in run.summary["deck"].get("properties", [])}
@@ -405,9 +394,7 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language)
 def _engineering(answer: str) -> str:
     """A sentence of an analysis with pressures in MPa: 8e+06 Pa is 8 MPa."""
     answer = answer.replace("kg/m^3", "kg/m³")
-    return re.sub(
-        r"\b(\d[\d.]*e\+0*[4-9]|\d{5,}(?:\.\d+)?) Pa\b", lambda found: f"{float(found[1]) / 1e6:.3g} MPa", answer
-    )
+    return re.sub(r"\b(\d[\d.]*e\+0*[4-9]|\d{5,}(?:\.\d+)?) Pa\b", lambda found: f"{float(found[1]) / 1e6:.3g} MPa", answer)
 
 
 def _stresses(run: Stored, a: dict[str, Any], words: Language) -> list[Block]:
@@ -449,14 +436,14 @@ def _stresses(run: Stored, a: dict[str, Any], words: Language) -> list[Block]:
     if not rows:
         return []
     head = _heads(words, "joint", "x; y [m]", "length", "compression", "distance to the edge", "mean stress")
-    said = {"central": "of the most central thrust line", "collapse": "at collapse", "least": "of the least thrust"}[
-        state
-    ]
+    said = {"central": "of the most central thrust line", "collapse": "at collapse", "least": "of the least thrust"}[state]
     return [
         Heading(f"{words('Forces and stresses')} {words(said)}", 2),
-        Words(words("The joints of greatest stress. Mean stress: compression over twice its distance to the nearer edge, times the depth.")),
+        Words(
+            words("The joints of greatest stress. Mean stress: compression over twice its distance to the nearer edge, times the depth.")
+        ),
         Table(head, rows, (2.0, 1.2, 0.9, 1.1, 1.2, 1.1)),
-    ]  # fmt: skip
+    ]
 
 
 def _factors(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
@@ -479,9 +466,7 @@ def _factors(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
             if isinstance(found, int | float):
                 rows.append((title, words(label), words.given(float(found))))
                 values.append(float(found))
-    remark = words(
-        "All partial factors are 1: loads and strengths are characteristic. The result has no margin of a code."
-    )
+    remark = words("All partial factors are 1: loads and strengths are characteristic. The result has no margin of a code.")
     told: list[Block] = [Heading(words("Partial and confidence factors"))]
     if rows:
         told.append(Table(_heads(words, "analysis", "factor", "value"), rows, (2.4, 2.4, 1.0)))
@@ -495,11 +480,13 @@ def _assumed(run: Stored, words: Language) -> list[Block]:
     found: list[Block] = []
     for a in run.analyses:
         rows = [
-            (label_of(words, k.rpartition(".")[0], k.rpartition(".")[2]),
-             words.quantity(float(s["value"]), s["unit"], given=True) if isinstance(s["value"], int | float) else cell(s["value"]),
-             words(s["from"]) + (f", {words('some differ')}" if s["exceptions"] else ""))
+            (
+                label_of(words, k.rpartition(".")[0], k.rpartition(".")[2]),
+                words.quantity(float(s["value"]), s["unit"], given=True) if isinstance(s["value"], int | float) else cell(s["value"]),
+                words(s["from"]) + (f", {words('some differ')}" if s["exceptions"] else ""),
+            )
             for k, s in a["assumptions"].items()
-        ]  # fmt: skip
+        ]
         if rows:
             found += [
                 Heading(title_of(words, a["name"], a["kind"]), 2),
@@ -529,20 +516,22 @@ def _own_tables(run: Stored, words: Language) -> list[tuple[str, str, Table]]:
                 (
                     "checks",
                     a["name"],
-                    Table(
-                        _heads(words, "check", "demand", "capacity", "verdict", "clause"),
-                        rows,
-                        (1.8, 1.0, 1.0, 0.8, 3.6),
-                    ),
+                    Table(_heads(words, "check", "demand", "capacity", "verdict", "clause"), rows, (1.8, 1.0, 1.0, 0.8, 3.6)),
                 )
             )
         if walls := getattr(r, "walls", None) if a["kind"] == "local-mechanism" else None:
             head = _heads(words, "wall", "rotates at the foot of storey", "alpha_0", "a_0*", "d_0*", "margin")
             tried = [
-                (w.wall, str(w.storey), words.number(w.multiplier), words.quantity(w.activation_acceleration_g, "g"),
-                 words("none") if w.zero_displacement_m is None else words.quantity(w.zero_displacement_m, "m"), _value(words, w.margin, ""))
+                (
+                    w.wall,
+                    str(w.storey),
+                    words.number(w.multiplier),
+                    words.quantity(w.activation_acceleration_g, "g"),
+                    words("none") if w.zero_displacement_m is None else words.quantity(w.zero_displacement_m, "m"),
+                    _value(words, w.margin, ""),
+                )
                 for w in walls
-            ]  # fmt: skip
+            ]
             found.append(("walls", a["name"], Table(head, tried, (1.8, 1.6, 1.0, 1.0, 1.0, 1.0))))
     return found
 
@@ -550,10 +539,7 @@ def _own_tables(run: Stored, words: Language) -> list[tuple[str, str, Table]]:
 def _limits(run: Stored, words: Language) -> list[Block]:
     """Assumptions and limits of each kind of analysis."""
     seen = dict.fromkeys(a["kind"] for a in run.analyses)
-    rows = [
-        (title_of(words, kind, kind), words(valid.assumes), words(valid.limits))
-        for kind in seen if (valid := validity_of(kind))
-    ]  # fmt: skip
+    rows = [(title_of(words, kind, kind), words(valid.assumes), words(valid.limits)) for kind in seen if (valid := validity_of(kind))]
     if not rows:
         return []
     return [
@@ -565,9 +551,7 @@ def _limits(run: Stored, words: Language) -> list[Block]:
 def _bibliography(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     """Standards with their clauses, and the publications of the methods."""
     used = {key for a in run.analyses for key in a["assumptions"]}
-    sources = [
-        p["source"] for p in deck.get("properties", []) if p["source"] and (p["table"] == "motion" or _counts(p, used))
-    ]
+    sources = [p["source"] for p in deck.get("properties", []) if p["source"] and (p["table"] == "motion" or _counts(p, used))]
     for a in run.analyses:
         checks = getattr(run[a["name"]], "checks", None)
         sources += [c.source for c in checks.values() if c.source] if isinstance(checks, dict) else []
@@ -586,51 +570,41 @@ def _numbers(run: Stored, hidden: set[str], words: Language) -> list[Block]:
         ]
         if a["kind"] == "assess":
             rows = [
-                row
-                for row in rows
-                if row[0].split(".")[0] in ("overall", "hazard", "least_margin", "least_margin_strategy", "budget_s")
+                row for row in rows if row[0].split(".")[0] in ("overall", "hazard", "least_margin", "least_margin_strategy", "budget_s")
             ]
         if rows:
-            found += [
-                Heading(a["name"], 2),
-                Table(_heads(words, "key", "value", "unit", "meaning"), rows, (2.2, 1.8, 0.7, 3.2)),
-            ]
+            found += [Heading(a["name"], 2), Table(_heads(words, "key", "value", "unit", "meaning"), rows, (2.2, 1.8, 0.7, 3.2))]
     return found if len(found) > 1 else []
 
 
 def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Language) -> list[Block]:
     lines = [f"extrados run {deck['path'] or 'deck.toml'}"]
-    parts = [
-        n
-        for b in run.analyses
-        if b["kind"] == "assess" and b["results"]
-        for n in run.results_of(b["name"], Assess).parts
-    ]
+    parts = [n for b in run.analyses if b["kind"] == "assess" and b["results"] for n in run.results_of(b["name"], Assess).parts]
     lines += [f"extrados run {n}.toml        # of assess/, put beside the deck" for n in parts]
     files = run.summary.get("files", {})
     sums = [
-        (name, files[name])
-        for name in (STORE, *sorted(n for n in files if n.endswith(".csv") or n.startswith("assess/")))
-        if name in files
+        (name, files[name]) for name in (STORE, *sorted(n for n in files if n.endswith(".csv") or n.startswith("assess/"))) if name in files
     ]
-    settings = {
-        k: v
-        for k, v in deck["resolved"].items()
-        if isinstance(v, dict) and k not in ("structure", "material", "joints", "motion")
-    }
+    settings = {k: v for k, v in deck["resolved"].items() if isinstance(v, dict) and k not in ("structure", "material", "joints", "motion")}
     settings |= {a["name"]: keys for a, keys in zip(run.analyses, deck["resolved"].get("analysis", []), strict=False)}
     found: list[Block] = [
-        Heading(words("To repeat it")), Code("\n".join(lines)),
-        Table((), [("version", f"{made['version']} {made['commit']}"), ("compiler", made["compiler"]), ("deck", f"{deck['path']}, sha256 {deck['sha256']}")], (1.0, 5.0)),
+        Heading(words("To repeat it")),
+        Code("\n".join(lines)),
+        Table(
+            (),
+            [
+                ("version", f"{made['version']} {made['commit']}"),
+                ("compiler", made["compiler"]),
+                ("deck", f"{deck['path']}, sha256 {deck['sha256']}"),
+            ],
+            (1.0, 5.0),
+        ),
         Words(words("Checksums (sha256) of the files beside this report, as {file} gives them:", file=SUMMARY)),
         Table(("file", "sha256"), sums, (1.6, 5.0)),
-    ]  # fmt: skip
+    ]
     rows = flat(settings)
     if rows:
-        found += [
-            Heading(words("Settings of the analyses, with their defaults, in SI"), 2),
-            Table(("key", "value"), rows, (2.4, 4.0)),
-        ]
+        found += [Heading(words("Settings of the analyses, with their defaults, in SI"), 2), Table(("key", "value"), rows, (2.4, 4.0))]
     return found
 
 

@@ -19,18 +19,21 @@ Section = Literal["answer", "building", "hazard", "analyses", "factors", "limits
 SECTIONS: tuple[Section, ...] = ("answer", "building", "hazard", "analyses", "factors", "limits", "bibliography")
 #: Entries of a title block, in their order, by the words of a deck
 ENTRIES = {
-    "project": "Project", "client": "Client", "office": "Office", "author": "Author", "reviewer": "Reviewer", "revision": "Revision",
+    "project": "Project",
+    "client": "Client",
+    "office": "Office",
+    "author": "Author",
+    "reviewer": "Reviewer",
+    "revision": "Revision",
     "date": "Date",
-}  # fmt: skip
+}
 Text = Annotated[str, Field(max_length=200)]
 
 
 class ReportTable(Table):
     """The keys of report.toml; entries of the title block that the deck does not give."""
 
-    language: Literal["en", "it", "es", "fr", "de"] | None = key(
-        None, "language of the report; default that of the deck"
-    )
+    language: Literal["en", "it", "es", "fr", "de"] | None = key(None, "language of the report; default that of the deck")
     project: Text = key("", "name or number of the project")
     client: Text = key("", "client")
     office: Text = key("", "office that issues the report")
@@ -41,12 +44,8 @@ class ReportTable(Table):
     fields: dict[Text, Text] = key({}, "further entries of the title block: label and text", max_length=12)
     signatures: list[Text] = key([], "labels of the fields for signatures; default author and reviewer", max_length=6)
     logo: str | None = key(None, "PNG or JPEG file inside the template's folder", max_length=200)
-    colour: str = key(
-        "#1f4e79", "colour of headings and rules: # and six hexadecimal digits", pattern=r"^#[0-9a-fA-F]{6}$"
-    )
-    sections: list[Section] = key(
-        list(SECTIONS), "sections of the report in their order", min_length=1, max_length=len(SECTIONS)
-    )
+    colour: str = key("#1f4e79", "colour of headings and rules: # and six hexadecimal digits", pattern=r"^#[0-9a-fA-F]{6}$")
+    sections: list[Section] = key(list(SECTIONS), "sections of the report in their order", min_length=1, max_length=len(SECTIONS))
     figures: int = key(2, "figures of each analysis in the report; the annex has the others", ge=0, le=20)
 
     @field_validator("sections")
@@ -74,9 +73,7 @@ def read_template(path: Path) -> Template:
         if table.logo is None:
             return Template(table)
         if Path(table.logo).is_absolute():
-            raise files.BadFile(
-                f"{path}: logo: expected a file inside the template's folder, found the absolute path {table.logo}"
-            )
+            raise files.BadFile(f"{path}: logo: expected a file inside the template's folder, found the absolute path {table.logo}")
         suffix = Path(table.logo).suffix.lower()
         if suffix not in PICTURES:
             raise files.BadFile(f"{path}: logo: expected a name that ends in {', '.join(PICTURES)}, found {table.logo}")

@@ -75,10 +75,15 @@ def draw(curves: list[Push], path: Path) -> Path:
     with style.figure(7.4, 4.6) as (fig, (ax,)):
         for curve in curves:
             ax.plot(
-                1e3 * curve.displacement, curve.load / 1e3, SENSES[curve.prefix], linewidth=1.3,
-                color=COLOURS[analyses.index(curve.analysis) % len(COLOURS)], marker="o" if curve.incremental else None,
-                markersize=3, markevery=MARKED,
-            )  # fmt: skip
+                1e3 * curve.displacement,
+                curve.load / 1e3,
+                SENSES[curve.prefix],
+                linewidth=1.3,
+                color=COLOURS[analyses.index(curve.analysis) % len(COLOURS)],
+                marker="o" if curve.incremental else None,
+                markersize=3,
+                markevery=MARKED,
+            )
             colour = COLOURS[analyses.index(curve.analysis) % len(COLOURS)]
             _, at = curve.greatest()
             for shear in curve.walls.values():

@@ -16,8 +16,15 @@ TALLEST = 1.1
 #: Marks after which a long key, path or list may break: between letters or names of files, not within a number
 BREAKS = re.compile(r"(?<=[A-Za-z]{2})[_.](?=[A-Za-z]{3})|(?<=[A-Za-z])/(?=\w)")
 COLOURS = {
-    "stands": "#3b7a57", "holds": "#3b7a57", "satisfied": "#3b7a57", "not satisfied": "#b3261e", "collapses": "#b3261e", "cannot stand": "#b3261e", "fails": "#b3261e", "open": "#a86400",
-}  # fmt: skip
+    "stands": "#3b7a57",
+    "holds": "#3b7a57",
+    "satisfied": "#3b7a57",
+    "not satisfied": "#b3261e",
+    "collapses": "#b3261e",
+    "cannot stand": "#b3261e",
+    "fails": "#b3261e",
+    "open": "#a86400",
+}
 BOXES = {"answer": ("#f6f2ea", "#b3261e"), "bad": ("#fbe9e7", "#b3261e"), "warn": ("#fff7e0", "#d9a400")}
 
 HEAD = """#set document(title: {title}, date: none)
@@ -69,9 +76,12 @@ def markup(document: Document, folder: Path) -> str:
     """The document in the language of typst; pictures lie below the folder."""
     words = document.words
     fields = {
-        "{title}": text_of(document.title), "{foot}": text_of(document.foot), "{lang}": text_of(words.code),
-        "{colour}": text_of(document.colour), "{figure}": f"text({text_of(words('Figure'))})",
-    }  # fmt: skip
+        "{title}": text_of(document.title),
+        "{foot}": text_of(document.foot),
+        "{lang}": text_of(words.code),
+        "{colour}": text_of(document.colour),
+        "{figure}": f"text({text_of(words('Figure'))})",
+    }
     lines = [re.sub(r"\{(?:title|foot|lang|colour|figure)\}", lambda found: fields[found[0]], HEAD)]
     title = f'text(18pt, weight: "bold", {text_of(document.title)})'
     if document.logo:
@@ -82,23 +92,17 @@ def markup(document: Document, folder: Path) -> str:
     if document.facts:
         cells = ", ".join(f"strong({text_of(a)}), {_words(b)}" for a, b in document.facts)
         cells += ", [], []" if len(document.facts) % 2 else ""
-        lines.append(
-            f"#table(columns: (auto, 1fr, auto, 1fr), stroke: 0.5pt + rgb({text_of(document.colour)}), {cells})"
-        )
+        lines.append(f"#table(columns: (auto, 1fr, auto, 1fr), stroke: 0.5pt + rgb({text_of(document.colour)}), {cells})")
     lines += _set(document.opening, folder, words)
     if document.signatures:
         cells = ", ".join(f"[#{_words(label)} \\ #{_words(name)} #v(9mm)]" for label, name in document.signatures)
-        lines.append(
-            f"#table(columns: {len(document.signatures)} * (1fr,), stroke: 0.5pt + rgb({text_of(document.colour)}), {cells})"
-        )
+        lines.append(f"#table(columns: {len(document.signatures)} * (1fr,), stroke: 0.5pt + rgb({text_of(document.colour)}), {cells})")
     if document.opening:
         lines.append("#pagebreak(weak: true)")
     lines.append(f"#outline(depth: 1, title: {_words(words('Contents'))})")
     lines += _set(document.blocks, folder, words)
     if document.annex:
-        lines.append(
-            _paragraph(Words(words("The annex is a document of its own: all numbers, settings and checksums.")))
-        )
+        lines.append(_paragraph(Words(words("The annex is a document of its own: all numbers, settings and checksums."))))
     return "\n".join(lines)
 
 
@@ -118,9 +122,7 @@ def _set(blocks: list[Block], folder: Path, words: Language) -> list[str]:
         elif isinstance(block, Figure):
             lines.append(_figure(block, folder))
         elif isinstance(block, Code):
-            lines.append(
-                f'#block(fill: rgb("#f7f7f7"), inset: 6pt, width: 100%, raw({text_of(block.text)}, block: true))'
-            )
+            lines.append(f'#block(fill: rgb("#f7f7f7"), inset: 6pt, width: 100%, raw({text_of(block.text)}, block: true))')
     return lines
 
 
@@ -162,7 +164,7 @@ def _shares(block: Table) -> list[float]:
     least = [
         BESIDE + LETTER * max((len(word) for row in every for word in BREAKS.sub(lambda m: m[0] + " ", row[k]).split()), default=0)
         for k in range(len(block.shares))
-    ]  # fmt: skip
+    ]
     asked = [PAGE * share / sum(block.shares) for share in block.shares]
     lack = sum(max(0.0, need - have) for need, have in zip(least, asked, strict=True))
     spare = sum(max(0.0, have - need) for need, have in zip(least, asked, strict=True))
@@ -188,8 +190,6 @@ def pdf(source: bytes, folder: Path) -> bytes:
         raise StoreError("the report as PDF needs the package typst: pip install typst") from None
     text: Any = source
     try:
-        return bytes(
-            typst.compile(text, root=str(folder), format="pdf", ignore_system_fonts=True, pdf_standards=["ua-1"])
-        )
+        return bytes(typst.compile(text, root=str(folder), format="pdf", ignore_system_fonts=True, pdf_standards=["ua-1"]))
     except Exception as error:  # typst raises errors of its own and RuntimeError
         raise StoreError(f"the report could not be set as PDF: {error}") from None

@@ -21,15 +21,19 @@ def rows_of(found: Verification, most: int = 8) -> list[tuple[str, ...]]:
     ordered = sorted(found.checks, key=lambda c: np.inf if c.factor is None else c.factor)
     return [
         (
-            c.push, c.limit_state, _millimetres(c.demand_m) if c.demand_pga_g is None or c.demand_m is not None else "beyond collapse",
+            c.push,
+            c.limit_state,
+            _millimetres(c.demand_m) if c.demand_pga_g is None or c.demand_m is not None else "beyond collapse",
             _millimetres(c.capacity_m),
-            "" if c.strength_ratio is None else f"{c.strength_ratio:.3g}"
-            + ("" if c.greatest_strength_ratio is None else f" <= {c.greatest_strength_ratio:g}"),
+            ""
+            if c.strength_ratio is None
+            else f"{c.strength_ratio:.3g}" + ("" if c.greatest_strength_ratio is None else f" <= {c.greatest_strength_ratio:g}"),
             "" if c.factor is None else f"{c.factor:.3g}",
-            "" if c.capacity_pga_g is None else f"{c.demand_pga_g:.3g} g, {c.capacity_pga_g:.3g} g", c.verdict,
+            "" if c.capacity_pga_g is None else f"{c.demand_pga_g:.3g} g, {c.capacity_pga_g:.3g} g",
+            c.verdict,
         )
         for c in ordered[:most]
-    ]  # fmt: skip
+    ]
 
 
 def _millimetres(value: float | None) -> str:
@@ -47,10 +51,7 @@ def draw_verification(run: Stored, name: str, folder: Path) -> list[tuple[str, s
     idea = found.curves[k]
     d, p = (run.series(name, f"verified_{what}")[k].numbers for what in ("displacement", "load"))
     spectra = run.series(name, "spectrum")
-    law = (
-        np.array([0.0, idea.yield_displacement_m, idea.ultimate_displacement_m]),
-        np.array([0.0, 1.0, 1.0]) * idea.yield_load_N,
-    )
+    law = (np.array([0.0, idea.yield_displacement_m, idea.ultimate_displacement_m]), np.array([0.0, 1.0, 1.0]) * idea.yield_load_N)
     with style.figure(9.6, 4.0, columns=2) as (fig, (left, right)):
         left.plot(1e3 * d, 1e-3 * p, color=style.THRUST, label=f"push {idea.push}")
         left.plot(1e3 * law[0], 1e-3 * law[1], color=style.EDGE, linestyle="--", label="bilinear curve of equal area")
@@ -58,13 +59,7 @@ def draw_verification(run: Stored, name: str, folder: Path) -> list[tuple[str, s
             if row.demand_m is not None:
                 left.axvline(1e3 * row.demand_m, color=shade, linewidth=1.0, label=f"demand at {row.limit_state}")
             if row.capacity_m is not None:
-                left.axvline(
-                    1e3 * row.capacity_m,
-                    color=shade,
-                    linewidth=1.0,
-                    linestyle=":",
-                    label=f"capacity at {row.limit_state}",
-                )
+                left.axvline(1e3 * row.capacity_m, color=shade, linewidth=1.0, linestyle=":", label=f"capacity at {row.limit_state}")
         left.set_xlim(0.0, 1e3 * _furthest(found, idea))
         left.set_ylim(0.0, None)
         left.set_xlabel("control displacement [mm]")
@@ -75,13 +70,7 @@ def draw_verification(run: Stored, name: str, folder: Path) -> list[tuple[str, s
             for row, shade in zip(rows, STATES, strict=False):
                 if row.demand_m is not None:
                     at = row.demand_m
-                    right.plot(
-                        1e3 * at / idea.participation_factor,
-                        np.interp(at, *law) / _weight(idea),
-                        "o",
-                        color=shade,
-                        markersize=5,
-                    )
+                    right.plot(1e3 * at / idea.participation_factor, np.interp(at, *law) / _weight(idea), "o", color=shade, markersize=5)
         style.legend_below(fig, left)
         saved = style.save(fig, folder, f"{name}-verification")
     return [
@@ -110,9 +99,15 @@ def _weight(idea: IdealisedCurve) -> float:
 
 
 def _plane(
-    ax: Axes, run: Stored, name: str, found: Verification, idea: IdealisedCurve, curve: tuple[np.ndarray, np.ndarray],
-    law: tuple[np.ndarray, np.ndarray], spectra: list[Array],
-) -> None:  # fmt: skip
+    ax: Axes,
+    run: Stored,
+    name: str,
+    found: Verification,
+    idea: IdealisedCurve,
+    curve: tuple[np.ndarray, np.ndarray],
+    law: tuple[np.ndarray, np.ndarray],
+    spectra: list[Array],
+) -> None:
     """Curve, bilinear curve and spectra as acceleration over displacement of the oscillator."""
     gamma = idea.participation_factor
     ax.plot(1e3 * curve[0] / gamma, curve[1] / _weight(idea), color=style.THRUST)
@@ -121,9 +116,7 @@ def _plane(
     if spectra:
         period = run.array(name, "spectrum_period")
         for one, shade in zip(spectra, STATES, strict=False):
-            ax.plot(
-                1e3 * one.numbers * (period / (2.0 * np.pi)) ** 2, one.numbers / GRAVITY, color=shade, linewidth=1.0
-            )
+            ax.plot(1e3 * one.numbers * (period / (2.0 * np.pi)) ** 2, one.numbers / GRAVITY, color=shade, linewidth=1.0)
             top = max(top, one.numbers.max() / GRAVITY)
     ax.set_xlim(0.0, 1e3 * _furthest(found, idea) / gamma)
     ax.set_ylim(0.0, 1.08 * top)

@@ -154,9 +154,7 @@ class Masonry(Description):
             if tie.ground is None:
                 block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end", ("ties", k), "end")
             if block[k, 0] == block[k, 1]:
-                raise BadGeometry(
-                    f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'", ("ties", k)
-                )
+                raise BadGeometry(f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'", ("ties", k))
         return Anchored(block, point)
 
     @property

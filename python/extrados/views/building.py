@@ -40,9 +40,10 @@ class Building(Masonry):
         self.refuse_weightless()
         worn = self.joints.worn_corners
         return self.made(
-            "rigid", (self.structure, self.material.density, *self.materials.items(), worn, groups, floor),
+            "rigid",
+            (self.structure, self.material.density, *self.materials.items(), worn, groups, floor),
             lambda: maker_of(self.kind.rigid)(self, groups, floor),
-        )  # fmt: skip
+        )
 
     def rocker(self, linear: bool = False, soft_base: bool = False) -> "Rocker":
         """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations. soft_base:
@@ -63,9 +64,7 @@ class Building(Masonry):
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
         of a random pattern."""
         options = options or kinds.load(kinds.MESH_OPTIONS)()
-        tables = (
-            self.structure, self.material, *self.materials.items(), self.joints, self.supports, *self.ties, options, seed
-        )  # fmt: skip
+        tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, *self.ties, options, seed)
         return self.made("mesh", tables, lambda: self._meshed(options, seed))
 
     def _meshed(self, options: "MeshOptions", seed: int | None) -> "Mesh":

@@ -9,16 +9,7 @@ import numpy as np
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.contacts import shortest_joint
-from extrados.model.geometry.convex import (
-    clean,
-    convex_parts,
-    crossings,
-    hull,
-    is_convex,
-    overlap,
-    overlap_depth,
-    rounded,
-)
+from extrados.model.geometry.convex import clean, convex_parts, crossings, hull, is_convex, overlap, overlap_depth, rounded
 from extrados.model.geometry.mass import together
 from extrados.model.geometry.polygons import crossing_edges, distance, following, inside
 from extrados.model.geometry.polygons import signed_area as area
@@ -71,9 +62,7 @@ def make_rigid(building: Masonry, groups: tuple[tuple[int, ...], ...], floor: fl
     return rigid_bodies(building.blocks(), groups, building.joints.worn_corners, floor)
 
 
-def rigid_bodies(
-    assembly: Assembly, groups: Sequence[Sequence[int]] = (), worn: float = 0.0, floor: float | None = None
-) -> RigidBodies:
+def rigid_bodies(assembly: Assembly, groups: Sequence[Sequence[int]] = (), worn: float = 0.0, floor: float | None = None) -> RigidBodies:
     """Bodies of an assembly: `groups` of blocks move as one, corners are worn to a radius [m], a floor at a
     height [m] catches what falls. BadGeometry names a block that cannot be used.
 
@@ -86,9 +75,7 @@ def rigid_bodies(
     parts, owner, outer = [], [], []
     lines = _faces(assembly)
     outlines = [_dressed(assembly, lines, i) for i in range(n)]
-    moved = max(
-        (_apart_at_most(one, drawn) for one, drawn in zip(outlines, assembly.outlines, strict=True)), default=0.0
-    )
+    moved = max((_apart_at_most(one, drawn) for one, drawn in zip(outlines, assembly.outlines, strict=True)), default=0.0)
     for i in range(n):
         for polygon, mask in _block_parts(assembly, outlines, i):
             shape, edges = polygon, mask & ~_glued(assembly, body, i, polygon)
@@ -129,10 +116,20 @@ def rigid_bodies(
         one, two = (support_of[j] if k == GROUND else int(body[k]) for k in (a, b))
         joints.append(None if one == two else (one, two))
     return RigidBodies(
-        names, count, np.concatenate([centroid, np.reshape(middles, (supports, 2))]),
-        np.concatenate([mass, np.zeros(supports)]), np.concatenate([inertia, np.zeros(supports)]),
-        parts, owner, outer, body, joints, assembly.depth, moved, cut,
-    )  # fmt: skip
+        names,
+        count,
+        np.concatenate([centroid, np.reshape(middles, (supports, 2))]),
+        np.concatenate([mass, np.zeros(supports)]),
+        np.concatenate([inertia, np.zeros(supports)]),
+        parts,
+        owner,
+        outer,
+        body,
+        joints,
+        assembly.depth,
+        moved,
+        cut,
+    )
 
 
 def _numbering(n: int, groups: Sequence[Sequence[int]]) -> np.ndarray:
@@ -163,9 +160,7 @@ def _block_parts(assembly: Assembly, outlines: list[np.ndarray], i: int) -> list
         raise BadGeometry(f"{name}: its area is zero")
     crossing = crossing_edges(outline)
     if crossing is not None:
-        raise BadGeometry(
-            f"{name}: its outline crosses itself (edges from vertices {crossing[0] + 1} and {crossing[1] + 1})"
-        )
+        raise BadGeometry(f"{name}: its outline crosses itself (edges from vertices {crossing[0] + 1} and {crossing[1] + 1})")
     outline = clean(outline)
     if is_convex(outline):
         return [(outline, np.ones(len(outline), dtype=bool))]
@@ -297,9 +292,7 @@ def _dressed(assembly: Assembly, lines: np.ndarray, i: int) -> np.ndarray:
     beside = np.einsum("vjx,jx->vj", drawn[:, None] - lines[mine, 0], lines[mine, 1])
     along = np.einsum("vjx,jx->vj", drawn[:, None] - assembly.p[mine], assembly.tangent[mine])
     close = np.abs(beside) <= small
-    shared = np.minimum(np.maximum(along, following(along)), length) - np.maximum(
-        np.minimum(along, following(along)), 0.0
-    )
+    shared = np.minimum(np.maximum(along, following(along)), length) - np.maximum(np.minimum(along, following(along)), 0.0)
     edge = close & following(close) & (shared > np.minimum(bend, 0.5 * length))
     at_joint = edge | np.roll(edge, 1, axis=0) | (close & (along > -small) & (along < length + small))
     at_joint |= (np.abs(beside) <= bend) & (along > 0.0) & (along < length)
@@ -324,11 +317,7 @@ def _straightened(outline: np.ndarray, small: float) -> np.ndarray:
         away = [np.inf] * len(kept)
         for k in range(len(kept)):
             begin, end = kept[k - 1], kept[(k + 1) % len(kept)]
-            before, chord, after = (
-                outline[kept[k]] - outline[begin],
-                outline[end] - outline[begin],
-                outline[end] - outline[kept[k]],
-            )
+            before, chord, after = (outline[kept[k]] - outline[begin], outline[end] - outline[begin], outline[end] - outline[kept[k]])
             if before @ after > ONE_FACE * np.hypot(*before) * np.hypot(*after):
                 between = outline[np.arange(begin + 1, begin + 1 + (end - begin - 1) % len(outline)) % len(outline)]
                 arm = between - outline[begin]
@@ -425,9 +414,7 @@ def _support(assembly: Assembly, line: list[int], blocks: list[np.ndarray]) -> t
         polygon = np.array([a - deep * up, b - deep * up, b, a])
         if area(polygon) < 0.0:
             polygon = polygon[::-1]
-        if all(
-            overlap_depth(polygon, block) <= (assembly.tolerance or CHORDS * np.sqrt(area(block))) for block in blocks
-        ):
+        if all(overlap_depth(polygon, block) <= (assembly.tolerance or CHORDS * np.sqrt(area(block))) for block in blocks):
             return polygon, True
     return polygon, False
 
@@ -442,9 +429,7 @@ def _floor(assembly: Assembly, level: float, footings: list[np.ndarray]) -> dict
         if (np.abs(polygon[:, 1] - level) < 1e-6 * extent).sum() == 2 and polygon[:, 1].max() < level + 1e-6 * extent
     ]
     flush.sort(key=lambda k: float(footings[k][:, 0].min()))
-    between = [
-        0.5 * (float(footings[a][:, 0].max()) + float(footings[b][:, 0].min())) for a, b in itertools.pairwise(flush)
-    ]
+    between = [0.5 * (float(footings[a][:, 0].max()) + float(footings[b][:, 0].min())) for a, b in itertools.pairwise(flush)]
     ends = [-np.inf, *between, np.inf]
     return {k: _rectangle(assembly, level, ends[i], ends[i + 1]) for i, k in enumerate(flush)}
 

@@ -31,18 +31,27 @@ def advise(asker: Asker, peak_g: float, rocks: bool) -> Advice | str:
         statement += f" {_told_by_rocking(least, tie)}"
     more = {"by_rocking": least} if least is not None else {}
     return Advice(
-        target_g=r.target, capacity_g=r.value_before, mechanism=r.mechanism_before, interventions=r.interventions,
-        rocking=rocking, statement=statement, **more,
-    )  # fmt: skip
+        target_g=r.target,
+        capacity_g=r.value_before,
+        mechanism=r.mechanism_before,
+        interventions=r.interventions,
+        rocking=rocking,
+        statement=statement,
+        **more,
+    )
 
 
 def _least_by_rocking(asker: Asker, tie: Intervention) -> Intervention | None:
     """The tie at the same place, with the least yield force with which rocking under the hazard has the verdict "stands"; None where the
     existing building has it, or where no force up to that of statics gives it."""
     table = {
-        "name": "the same tie", "start": tie.start_m, "ground" if "ground" in tie.place else "end": tie.end_m,
-        "works_in": works_in(tie), "yield_force": tie.required_N, "stiffness": tie.stiffness_N_m,
-    }  # fmt: skip
+        "name": "the same tie",
+        "start": tie.start_m,
+        "ground" if "ground" in tie.place else "end": tie.end_m,
+        "works_in": works_in(tie),
+        "yield_force": tie.required_N,
+        "stiffness": tie.stiffness_N_m,
+    }
     try:
         result, _ = asker.ask("strengthen", {"by": "rocking", "safety_factor": 1.0, "ties": [table]})
     except Refused:
@@ -69,13 +78,7 @@ def _rocks(asker: Asker, one: Intervention) -> str:
         changes = {one.key: one.required_size}
     else:
         far = "ground" if "ground" in one.place else "end"
-        tie = {
-            "name": "strengthening",
-            "start": one.start_m,
-            far: one.end_m,
-            "yield_force": one.required_N,
-            "stiffness": one.stiffness_N_m,
-        }
+        tie = {"name": "strengthening", "start": one.start_m, far: one.end_m, "yield_force": one.required_N, "stiffness": one.stiffness_N_m}
         changes = {"ties": [*asker.context.deck.data.get("ties", []), {**tie, "works_in": works_in(one)}]}
     try:
         result, _ = asker.ask("rocking", {}, None, changes)

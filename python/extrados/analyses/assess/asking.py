@@ -96,9 +96,13 @@ class Asker:
         return {**data, "analysis": [{"kind": kind, **keys}]}
 
     def ask(
-        self, kind: str, keys: dict[str, Any], motion: dict[str, Any] | None = None, changes: dict[str, Any] | None = None,
+        self,
+        kind: str,
+        keys: dict[str, Any],
+        motion: dict[str, Any] | None = None,
+        changes: dict[str, Any] | None = None,
         without: tuple[str, ...] = (),
-    ) -> tuple[Result, str]:  # fmt: skip
+    ) -> tuple[Result, str]:
         """The result of an analysis of the building, and its deck as text; Refused where the deck is wrong, OutOfTime after the
         deadline."""
         if self.clock() >= self.deadline:
@@ -110,15 +114,12 @@ class Asker:
         except DeckError as error:
             raise Refused("; ".join(c.removeprefix("deck: analysis: ") for c in error.complaints), WHOLE) from None
         deck = replace(deck, sha256=whole.deck.identity, path=whole.deck.path)
-        one = Context(deck, whole.threads, whole.progress, out=whole.out, resume=whole.resume,
-                      scheduler=whole.scheduler, motions=whole.motions)  # fmt: skip
+        one = Context(
+            deck, whole.threads, whole.progress, out=whole.out, resume=whole.resume, scheduler=whole.scheduler, motions=whole.motions
+        )
         one.checkpoint = whole.checkpoint  # the batches of a run lie in one folder
         (options,), (building,) = deck.analyses, deck.buildings
-        if (
-            not changes
-            and not without
-            and not any(name in keys for name in ("material", "joints", "supports", "initial"))
-        ):
+        if not changes and not without and not any(name in keys for name in ("material", "joints", "supports", "initial")):
             building = whole.building  # with the views that it has
         signals = len(interrupts.asked)
         with within(self.deadline - self.clock(), self.clock) as limit:
@@ -141,9 +142,14 @@ RESTRAINTS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall
 
 
 def row_of(
-    strategy: Strategy, result: Result, words: str, demand: Demanded, acceptable: float, wall: str | None = None,
+    strategy: Strategy,
+    result: Result,
+    words: str,
+    demand: Demanded,
+    acceptable: float,
+    wall: str | None = None,
     without: tuple[str, ...] = (),
-) -> StrategyVerdict:  # fmt: skip
+) -> StrategyVerdict:
     """The row of a strategy that has been asked; wall: the side of a wall that stands against it, towards which statics does
     not push. without: what of the deck the strategy neglects, whose collapse without a restraint decides nothing."""
     if result.status != "ok":
@@ -177,10 +183,25 @@ def row_of(
         violated.append(f"The strategy neglects {' and '.join(held)}, which may prevent the collapse.")
         outcome, margin, statement = "open", None, f"{statement} {violated[-1]}"  # of another building
     return StrategyVerdict(
-        strategy=strategy.name, label=strategy.label, part=None, status="ok", reason="", axis=strategy.axis, demand=wanted,
-        capacity=borne, unit=unit, outcome=outcome, bound=verdict.bound, violated=violated,
-        margin=margin, margin_at_least=low, margin_below=high, parameters=words, assumes=strategy.assumes, statement=statement,
-    )  # fmt: skip
+        strategy=strategy.name,
+        label=strategy.label,
+        part=None,
+        status="ok",
+        reason="",
+        axis=strategy.axis,
+        demand=wanted,
+        capacity=borne,
+        unit=unit,
+        outcome=outcome,
+        bound=verdict.bound,
+        violated=violated,
+        margin=margin,
+        margin_at_least=low,
+        margin_below=high,
+        parameters=words,
+        assumes=strategy.assumes,
+        statement=statement,
+    )
 
 
 def _cracked(r: Tilt) -> float | None:
@@ -193,10 +214,25 @@ def _cracked(r: Tilt) -> float | None:
 def no_row(strategy: Strategy, status: RowStatus, reason: str, words: str = "") -> StrategyVerdict:
     """The row of a strategy without a result."""
     return StrategyVerdict(
-        strategy=strategy.name, label=strategy.label, part=None, status=status, reason=reason, axis=strategy.axis, demand=None,
-        capacity=None, unit="", outcome="not-applicable", bound=None, violated=[], margin=None, margin_at_least=None, margin_below=None, parameters=words,
-        assumes=strategy.assumes, statement="",
-    )  # fmt: skip
+        strategy=strategy.name,
+        label=strategy.label,
+        part=None,
+        status=status,
+        reason=reason,
+        axis=strategy.axis,
+        demand=None,
+        capacity=None,
+        unit="",
+        outcome="not-applicable",
+        bound=None,
+        violated=[],
+        margin=None,
+        margin_at_least=None,
+        margin_below=None,
+        parameters=words,
+        assumes=strategy.assumes,
+        statement="",
+    )
 
 
 def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:

@@ -9,17 +9,7 @@ import numpy as np
 
 from extrados import kinds
 from extrados.analyses.assess import advice, hazard, sensitivity, strategies
-from extrados.analyses.assess.asking import (
-    ENDING,
-    STOPPED_AFTER,
-    Asker,
-    Interrupted,
-    OutOfTime,
-    Stopwatch,
-    no_row,
-    row_of,
-    scaled_margin,
-)
+from extrados.analyses.assess.asking import ENDING, STOPPED_AFTER, Asker, Interrupted, OutOfTime, Stopwatch, no_row, row_of, scaled_margin
 from extrados.analyses.assess.model_uncertainty import estimate_collapse
 from extrados.analyses.assess.reasons import SLID, Facts, Pair, explained
 from extrados.analyses.assess.strategies import Asked, Choice, LeftOut, Strategy
@@ -103,12 +93,7 @@ class _Work:
         self.advice: out.Advice | None = None
         self.finer: dict[str, list[str]] = {}  # strategy, settings of its finer runs with their outcomes
         self.finer_told = ""
-        self.asker = Asker(
-            context,
-            dict(context.deck.data["motion"]),
-            STOPPED_AFTER * options.for_strategies,
-            Stopwatch(),
-        )
+        self.asker = Asker(context, dict(context.deck.data["motion"]), STOPPED_AFTER * options.for_strategies, Stopwatch())
         self.peak, self.peak_told = hazard.peak_of(context)
 
     # ----- asking
@@ -159,9 +144,7 @@ class _Work:
         try:
             result, deck = self.asker.ask(choice.kind or strategy.kind, choice.keys, motion, None, without)
         except OutOfTime:
-            self.rows[name] = no_row(
-                strategy, "left out", f"stopped at the time limit of {self.options.for_strategies:g} s", words
-            )
+            self.rows[name] = no_row(strategy, "left out", f"stopped at the time limit of {self.options.for_strategies:g} s", words)
             self.not_done.append(f"{strategy.label}: stopped at the time limit")
             return None
         except Refused as error:
@@ -171,9 +154,14 @@ class _Work:
             verdict = result.results.require_verdict(self.asker.demand(self.peak))
             result = replace(result, verdict=verdict)
         self.rows[name] = row_of(
-            strategy, result, words, self.asker.demand(self.peak), self.options.acceptable_probability,
-            self.context.building.supports.abutting_wall, without,
-        )  # fmt: skip
+            strategy,
+            result,
+            words,
+            self.asker.demand(self.peak),
+            self.options.acceptable_probability,
+            self.context.building.supports.abutting_wall,
+            without,
+        )
         if result.status != "ok":
             return None
         self.parts.append((name, f"{strategy.label}: {words}", result))
@@ -272,12 +260,7 @@ class _Work:
         if row is not None and row.status == "ok":
             strategy = strategies.of("probability")
             self.rows["probability"] = row.model_copy(
-                update={
-                    "strategy": "probability",
-                    "label": strategy.label,
-                    "axis": strategy.axis,
-                    "assumes": strategy.assumes,
-                }
+                update={"strategy": "probability", "label": strategy.label, "axis": strategy.axis, "assumes": strategy.assumes}
             )
             self.parts[-1] = ("probability", *self.parts[-1][1:])
         if found is not None:
@@ -308,9 +291,7 @@ class _Work:
         """Replace the run of a strategy by one until `end` [s]; False if the longer run has no result, and the former stays."""
         choice, place = self.choices[name], [s for s, _, _ in self.parts].index(name)
         former = self.rows[name]
-        words = (
-            f"{former.parameters}; continued until {end:.3g} s, because the structure still moved at {0.5 * end:.3g} s"
-        )
+        words = f"{former.parameters}; continued until {end:.3g} s, because the structure still moved at {0.5 * end:.3g} s"
         keys = choice.keys | {"end_time": round(end, 3)}
         without = self.bare.get(name, ())
         strategy = strategies.of(name)
@@ -325,9 +306,14 @@ class _Work:
             return False
         words = words.removeprefix("; ")
         row = row_of(
-            strategy, result, words, self.asker.demand(self.peak), self.options.acceptable_probability,
-            self.context.building.supports.abutting_wall, without,
-        )  # fmt: skip
+            strategy,
+            result,
+            words,
+            self.asker.demand(self.peak),
+            self.options.acceptable_probability,
+            self.context.building.supports.abutting_wall,
+            without,
+        )
         kept = {"margin_at_least": former.margin_at_least, "margin_below": former.margin_below}
         self.rows[name] = row.model_copy(update=kept if name == "rocking" else {})
         self.choices[name] = replace(choice, keys=keys, words=words, seconds=2.0 * choice.seconds)
@@ -399,9 +385,16 @@ class _Work:
 
     def facts(self) -> Facts:
         return Facts(
-            self.context.building, self.one_motion().motion, self.peak, self.rows, self.results, self.options.apart, self.found,
-            self._needed, self.bare,
-        )  # fmt: skip
+            self.context.building,
+            self.one_motion().motion,
+            self.peak,
+            self.rows,
+            self.results,
+            self.options.apart,
+            self.found,
+            self._needed,
+            self.bare,
+        )
 
     def thin(self, name: str) -> bool:
         """Whether the margin of a strategy may be near 1."""
@@ -428,8 +421,13 @@ class _Work:
         if low is None or high is None:
             return
         levels = [round(float(v), 5) for v in np.linspace(low, high, FINE + 2)]
-        found = self._probe("rocking", f"the motion at {FINE} factors between {low:g} and {high:g}", "fragility",
-                            {"intensity": "scale", "levels": levels, "bootstrap": 0}, tell=False)  # fmt: skip
+        found = self._probe(
+            "rocking",
+            f"the motion at {FINE} factors between {low:g} and {high:g}",
+            "fragility",
+            {"intensity": "scale", "levels": levels, "bootstrap": 0},
+            tell=False,
+        )
         if found is not None and isinstance(found.results, OverLevels):
             lower, upper = scaled_margin(found.of(OverLevels))
             self._bracket("rocking", lower or low, upper or high)
@@ -445,8 +443,10 @@ class _Work:
             self._keep("tilt-no-sliding", self._probe("tilt", "no joint slides", "tilt", keys))
 
         if "[[ties]]" in self.bare.get("sla", ()) and {"sla", "tilt"} <= set(results):
-            self._keep("tilt-without", self._probe("tilt", "without the restraints that the elements neglect", "tilt", {},
-                                                   without=self.bare["sla"]))  # fmt: skip
+            self._keep(
+                "tilt-without",
+                self._probe("tilt", "without the restraints that the elements neglect", "tilt", {}, without=self.bare["sla"]),
+            )
         if self.bare and "rocking" in results and any(n in names for n in self.bare):
             every = tuple(sorted({w for there in self.bare.values() for w in there}))
             told = f"without {' and '.join(every)}"
@@ -466,9 +466,7 @@ class _Work:
         structure = building.structure
         if isinstance(structure, Column) and structure.height is not None and structure.drums > 1 and "dem" in names:
             changes = {"structure.drums": 1}
-            self._keep(
-                "monolith", self._probe("dem", "one body instead of drums", "dem", choice.keys | ONE_RUN, None, changes)
-            )
+            self._keep("monolith", self._probe("dem", "one body instead of drums", "dem", choice.keys | ONE_RUN, None, changes))
         slid = r.peak_slip_m > SLID * float(building.blocks().length.min())
         if slid and "dem" in names and not any(t.friction is not None for t in building.joints.types):
             if left < 1:
@@ -509,9 +507,16 @@ class _Work:
         self._bracket("dem", low, high)
 
     def _probe(
-        self, strategy: str, changed: str, kind: str, keys: dict[str, Any], motion: dict[str, Any] | None = None,
-        changes: dict[str, Any] | None = None, tell: bool = True, without: tuple[str, ...] | None = None,
-    ) -> Result | None:  # fmt: skip
+        self,
+        strategy: str,
+        changed: str,
+        kind: str,
+        keys: dict[str, Any],
+        motion: dict[str, Any] | None = None,
+        changes: dict[str, Any] | None = None,
+        tell: bool = True,
+        without: tuple[str, ...] | None = None,
+    ) -> Result | None:
         """A further run; None where it has no result, which is told."""
         without = self.asker.cannot_bear(kind) if without is None else without
         try:
@@ -550,14 +555,15 @@ class _Work:
                     unit = self.context.building.rocker().time_unit
                 except NoView:  # it rocks in several coordinates
                     return None
-                keys = {"pulse": "rectangular", "durations": [0.02 * unit, 20.0 * unit], "amplitudes": 2, "at_amplitudes": [f"{amplitude!r} g"],
-                        "max_amplitude": f"{2.0 * amplitude!r} g"}  # fmt: skip
+                keys = {
+                    "pulse": "rectangular",
+                    "durations": [0.02 * unit, 20.0 * unit],
+                    "amplitudes": 2,
+                    "at_amplitudes": [f"{amplitude!r} g"],
+                    "max_amplitude": f"{2.0 * amplitude!r} g",
+                }
                 found = self._probe(
-                    "rocking",
-                    f"a constant lateral acceleration of {amplitude:.3g} g, how long",
-                    "failure-domain",
-                    keys,
-                    tell=False,
+                    "rocking", f"a constant lateral acceleration of {amplitude:.3g} g, how long", "failure-domain", keys, tell=False
                 )
                 if found is None or not isinstance(found.results, FailureDomain) or found.results.at_amplitudes is None:
                     return None
@@ -584,9 +590,7 @@ class _Work:
     def move(self) -> None:
         """Margins with values of the deck moved one by one, as many as the budget allows."""
         if not strategies.of("tilt").applies(self.context.building):
-            self.not_done.append(
-                "sensitivity: limit analysis and rocking cannot analyse a building on a plan; `pushover` has variants"
-            )
+            self.not_done.append("sensitivity: limit analysis and rocking cannot analyse a building on a plan; `pushover` has variants")
             return
         rocked = self.results.get("rocking")
         restitution = rocked.of(RockingResults).restitution if rocked is not None else None
@@ -594,9 +598,14 @@ class _Work:
         data = {k: v for k, v in self.context.deck.data.items() if k not in ("analysis", "title", "note")}
         count = self.motions if self.many else None
         margins = sensitivity.Margins(
-            self.context, data, strategies.LEVELS_OF_A_SET if self.many else strategies.LEVELS, count,
-            self.options.acceptable_probability, self.peak, self.asker,
-        )  # fmt: skip
+            self.context,
+            data,
+            strategies.LEVELS_OF_A_SET if self.many else strategies.LEVELS,
+            count,
+            self.options.acceptable_probability,
+            self.peak,
+            self.asker,
+        )
         try:
             self.moved = margins.moved(keys)
         except Unfinished as stop:
@@ -605,9 +614,7 @@ class _Work:
             self.not_done.append(f"sensitivity: {stop}")
         if margins.stopped:
             if "dem" in self.results:
-                self.not_done.append(
-                    "stiffness of the joints and moving supports by discrete elements: the time ran out"
-                )
+                self.not_done.append("stiffness of the joints and moving supports by discrete elements: the time ran out")
             raise OutOfTime
         self._move_elements()
 
@@ -621,24 +628,35 @@ class _Work:
             return
         stiffness = choice.keys.get("joints", {}).get("normal_stiffness", r.joint_stiffness_max_Pa_per_m)
         self._turn_elements(
-            "joints.normal_stiffness", "Pa/m", stiffness, (stiffness / STIFFER, stiffness * STIFFER),
+            "joints.normal_stiffness",
+            "Pa/m",
+            stiffness,
+            (stiffness / STIFFER, stiffness * STIFFER),
             lambda v: f"joints {v / stiffness:.3g} times as stiff",
             lambda v: {"joints": {"normal_stiffness": v}},
-        )  # fmt: skip
+        )
         grounded = np.flatnonzero((stones.a < 0) | (stones.b < 0))
         if len(grounded) > 1:
             right = stones.joint_names[int(grounded[np.argmax(stones.middle[grounded, 0])])]
             spread = SPREAD * stones.size
             self._turn_elements(
-                "initial.movements.dx", "m", 0.0, (-spread, spread),
+                "initial.movements.dx",
+                "m",
+                0.0,
+                (-spread, spread),
                 lambda v: f"the right support moves {'out' if v > 0.0 else 'in'} by {1e3 * abs(v):.3g} mm in the first second",
                 lambda v: {"initial": {"movements": [{"joint": right, "dx": v}]}},
-            )  # fmt: skip
+            )
 
     def _turn_elements(
-        self, key: str, unit: str, base: float, ends: tuple[float, float], told: Callable[[float], str],
+        self,
+        key: str,
+        unit: str,
+        base: float,
+        ends: tuple[float, float],
+        told: Callable[[float], str],
         keys: Callable[[float], dict[str, Any]],
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Move one value of discrete elements down and up; between it and an end that turns them seek where they turn."""
         choice, r = self.choices["dem"], self.results["dem"].results
         assert isinstance(r, DemRun)
@@ -653,11 +671,7 @@ class _Work:
         low, high = ask(ends[0]), ask(ends[1])
         turns = None
         fell = r.outcome == "collapse"
-        turned = [
-            e
-            for e, one in zip(ends, (low, high), strict=True)
-            if one is not None and (one.outcome == "collapse") != fell
-        ]
+        turned = [e for e, one in zip(ends, (low, high), strict=True) if one is not None and (one.outcome == "collapse") != fell]
         if turned and self.rows["dem"].outcome != "open":
             near, far = base, min(turned, key=lambda e: abs(e - base))
             for _ in range(ELEMENT_HALVINGS):
@@ -669,11 +683,25 @@ class _Work:
             turns = float(np.sqrt(near * far)) if near > 0.0 else 0.5 * (near + far)
         self.shaken.append(
             out.TurningValue(
-                key=key, base=base, unit=unit, low=ends[0], high=ends[1], tilt_base=None, rocking_base=None, tilt_low=None, tilt_high=None,
-                rocking_low=None, rocking_high=None, tilt_turns=None, rocking_turns=None, dem_base=share(r), dem_low=share(low),
-                dem_high=share(high), dem_turns=turns,
+                key=key,
+                base=base,
+                unit=unit,
+                low=ends[0],
+                high=ends[1],
+                tilt_base=None,
+                rocking_base=None,
+                tilt_low=None,
+                tilt_high=None,
+                rocking_low=None,
+                rocking_high=None,
+                tilt_turns=None,
+                rocking_turns=None,
+                dem_base=share(r),
+                dem_low=share(low),
+                dem_high=share(high),
+                dem_turns=turns,
             )
-        )  # fmt: skip
+        )
 
     def _sensitivity(self) -> list[out.TurningValue]:
         """Rows of the tornado, the widest first, those of discrete elements after them."""
@@ -684,12 +712,26 @@ class _Work:
 
         return [
             out.TurningValue(
-                key=m.what.key, base=m.what.base, unit=m.what.unit, low=m.low, high=m.high, tilt_base=m.at_base[0], rocking_base=m.at_base[1], tilt_low=m.at_low[0], tilt_high=m.at_high[0],
-                rocking_low=m.at_low[1], rocking_high=m.at_high[1], tilt_turns=m.turns[0], rocking_turns=m.turns[1],
-                dem_base=None, dem_low=None, dem_high=None, dem_turns=None,
+                key=m.what.key,
+                base=m.what.base,
+                unit=m.what.unit,
+                low=m.low,
+                high=m.high,
+                tilt_base=m.at_base[0],
+                rocking_base=m.at_base[1],
+                tilt_low=m.at_low[0],
+                tilt_high=m.at_high[0],
+                rocking_low=m.at_low[1],
+                rocking_high=m.at_high[1],
+                tilt_turns=m.turns[0],
+                rocking_turns=m.turns[1],
+                dem_base=None,
+                dem_low=None,
+                dem_high=None,
+                dem_turns=None,
             )
             for m in sorted(self.moved, key=width, reverse=True)
-        ] + self.shaken  # fmt: skip
+        ] + self.shaken
 
     # ----- the answer
 
@@ -709,13 +751,18 @@ class _Work:
         judged = facts.judged()
         agreement = {a: {b: facts.relation(a, b) for b in judged if b != a} for a in judged}
         # a strategy by which the building stands, although its factor is not known from below 1 on, has no least factor
-        margins = [(low if row.margin is None else row.margin, row.strategy) for row in rows if row.outcome != "not-applicable"
-                   if ((low := row.margin_at_least if row.outcome == "stands" else row.margin_below) is not None
-                   and (row.outcome != "stands" or low >= 1.0)) or row.margin is not None]  # fmt: skip
+        margins = [
+            (low if row.margin is None else row.margin, row.strategy)
+            for row in rows
+            if row.outcome != "not-applicable"
+            if (
+                (low := row.margin_at_least if row.outcome == "stands" else row.margin_below) is not None
+                and (row.outcome != "stands" or low >= 1.0)
+            )
+            or row.margin is not None
+        ]
         least = min(margins, default=(None, None), key=lambda m: m[0] if m[0] is not None else np.inf)
-        overall, statement = conclusion(
-            facts, reasons, unexplained, self.context.building.require_structure().word, least, rows
-        )
+        overall, statement = conclusion(facts, reasons, unexplained, self.context.building.require_structure().word, least, rows)
         fragility = self.results.get("probability")
         chance = estimate_collapse(rows, None if fragility is None else fragility.results)
         if self.finer_told:
@@ -725,33 +772,42 @@ class _Work:
         impulse = hazard.primary(facts.motion)
         model = self.context.deck.require_motion()
         found = out.Assess(
-            overall=overall, statement=statement,
+            overall=overall,
+            statement=statement,
             hazard=out.AssessHazard(
-                kind=model.kind, told=self._hazard_told(facts.motion), motions=self.motions, **self.chosen,
-                peak_ground_acceleration_g=self.peak, peak_told=self.peak_told,
-                pulse_amplitude_g=impulse and impulse[0], pulse_period_s=impulse and impulse[1],
+                kind=model.kind,
+                told=self._hazard_told(facts.motion),
+                motions=self.motions,
+                **self.chosen,
+                peak_ground_acceleration_g=self.peak,
+                peak_told=self.peak_told,
+                pulse_amplitude_g=impulse and impulse[0],
+                pulse_period_s=impulse and impulse[1],
             ),
-            verdicts=rows, agreement=agreement, collapse_probability=chance, reasons=reasons, unexplained=[list(p) for p in unexplained],
-            parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
-            **given(sensitivity=self._sensitivity() if self.moved or self.shaken else None, advice=self.advice), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
-        )  # fmt: skip
+            verdicts=rows,
+            agreement=agreement,
+            collapse_probability=chance,
+            reasons=reasons,
+            unexplained=[list(p) for p in unexplained],
+            parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)),
+            probes=self.probes,
+            **given(sensitivity=self._sensitivity() if self.moved or self.shaken else None, advice=self.advice),
+            not_done=self.not_done,
+            least_margin=least[0],
+            least_margin_strategy=least[1],
+            budget_s=self.options.budget,
+        )
         result.results = found
         result.parts = [r for _, _, r in self.parts]
         for name, deck in zip(names, self.decks, strict=True):
-            head = (
-                f"# {name}: one part of an assessment of {self.context.deck.path}; run it in the folder of that deck.\n"
-            )
-            result.files[f"assess/{name}.toml"] = (head + deck).encode(
-                errors="replace"
-            )  # names of files may be no text
+            head = f"# {name}: one part of an assessment of {self.context.deck.path}; run it in the folder of that deck.\n"
+            result.files[f"assess/{name}.toml"] = (head + deck).encode(errors="replace")  # names of files may be no text
         result.files |= self.faults
         self._arrays(facts, rows, result)
         result.answer = answer(statement, rows, reasons, found.sensitivity or [])
         if self.advice is not None:
             result.answer += f"\nStrengthening. {self.advice.statement}"
-        result.warnings += [
-            f"{row.label}: {row.status}: {row.reason}" for row in rows if row.status in ("failed", "left out")
-        ]
+        result.warnings += [f"{row.label}: {row.status}: {row.reason}" for row in rows if row.status in ("failed", "left out")]
 
     def _hazard_told(self, motion: Any) -> str:
         name = self.context.deck.require_motion().kind
@@ -767,20 +823,32 @@ class _Work:
         }
         time_s, ground = facts.motion.series()
         thin = slice(None, None, max(1, len(time_s) // 4000))
-        result.arrays |= {
-            "time": Array(time_s[thin], ("time",), "s"), "ground": Array(ground[thin], ("time",), "m/s^2", "the motion"),
-        }  # fmt: skip
+        result.arrays |= {"time": Array(time_s[thin], ("time",), "s"), "ground": Array(ground[thin], ("time",), "m/s^2", "the motion")}
         if self.moved:
             flat = [(m.what.key, value, *margins) for m in self.moved for value, margins in m.tried]
             names = ("key", "value", "margin_tilt", "margin_rocking")
-            result.tables["sensitivity"] = TableData({
-                n: [np.nan if row[k] is None else row[k] for row in flat] for k, n in enumerate(names)
-            })  # fmt: skip
-        columns = ("strategy", "part", "status", "axis", "demand", "capacity", "unit", "outcome", "margin", "margin_at_least",
-                   "margin_below", "parameters", "statement", "reason")  # fmt: skip
-        result.tables["assess"] = TableData({
-            c: [("" if c in ("part",) else np.nan) if row[c] is None else row[c] for row in rows] for c in columns
-        })  # fmt: skip
+            result.tables["sensitivity"] = TableData(
+                {n: [np.nan if row[k] is None else row[k] for row in flat] for k, n in enumerate(names)}
+            )
+        columns = (
+            "strategy",
+            "part",
+            "status",
+            "axis",
+            "demand",
+            "capacity",
+            "unit",
+            "outcome",
+            "margin",
+            "margin_at_least",
+            "margin_below",
+            "parameters",
+            "statement",
+            "reason",
+        )
+        result.tables["assess"] = TableData(
+            {c: [("" if c in ("part",) else np.nan) if row[c] is None else row[c] for row in rows] for c in columns}
+        )
 
 
 def _merged(keys: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:

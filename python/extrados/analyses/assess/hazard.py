@@ -21,10 +21,17 @@ MOTIONS = {"generated": 40, "compatible": 10}
 STRONG = 0.95
 #: Pulses, by the key of their size
 SIZES = {
-    "constant": "amplitude", "step-pulse": "amplitude", "sine-pulse": "amplitude", "harmonic": "amplitude",
-    "pulse": "amplitude", "velocity-pulse": "velocity", "generated": "factor", "record": "scale", "suite": "scale",
+    "constant": "amplitude",
+    "step-pulse": "amplitude",
+    "sine-pulse": "amplitude",
+    "harmonic": "amplitude",
+    "pulse": "amplitude",
+    "velocity-pulse": "velocity",
+    "generated": "factor",
+    "record": "scale",
+    "suite": "scale",
     "compatible": "acceleration",
-}  # fmt: skip
+}
 _UNITS = {"amplitude": " m/s^2", "velocity": " m/s", "acceleration": " m/s^2"}
 
 

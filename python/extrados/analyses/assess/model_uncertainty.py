@@ -22,10 +22,14 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
     the share of collapses under the motion itself. fragility: results of the strategy `probability`."""
     if proven := next((row for row in rows if row.outcome == "cannot-stand"), None):
         return CollapseProbability(
-            probability=1.0, low=1.0, high=1.0, contributions=[], without={},
+            probability=1.0,
+            low=1.0,
+            high=1.0,
+            contributions=[],
+            without={},
             statement="Probability of collapse 100 %: collapse under self-weight has a certificate.",
             method=f"The certificate of {proven.label} has no model uncertainty within its assumptions.",
-        )  # fmt: skip
+        )
     tested: list[tuple[StrategyVerdict, ModelUncertainty]] = []
     without: dict[str, str] = {}
     for row in rows:
@@ -47,10 +51,16 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
     left = f" No contribution: {told}." if told else ""
     if not contributions:
         return CollapseProbability(
-            probability=None, low=None, high=None, contributions=[], without=without, **dynamic,
-            statement=said.strip() or "No probability of collapse is given: no strategy has both a critical scale factor and comparisons with known results in the verification book.",
+            probability=None,
+            low=None,
+            high=None,
+            contributions=[],
+            without=without,
+            **dynamic,
+            statement=said.strip()
+            or "No probability of collapse is given: no strategy has both a critical scale factor and comparisons with known results in the verification book.",
             method=left.strip(),
-        )  # fmt: skip
+        )
     p = sum(one.weight * one.probability for one in contributions)
     low, high = min(one.low for one in contributions), max(one.high for one in contributions)
     names = " and ".join(labels[one.strategy] for one in contributions)
@@ -65,15 +75,15 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
         f"{labels[one.strategy]}: {one.count} tests, bias {one.bias:.3g}, scatter {one.scatter:.3g}, critical scale factor {one.margin:.3g}, "
         f"probability {percent(one.probability)} ({percent(one.low)} to {percent(one.high)}), weight {one.weight:.2g}"
         for one in contributions
-    )  # fmt: skip
+    )
     method = (
         "The ratio of computed to measured capacity is lognormal. Bias and scatter come from the tests of the verification book, and their "
         "number gives the confidence interval. The weight of a strategy is its share of the tests. The interval encloses those of all "
         f"contributions. {each}.{left}"
     )
     return CollapseProbability(
-        probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method, **dynamic,
-    )  # fmt: skip
+        probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method, **dynamic
+    )
 
 
 def _in_motion(rows: list[StrategyVerdict], fragility: KindResults | None) -> CollapseInMotion | None:
@@ -92,12 +102,7 @@ def _in_motion(rows: list[StrategyVerdict], fragility: KindResults | None) -> Co
     low, high = wilson(collapsed, count)
     violated = next((row.violated for row in rows if row.strategy == "probability"), [])
     return CollapseInMotion(
-        collapsed=collapsed,
-        count=count,
-        probability=collapsed / count,
-        low=float(low),
-        high=float(high),
-        violated=violated,
+        collapsed=collapsed, count=count, probability=collapsed / count, low=float(low), high=float(high), violated=violated
     )
 
 
@@ -130,9 +135,17 @@ def _contribution(row: StrategyVerdict, entry: ModelUncertainty, weight: float) 
     assert margin is not None
     p, low, high = collapse_probability(margin, entry)
     return Contribution(
-        strategy=row.strategy, quantity=entry.quantity, count=entry.count, bias=entry.bias, scatter=entry.scatter, margin=margin,
-        probability=p, low=low, high=high, weight=weight,
-    )  # fmt: skip
+        strategy=row.strategy,
+        quantity=entry.quantity,
+        count=entry.count,
+        bias=entry.bias,
+        scatter=entry.scatter,
+        margin=margin,
+        probability=p,
+        low=low,
+        high=high,
+        weight=weight,
+    )
 
 
 def percent(p: float) -> str:

@@ -103,13 +103,26 @@ class Facts:
 
 #: Reasons in a few words
 HEADLINES = {
-    "violated": "assumptions that do not hold", "static-peak": "how long the peak lasts", "impact-rule": "the energy loss at impacts", "last-digits": "a chaotic response",
-    "sine-for-record": "the rest of the motion beside its strongest sine", "sliding": "sliding of blocks",
-    "drums": "blocks that move separately", "hinges-elsewhere": "hinges that form elsewhere",
-    "membrane-without-sliding": "elements that cannot slide", "tension": "tensile strength of the elements",
-    "mortar": "mortar", "code-factors": "the factors of codes", "code-check": "which check of the codes governs", "torn-off": "whether corners and floors hold the walls",
-    "weaker-direction": "the walls along each axis", "frame-and-shells": "frame and shells", "crack": "a crack in the buttress", "left-out": "restraints that some strategies neglect", "chance": "uncertain sizes (5 %)",
-}  # fmt: skip
+    "violated": "assumptions that do not hold",
+    "static-peak": "how long the peak lasts",
+    "impact-rule": "the energy loss at impacts",
+    "last-digits": "a chaotic response",
+    "sine-for-record": "the rest of the motion beside its strongest sine",
+    "sliding": "sliding of blocks",
+    "drums": "blocks that move separately",
+    "hinges-elsewhere": "hinges that form elsewhere",
+    "membrane-without-sliding": "elements that cannot slide",
+    "tension": "tensile strength of the elements",
+    "mortar": "mortar",
+    "code-factors": "the factors of codes",
+    "code-check": "which check of the codes governs",
+    "torn-off": "whether corners and floors hold the walls",
+    "weaker-direction": "the walls along each axis",
+    "frame-and-shells": "frame and shells",
+    "crack": "a crack in the buttress",
+    "left-out": "restraints that some strategies neglect",
+    "chance": "uncertain sizes (5 %)",
+}
 
 
 def reason(rule: str, pairs: list[Pair], text: str, **numbers: float | None) -> Reason:
@@ -160,13 +173,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         f"Static analysis applies the peak of {told} as a sustained load; the motion exceeds the {capacity:.3g} g of "
         f"{facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, for {longest:.3g} s at most"
     )
-    numbers = {
-        "static_capacity": capacity,
-        "peak": amplitude,
-        "excursions": float(count),
-        "longest_s": longest,
-        "needed_s": needed,
-    }
+    numbers = {"static_capacity": capacity, "peak": amplitude, "excursions": float(count), "longest_s": longest, "needed_s": needed}
     if needed is not None and longest < needed:
         return reason(
             "static-peak",
@@ -183,15 +190,15 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     if not 0.0 < moved < FAR or longest <= 0.0:
         return None
     return reason(
-        "static-peak", [p for p in mine if "dem" in p],
-        f"{text}: in that time the blocks move by {100 * moved:.2g} % of the displacement that counts as collapse.", displacement_ratio=moved,
+        "static-peak",
+        [p for p in mine if "dem" in p],
+        f"{text}: in that time the blocks move by {100 * moved:.2g} % of the displacement that counts as collapse.",
+        displacement_ratio=moved,
         **numbers,
-    )  # fmt: skip
+    )
 
 
-def _by_passages(
-    facts: Facts, mine: list[Pair], text: str, level: float, factor: float, numbers: dict[str, float | None]
-) -> Reason | None:
+def _by_passages(facts: Facts, mine: list[Pair], text: str, level: float, factor: float, numbers: dict[str, float | None]) -> Reason | None:
     """The passages over the capacity one by one, each as a constant lateral acceleration equal to its mean. A passage is not considered if
     another one is as strong and as long."""
     worst, longest = None, 0.0
@@ -208,11 +215,12 @@ def _by_passages(
         return None
     length, mean, needed = worst
     return reason(
-        "static-peak", mine,
+        "static-peak",
+        mine,
         f"{text}. None of these times lasts long enough: the most dangerous averages {mean:.3g} g for {length:.3g} s, and a constant "
         f"lateral acceleration of {mean:.3g} g needs {needed:.3g} s to cause collapse.",
         **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
-    )  # fmt: skip
+    )
 
 
 def _unstopped(facts: Facts, r: Tilt) -> float:
@@ -233,11 +241,14 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if cracked is None or cracked >= whole or whole <= facts.peak_g:
         return None
     return reason(
-        "crack", mine,
+        "crack",
+        mine,
         f"Limit analysis considers a crack in the leeward buttress: {cracked:.3g} g instead of {whole:.3g} g with monolithic buttresses, which "
         f"exceeds the peak of {facts.peak_g:.3g} g. The other strategies do not consider this crack.",
-        cracked=cracked, whole=whole, peak=facts.peak_g,
-    )  # fmt: skip
+        cracked=cracked,
+        whole=whole,
+        peak=facts.peak_g,
+    )
 
 
 def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -253,12 +264,14 @@ def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if other.peak_rotation_ratio <= 1.2 * r.peak_rotation_ratio:
         return None
     return reason(
-        "left-out", mine,
+        "left-out",
+        mine,
         f"The restraints of the mechanism are {' and '.join(sorted(every))}, neglected by "
         f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them the greatest rotation is "
         f"{100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them {100 * r.peak_rotation_ratio:.3g} %.",
-        rotation_ratio_without=other.peak_rotation_ratio, rotation_ratio=r.peak_rotation_ratio,
-    )  # fmt: skip
+        rotation_ratio_without=other.peak_rotation_ratio,
+        rotation_ratio=r.peak_rotation_ratio,
+    )
 
 
 def ties_of_statics(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -271,9 +284,14 @@ def ties_of_statics(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if sla.capacity is None or tilt.capacity is None or abs(bare - sla.capacity) > 0.1 * bare:
         return None
     return reason(
-        "left-out", mine, f"Limit analysis uses the ties, the elements do not: {tilt.capacity:.3g} g with them, {bare:.3g} g "
-        f"without, and the elements {sla.capacity:.3g} g.", with_ties=tilt.capacity, without_ties=bare, elements=sla.capacity,
-    )  # fmt: skip
+        "left-out",
+        mine,
+        f"Limit analysis uses the ties, the elements do not: {tilt.capacity:.3g} g with them, {bare:.3g} g "
+        f"without, and the elements {sla.capacity:.3g} g.",
+        with_ties=tilt.capacity,
+        without_ties=bare,
+        elements=sla.capacity,
+    )
 
 
 def impact_rule(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -292,10 +310,12 @@ def impact_rule(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
     numbers = {f"restitution_{o.rule}".replace("-", "_"): o.restitution for o in r.outcomes_by_rule}
     return reason(
-        "impact-rule", mine,
+        "impact-rule",
+        mine,
         f"The energy loss at impacts decides: rocking collapses by {told(falls)} and recovers by {told(stands)}. Discrete elements "
-        "lose energy by the damping of their contacts, which is neither rule.", **numbers,
-    )  # fmt: skip
+        "lose energy by the damping of their contacts, which is neither rule.",
+        **numbers,
+    )
 
 
 def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -313,14 +333,16 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not more:
         return None
     return reason(
-        "sine-for-record", mine,
+        "sine-for-record",
+        mine,
         f"The criterion replaces the motion by its strongest sine, {abs(a.primary_impulse.amplitude_g):.3g} g over "
         f"{a.primary_impulse.period_s:.3g} s ({100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared acceleration there): "
         f"under that sine alone the greatest rotation is {100 * sine.peak_rotation_ratio:.0f} % of the critical rotation, under the whole "
         f"motion {100 * whole.peak_rotation_ratio:.0f} %.",
-        sine_rotation_ratio=sine.peak_rotation_ratio, motion_rotation_ratio=whole.peak_rotation_ratio,
+        sine_rotation_ratio=sine.peak_rotation_ratio,
+        motion_rotation_ratio=whole.peak_rotation_ratio,
         goodness_of_fit=a.primary_impulse.goodness_of_fit,
-    )  # fmt: skip
+    )
 
 
 def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -330,10 +352,12 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or not isinstance(r, Rocking) or not r.decided_by_last_digits:
         return None
     return reason(
-        "last-digits", mine, "Rocking under this motion is chaotic: sensitive to perturbations of 1e-6 to 1e-4. One run is one sample. Its greatest "
+        "last-digits",
+        mine,
+        "Rocking under this motion is chaotic: sensitive to perturbations of 1e-6 to 1e-4. One run is one sample. Its greatest "
         f"rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical one.",
         rotation_ratio=r.peak_rotation_ratio,
-    )  # fmt: skip
+    )
 
 
 def elements_of_last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -343,13 +367,15 @@ def elements_of_last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or not isinstance(dem, DemRun) or not dem.decided_by_last_digits:
         return None
     return reason(
-        "last-digits", mine,
+        "last-digits",
+        mine,
         f"The discrete-element response is chaotic here: with a change of 1e-6 in the motion the outcome is {dem.perturbed_outcome} instead of "
-        f"{dem.outcome}. Treat one run as one sample." if dem.perturbed_outcome != dem.outcome else
-        "The discrete-element response is chaotic here: a change of 1e-6 in the motion grows "
+        f"{dem.outcome}. Treat one run as one sample."
+        if dem.perturbed_outcome != dem.outcome
+        else "The discrete-element response is chaotic here: a change of 1e-6 in the motion grows "
         f"{dem.perturbation_growth:.2g} times. Treat one run as one sample.",
         growth=dem.perturbation_growth,
-    )  # fmt: skip
+    )
 
 
 def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -359,10 +385,12 @@ def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or row is None or row.demand is None or not 0.05 < row.demand < 0.95:
         return None
     return reason(
-        "chance", mine,
+        "chance",
+        mine,
         f"Of {row.parameters.split(' (coef')[0]}, {100 * row.demand:.0f} % collapse under the hazard itself: a single run of one building "
-        "under one motion is one draw of these.", share=row.demand,
-    )  # fmt: skip
+        "under one motion is one draw of these.",
+        share=row.demand,
+    )
 
 
 def _moves_alike(one: DemRun, other: DemRun) -> bool:
@@ -403,10 +431,13 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     numbers["displacement_without_sliding_m"] = other.peak_displacement_m
     numbers["displacement_m"] = dem.peak_displacement_m
     return reason(
-        "sliding", mine, f"{text}, which a rocking mechanism excludes. Without sliding the elements "
+        "sliding",
+        mine,
+        f"{text}, which a rocking mechanism excludes. Without sliding the elements "
         f"{'collapse' if other.outcome == 'collapse' else 'stand'} and move by {other.peak_displacement_m:.3g} m, with it "
-        f"{'they collapse' if dem.outcome == 'collapse' else f'by {dem.peak_displacement_m:.3g} m'}.", **numbers,
-    )  # fmt: skip
+        f"{'they collapse' if dem.outcome == 'collapse' else f'by {dem.peak_displacement_m:.3g} m'}.",
+        **numbers,
+    )
 
 
 def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -417,23 +448,18 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or not isinstance(dem, DemRun) or not isinstance(tilt, Tilt) or dem.decided_by_last_digits:
         return None
     least = _unstopped(facts, tilt)
-    forth, back = (
-        (tilt.capacity(way), joints)
-        for way, joints in ((False, tilt.dilating_joints), (True, tilt.dilating_joints_opposite))
-    )
+    forth, back = ((tilt.capacity(way), joints) for way, joints in ((False, tilt.dilating_joints), (True, tilt.dilating_joints_opposite)))
     slides = any(capacity == least and joints for capacity, joints in (forth, back))
-    if (
-        not slides
-        or dem.outcome == "collapse"
-        or dem.peak_slip_m < FAR * dem.peak_displacement_m
-        or dem.peak_slip_m <= 0.0
-    ):
+    if not slides or dem.outcome == "collapse" or dem.peak_slip_m < FAR * dem.peak_displacement_m or dem.peak_slip_m <= 0.0:
         return None
     return reason(
-        "sliding", mine,
+        "sliding",
+        mine,
         f"Limit analysis counts sliding as collapse, from {least:.3g} g on. Under the motion the blocks slide by {1e3 * dem.peak_slip_m:.3g} mm "
-        "and do not collapse.", static_capacity=least, slip_m=dem.peak_slip_m,
-    )  # fmt: skip
+        "and do not collapse.",
+        static_capacity=least,
+        slip_m=dem.peak_slip_m,
+    )
 
 
 def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -451,11 +477,13 @@ def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if share < ELSEWHERE:
         return None
     return reason(
-        "hinges-elsewhere", mine,
+        "hinges-elsewhere",
+        mine,
         f"The thrust line of the assumed mechanism leaves the blocks in {100 * share:.0f} % of the rocking time, by up to "
         f"{100 * float(out.max()):.0f} % of their thickness: hinges form elsewhere too, which only discrete elements follow.",
-        share_of_time=share, farthest_ratio=float(out.max()),
-    )  # fmt: skip
+        share_of_time=share,
+        farthest_ratio=float(out.max()),
+    )
 
 
 def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -472,12 +500,14 @@ def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     stones = len(facts.building.blocks().mass)
     return reason(
-        "drums", mine,
+        "drums",
+        mine,
         f"Rocking takes the {stones} blocks as one body. As one body the elements "
         f"{'collapse' if one.results.outcome == 'collapse' else 'stand'} too, moving by "
         f"{one.results.peak_displacement_m:.3g} m; apart the blocks move by {dem.peak_displacement_m:.3g} m.",
-        displacement_of_one_body_m=one.results.peak_displacement_m, displacement_m=dem.peak_displacement_m,
-    )  # fmt: skip
+        displacement_of_one_body_m=one.results.peak_displacement_m,
+        displacement_m=dem.peak_displacement_m,
+    )
 
 
 def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -493,18 +523,25 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
         stuck = _unstopped(facts, held.results)
         if stuck > 1.05 * least and abs(sla.capacity - stuck) < abs(sla.capacity - least):
             return reason(
-                "membrane-without-sliding", mine,
+                "membrane-without-sliding",
+                mine,
                 f"The wall of finite elements cannot slide along its joints: limit analysis gives {least:.3g} g with friction "
                 f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g"
                 f"{', which have a tensile strength besides' if strength and sla.capacity > 1.05 * stuck else ''}.",
-                with_sliding=least, without_sliding=stuck, elements=sla.capacity,
-            )  # fmt: skip
+                with_sliding=least,
+                without_sliding=stuck,
+                elements=sla.capacity,
+            )
     if strength and sla.capacity > least:
         return reason(
-            "tension", mine,
+            "tension",
+            mine,
             f"The elements have a tensile strength of {strength / 1e6:.3g} MPa, dry joints none: {sla.capacity:.3g} g "
-            f"against {least:.3g} g.", tensile_strength=strength, elements=sla.capacity, stones=least,
-        )  # fmt: skip
+            f"against {least:.3g} g.",
+            tensile_strength=strength,
+            elements=sla.capacity,
+            stones=least,
+        )
     return None
 
 
@@ -516,9 +553,13 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or not (joints.tension or joints.cohesion):
         return None
     return reason(
-        "mortar", mine, f"The mortar has a tensile strength of {joints.tension / 1e6:.3g} MPa and a cohesion of {joints.cohesion / 1e6:.3g} MPa "
-        "until it breaks, which limit analysis and rocking neglect.", tension=joints.tension, cohesion=joints.cohesion,
-    )  # fmt: skip
+        "mortar",
+        mine,
+        f"The mortar has a tensile strength of {joints.tension / 1e6:.3g} MPa and a cohesion of {joints.cohesion / 1e6:.3g} MPa "
+        "until it breaks, which limit analysis and rocking neglect.",
+        tension=joints.tension,
+        cohesion=joints.cohesion,
+    )
 
 
 #: Checks of NTC that compare the multiplier, by the start of their names
@@ -535,30 +576,25 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     r, ((_, name, check), *_), mine = found
     least = _unstopped(facts, tilt)
     fc, q = r.confidence_factor, r.behaviour_factor if name.startswith("NTC linear") else 1.0
-    if (
-        check.demand is None
-        or check.capacity is None
-        or fc is None
-        or q is None
-        or abs(check.capacity / least - 1.0) < 0.05
-    ):
+    if check.demand is None or check.capacity is None or fc is None or q is None or abs(check.capacity / least - 1.0) < 0.05:
         return None
     part = r.participating_part if isinstance(r, LocalMechanism) else 1.0
     if abs(check.capacity * part * fc / (q * least) - 1.0) > 0.02:
         return None  # another mechanism, or a weight that these factors do not hold
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
-    taking = (
-        ""
-        if abs(part - 1.0) < 0.005
-        else f", divided by e* = {part:.3g}, the part of the moving weight that takes part"
-    )
+    taking = "" if abs(part - 1.0) < 0.005 else f", divided by e* = {part:.3g}, the part of the moving weight that takes part"
     reserve = " The factor q is the reserve of rocking beyond uplift." if q != 1.0 else ""
     return reason(
-        "code-factors", other,
+        "code-factors",
+        other,
         f"{name} of the code compares a demand of {check.demand:.3g} g with a capacity of {check.capacity:.3g} g. This capacity is the collapse "
         f"acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}, which is {'one' if q == 1.0 else f'the behaviour factor q = {q:g}'} over the confidence factor FC = {fc:g}.{reserve}",
-        code_capacity=check.capacity, static_capacity=least, demand=check.demand, factor=q / fc, participating_part=part,
-    )  # fmt: skip
+        code_capacity=check.capacity,
+        static_capacity=least,
+        demand=check.demand,
+        factor=q / fc,
+        participating_part=part,
+    )
 
 
 def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -569,10 +605,18 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
     r, ((margin, name, check), *others), mine = found
     if name.startswith(BY_MULTIPLIER) or check.demand is None or check.capacity is None:
         return None
-    starts = next((
-        (n, c.capacity, c.demand) for n, c in r.checks.items()
-        if n.startswith(BY_MULTIPLIER) and c.code == check.code and c.verdict in ("holds", "fails") and c.capacity is not None and c.demand
-    ), None)  # fmt: skip
+    starts = next(
+        (
+            (n, c.capacity, c.demand)
+            for n, c in r.checks.items()
+            if n.startswith(BY_MULTIPLIER)
+            and c.code == check.code
+            and c.verdict in ("holds", "fails")
+            and c.capacity is not None
+            and c.demand
+        ),
+        None,
+    )
     if starts is not None:
         other, what = starts[1] / starts[2], f"{starts[0]}, {starts[2]:.3g} against {starts[1]:.3g} g,"
     elif others:
@@ -585,19 +629,21 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
             return None
     moves = ", a displacement, which statics does not give" if check.unit == "m" else ""
     return reason(
-        "code-check", mine,
+        "code-check",
+        mine,
         f"The governing check of the codes is {name} of {check.code}, {check.demand:.3g} against {check.capacity:.3g} {check.unit}{moves}: a margin of "
         f"{margin:.3g}. By {what} it would be {other:.3g}.",
-        governing_margin=margin, demand=check.demand, capacity=check.capacity, other_margin=other,
-    )  # fmt: skip
+        governing_margin=margin,
+        demand=check.demand,
+        capacity=check.capacity,
+        other_margin=other,
+    )
 
 
 def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Codes take a wall apart from its neighbours; in the push of the whole corners and floors hold it."""
     r = facts.of("code-checks")
-    mine = [
-        p for p in pairs if "code-checks" in p and set(p) & {*PUSHES, "frame"} and facts.split(p)[0] == "code-checks"
-    ]
+    mine = [p for p in pairs if "code-checks" in p and set(p) & {*PUSHES, "frame"} and facts.split(p)[0] == "code-checks"]
     if not mine or not isinstance(r, LocalMechanism) or not r.walls:
         return None
     wall = r.walls[0]
@@ -606,12 +652,14 @@ def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     weakest = min(bears, key=lambda n: bears[n])
     return reason(
-        "torn-off", mine,
+        "torn-off",
+        mine,
         f"The codes consider each wall apart from those across it: wall {wall.wall} overturns out of its plane about the foot of storey "
         f"{wall.storey} at alpha_0 = {wall.multiplier:.3g}. In the {facts.rows[weakest].label} corners and floors hold the walls together, and the "
         f"whole carries {bears[weakest]:.3g} g, as far as the walls are bonded and anchored.",
-        multiplier=wall.multiplier, whole_g=bears[weakest],
-    )  # fmt: skip
+        multiplier=wall.multiplier,
+        whole_g=bears[weakest],
+    )
 
 
 def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -625,11 +673,13 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if area[weak] >= 0.95 * area[strong]:
         return None
     return reason(
-        "weaker-direction", mine,
+        "weaker-direction",
+        mine,
         f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis the area of the walls is {area[weak]:.3g} m^2, along the "
         f"{facts.rows[strong].label.removeprefix('push along ')} axis {area[strong]:.3g} m^2.",
-        weak_m2=area[weak], strong_m2=area[strong],
-    )  # fmt: skip
+        weak_m2=area[weak],
+        strong_m2=area[strong],
+    )
 
 
 def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -642,9 +692,7 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
         shells = facts.of(name)
         if not isinstance(shells, Pushover):
             continue
-        alike = [
-            r for r in frame.runs if r.direction_deg == direction and r.pattern == "uniform" and r.eccentricity == 0.0
-        ]
+        alike = [r for r in frame.runs if r.direction_deg == direction and r.pattern == "uniform" and r.eccentricity == 0.0]
         loads = [c.greatest_load_N for c in (shells, shells.minus) if c is not None and c.greatest_load_N is not None]
         if not alike or not loads:
             continue
@@ -664,12 +712,13 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not told:
         return None
     return reason(
-        "frame-and-shells", mine,
+        "frame-and-shells",
+        mine,
         f"{' '.join(told)} Sections of the frame carry no tension, its piers slide or crack by the strengths of codes, and flanges act only "
         "through the vertical shear at corners. Shells have the tensile strength of the masonry and bend out of their planes; they slide "
         "only along drawn joints.",
         **numbers,
-    )  # fmt: skip
+    )
 
 
 def _reached(facts: Facts, name: str) -> float | None:
@@ -690,9 +739,28 @@ def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[flo
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, violated, sine_for_record, sliding, sliding_as_collapse, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction, frame_and_shells,
+    static_peak,
+    crack,
+    left_out,
+    ties_of_statics,
+    impact_rule,
+    last_digits,
+    elements_of_last_digits,
+    violated,
+    sine_for_record,
+    sliding,
+    sliding_as_collapse,
+    drums,
+    hinges_elsewhere,
+    membrane,
+    mortar,
+    code_factors,
+    code_check,
+    torn_off,
+    weaker_direction,
+    frame_and_shells,
     chance,
-)  # fmt: skip
+)
 
 
 def explained(facts: Facts, failed: Callable[[str, Exception], None] | None = None) -> tuple[list[Reason], list[Pair]]:

@@ -30,9 +30,13 @@ SOUGHT = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.7, 2.0)
 HALVINGS = 5
 #: Sizes that make a structure thick, by its kind; thickness where none stands here
 THICKNESS = {
-    "block": ("structure.width",), "column": ("structure.width",), "stack": ("structure.lower_width",), "frame": ("structure.width",),
-    "vault": ("structure.thickness", "structure.buttress_width"), "bridge": ("structure.spans.0.thickness",),
-}  # fmt: skip
+    "block": ("structure.width",),
+    "column": ("structure.width",),
+    "stack": ("structure.lower_width",),
+    "frame": ("structure.width",),
+    "vault": ("structure.thickness", "structure.buttress_width"),
+    "bridge": ("structure.spans.0.thickness",),
+}
 #: Values that cannot pass these
 BOUNDS = {"thickness_factor": (0.2, 1.0), "restitution": (0.0, 1.0), "friction": (0.0, 10.0)}
 STRATEGIES = ("tilt", "rocking")
@@ -115,10 +119,13 @@ def varied(building: Building, given: dict[str, float] | None, restitution: floa
     structure = building.require_structure()
     keys = given or dict.fromkeys(
         [
-            *THICKNESS.get(structure.kind, ("structure.thickness",)), "structure.thickness_factor", "joints.friction",
-            "joints.restitution", "material.density",
+            *THICKNESS.get(structure.kind, ("structure.thickness",)),
+            "structure.thickness_factor",
+            "joints.friction",
+            "joints.restitution",
+            "material.density",
         ]
-    )  # fmt: skip
+    )
     found = []
     for key, share in keys.items():
         table, _, rest = key.partition(".")
@@ -161,14 +168,7 @@ class Margins:
     """Margins over keys and values, each computed once, by the batch layer."""
 
     def __init__(
-        self,
-        context: Context,
-        data: dict[str, Any],
-        levels: list[float],
-        count: int | None,
-        acceptable: float,
-        peak_g: float,
-        asker: Asker,
+        self, context: Context, data: dict[str, Any], levels: list[float], count: int | None, acceptable: float, peak_g: float, asker: Asker
     ):
         self.context, self.data, self.levels, self.count = context, data, levels, count
         self.acceptable, self.peak_g, self.asker, self.stopped = acceptable, peak_g, asker, False
@@ -183,9 +183,17 @@ class Margins:
         bears = [kinds.load(kinds.ANALYSES[kind].table).bears for kind in ("tilt", "fragility")]
         without = tuple(tuple(what for what in building.special_keys if what not in able) for able in bears)
         job = MarginsJob(
-            self.data, str(self.context.deck.folder), [k for k, _ in new], [v for _, v in new], self.levels, self.count,
-            self.acceptable, self.peak_g, without, building.supports.abutting_wall or "",
-        )  # fmt: skip
+            self.data,
+            str(self.context.deck.folder),
+            [k for k, _ in new],
+            [v for _, v in new],
+            self.levels,
+            self.count,
+            self.acceptable,
+            self.peak_g,
+            without,
+            building.supports.abutting_wall or "",
+        )
         clock, signals = self.asker.clock, len(interrupts.asked)
         with within(self.asker.deadline - clock(), clock) as limit:
             swept = sweep(self.context, "sensitivity", job, len(new), "sensitivity", slow=True)
@@ -205,9 +213,7 @@ class Margins:
             self.stopped = True
         turns = {v.key: [self._bracket(v, tried[v.key], s) for s in range(len(STRATEGIES))] for v in keys}
         for _ in range(HALVINGS):
-            open_ones = [
-                (key, s, pair) for key, there in turns.items() for s, pair in enumerate(there) if pair is not None
-            ]
+            open_ones = [(key, s, pair) for key, there in turns.items() for s, pair in enumerate(there) if pair is not None]
             try:
                 self.ask([(key, 0.5 * (a + b)) for key, _, (a, b) in open_ones])
             except OutOfTime:
@@ -220,12 +226,17 @@ class Margins:
                 turns[key][s] = (middle, b) if same else (a, middle)
         return [
             Moved(
-                v, *ends[v.key], self._row(v.key, v.bounded(v.base)), self._row(v.key, ends[v.key][0]), self._row(v.key, ends[v.key][1]),
+                v,
+                *ends[v.key],
+                self._row(v.key, v.bounded(v.base)),
+                self._row(v.key, ends[v.key][0]),
+                self._row(v.key, ends[v.key][1]),
                 [None if pair is None else 0.5 * (pair[0] + pair[1]) for pair in turns[v.key]],
                 [(value, self._row(v.key, value)) for value in tried[v.key]],
             )
-            for v in keys if (v.key, v.bounded(v.base)) in self.known
-        ]  # fmt: skip
+            for v in keys
+            if (v.key, v.bounded(v.base)) in self.known
+        ]
 
     def _row(self, key: str, value: float) -> list[float | None]:
         return [None if np.isnan(m) else float(m) for m in self.known.get((key, value), UNKNOWN)]
@@ -233,8 +244,9 @@ class Margins:
     def _bracket(self, v: Varied, values: list[float], s: int) -> tuple[float, float] | None:
         """The pair of neighbours, nearest to the value as it is, between which the margin of a strategy passes 1."""
         pairs = [
-            (a, b) for a, b in itertools.pairwise(x for x in values if (v.key, x) in self.known)
+            (a, b)
+            for a, b in itertools.pairwise(x for x in values if (v.key, x) in self.known)
             if np.isfinite([self.known[v.key, a][s], self.known[v.key, b][s]]).all()
             and (self.known[v.key, a][s] < 1.0) != (self.known[v.key, b][s] < 1.0)
-        ]  # fmt: skip
+        ]
         return min(pairs, key=lambda p: abs(0.5 * (p[0] + p[1]) - v.base), default=None)

@@ -117,9 +117,7 @@ def _levels(asked: Asked) -> Choice:
             | ({"uncertain": asked.options.uncertain} if asked.options.uncertain else {}),
             f"{asked.motions} motions, each at {len(LEVELS_OF_A_SET)} factors from 0.5 to 3",
         )
-    return Choice(
-        {"intensity": "scale", "levels": LEVELS, "bootstrap": 0}, "the motion at 33 factors from 0.25 to 4, 9 % apart"
-    )
+    return Choice({"intensity": "scale", "levels": LEVELS, "bootstrap": 0}, "the motion at 33 factors from 0.25 to 4, 9 % apart")
 
 
 def _scatter(asked: Asked) -> dict[str, float]:
@@ -165,9 +163,14 @@ def _push(asked: Asked, direction: float) -> Choice:
     elements = plan.wall_area / size**2
     events = max(int(asked.share(name) / SIDES / (PUSH_SECONDS * elements)), LEAST_EVENTS)
     keys = {
-        "direction": direction, "directions": ["+", "-"], "mesh": {"size": size, "layers": LAYERS}, "ripple": 0.2,
-        "events": events, "stop_fraction": FALLEN, **_action(asked),
-    }  # fmt: skip
+        "direction": direction,
+        "directions": ["+", "-"],
+        "mesh": {"size": size, "layers": LAYERS},
+        "ripple": 0.2,
+        "events": events,
+        "stop_fraction": FALLEN,
+        **_action(asked),
+    }
     words = (
         f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, to both sides; elements of {size:g} m, "
         f"{LAYERS} points through the thickness, {events} events at most, until the load has dropped to {FALLEN:g} of its peak"
@@ -185,9 +188,7 @@ def _frame(asked: Asked) -> Choice:
     """All pushes of a building on a plan as a frame of macro-elements."""
     building = asked.building
     if building.material.tensile_strength is None and not building.joints.cohesion:
-        raise LeftOut(
-            "piers need a shear strength, [material] tensile_strength or [joints] cohesion, which the deck lacks"
-        )
+        raise LeftOut("piers need a shear strength, [material] tensile_strength or [joints] cohesion, which the deck lacks")
     # walls out of their planes are a strategy of their own
     return Choice(
         {"out_of_plane": False, **_action(asked)},
@@ -200,23 +201,15 @@ def _codes(asked: Asked) -> Choice:
 
     spectrum = asked.options.spectrum
     if asked.building.require_structure().rocks_as == "piers":
-        raise LeftOut(
-            "the pier rules need the vertical load on top of the wall: give options.code-checks = { axial_load = ... }"
-        )
+        raise LeftOut("the pier rules need the vertical load on top of the wall: give options.code-checks = { axial_load = ... }")
     own = asked.building.require_structure().kind in (CodeChecks.structures or ())
     own = own and set(asked.building.special_keys) <= set(CodeChecks.bears)
     keys: dict[str, Any] = {} if own else {"mechanism": "building"}
     on_plan = isinstance(asked.building.structure, Plan)
-    words = (
-        ""
-        if own
-        else f"{'each wall out of its plane' if on_plan else 'the local mechanism that limit analysis finds'}; "
-    )
+    words = "" if own else f"{'each wall out of its plane' if on_plan else 'the local mechanism that limit analysis finds'}; "
     kind = None if own else "local-mechanism"
     if spectrum is not None:
-        return Choice(
-            {**keys, "spectrum": spectrum.model_dump(exclude_none=True)}, f"{words}the spectrum of the deck", 0.0, kind
-        )
+        return Choice({**keys, "spectrum": spectrum.model_dump(exclude_none=True)}, f"{words}the spectrum of the deck", 0.0, kind)
     code, motion = asked.context.deck.code, asked.context.deck.motion
     if code is not None and code.spectrum(code.concluding) is not None:
         return Choice(keys, f"{words}the seismic action of [code], {code.name}", 0.0, kind)
@@ -232,21 +225,15 @@ def _sla(asked: Asked) -> Choice:
         stones = len(building.blocks().mass)
         needed = 2.0 * STONE_SECONDS * stones
         if needed > asked.share("sla"):
-            raise LeftOut(
-                f"{stones} blocks take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s"
-            )
+            raise LeftOut(f"{stones} blocks take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s")
         wall = building.supports.abutting_wall
         if wall is not None:
-            return Choice(
-                {"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, pushed away from the wall"
-            )
+            return Choice({"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, pushed away from the wall")
         return Choice({"directions": ["+", "-"]}, "blocks with joints that open and slide, pushed to both sides")
     if building.material.tensile_strength is None:
         raise LeftOut("the wall cracks only with [material] tensile_strength and fracture_energy, which the deck lacks")
     size = getattr(building.structure, "size", None)
-    keys: dict[str, Any] = {
-        "directions": ["+"], "events": int(asked.share("sla") / EVENT_SECONDS), "stop_fraction": FALLEN,
-    }  # fmt: skip
+    keys: dict[str, Any] = {"directions": ["+"], "events": int(asked.share("sla") / EVENT_SECONDS), "stop_fraction": FALLEN}
     if size is not None:
         keys["mesh"] = {"size": max(size) / ELEMENTS}
     return Choice(
@@ -264,9 +251,7 @@ def _dem(asked: Asked) -> Choice:
         assembly = building.blocks()
     except NoView:
         _ = building.solids()
-        raise LeftOut(
-            "an assessment has no rule for discrete elements in space yet: give the deck an analysis of kind dem"
-        ) from None
+        raise LeftOut("an assessment has no rule for discrete elements in space yet: give the deck an analysis of kind dem") from None
     values = joint_values(building)
     motion = asked.context.motion
     end = strong_end(motion) + AFTER * float(np.sqrt(assembly.size / GRAVITY))
@@ -300,20 +285,17 @@ def _dem(asked: Asked) -> Choice:
         stiffness = least
     elif stiffness < least:
         raise LeftOut(
-            _too_long(
-                seconds(factor),
-                share,
-                f"even with joints of {engineering(least, 'Pa/m')}, the least that is stiff enough",
-            )
+            _too_long(seconds(factor), share, f"even with joints of {engineering(least, 'Pa/m')}, the least that is stiff enough")
         )
     taken = max(share, seconds(factor)) if stiffness == least else share
     stiffness = float(f"{stiffness:.1e}")
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
-        keys, f"{words}; joints of {engineering(stiffness, 'Pa/m')}, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
+        keys,
+        f"{words}; joints of {engineering(stiffness, 'Pa/m')}, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
         f"the stones' length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} would do)",
         taken,
-    )  # fmt: skip
+    )
 
 
 def _too_long(seconds: float, share: float, how: str) -> str:
@@ -332,9 +314,7 @@ _ALL: tuple[tuple[StrategyName, str, str, Axis, validity.Validity, Callable[[Ask
     ("frame", "frame-pushover", "equivalent frame", "acceleration", validity.FramePushover, _frame),
     ("dem", "dem", "discrete elements", "displacement", validity.Dem, _dem),
 )
-ALL = tuple(
-    Strategy(name, kind, label, axis, assumed.assumes, choose) for name, kind, label, axis, assumed, choose in _ALL
-)
+ALL = tuple(Strategy(name, kind, label, axis, assumed.assumes, choose) for name, kind, label, axis, assumed, choose in _ALL)
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
 SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "probability", "", _levels)
 

@@ -37,8 +37,11 @@ def turning(moved: list[TurningValue]) -> list[str]:
     said = []
     for one in moved:
         unit = f" {one.unit}" if one.unit else ""
-        told = [f"{label} at {value:.3g}{unit}" for label, value in (("limit analysis", one.tilt_turns), ("rocking", one.rocking_turns), ("discrete elements", one.dem_turns))
-                if value is not None]  # fmt: skip
+        told = [
+            f"{label} at {value:.3g}{unit}"
+            for label, value in (("limit analysis", one.tilt_turns), ("rocking", one.rocking_turns), ("discrete elements", one.dem_turns))
+            if value is not None
+        ]
         if told:
             said.append(f"- {one.key} ({one.base:.3g}{unit} here) changes the verdict of {' and of '.join(told)}.")
     return said
@@ -74,9 +77,7 @@ def conclusion(
         first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
         said.append(f"The {word} cannot stand: collapse under self-weight is proved by {first.label}.")
         if others := proven[1:]:
-            said.append(
-                f"The conclusion of {labels(others)} is the same. Strategies share this certificate, which counts once."
-            )
+            said.append(f"The conclusion of {labels(others)} is the same. Strategies share this certificate, which counts once.")
         said.append(first.statement)
         if stands:
             said.append(f"The certificate overrules the opposite result of {labels(stands)}.")

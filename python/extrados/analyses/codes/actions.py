@@ -22,7 +22,9 @@ Spectrum = Callable[[float, float], float]
 #: The spectra that belong to a code, beside a table of the deck's own
 OWN = {"NTC": ("NTC",), "EN1998": ("EN1998-1", "EN1998-2"), "ASCE41": ("ASCE7",), "NZSEE": ("NZS1170",)}
 #: What the limit state of operation is for
-ONLY_DISPLACEMENT = "SLO is checked for the displacement of pushed buildings alone: C8.7.1 has no check of piers or local mechanisms at SLO."
+ONLY_DISPLACEMENT = (
+    "SLO is checked for the displacement of pushed buildings alone: C8.7.1 has no check of piers or local mechanisms at SLO."
+)
 #: The rules of a deck without [code]
 NATIVE = Code(jurisdiction="NTC")
 
@@ -72,9 +74,7 @@ def actions(context: Context, options: CodeChecks | LocalMechanism | Verificatio
             spectrum = old.spectrum
         if peak is None and spectrum is not None:
             peak = spectrum(0.0, 0.05)
-        found[code.concluding] = Action(
-            code.concluding, spectrum, peak, None if of_motion or old is None else old.years, of_motion
-        )
+        found[code.concluding] = Action(code.concluding, spectrum, peak, None if of_motion or old is None else old.years, of_motion)
     if isinstance(options, LocalMechanism) and options.collapse_spectrum is not None:
         rare = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum")
         assert rare is not None

@@ -138,15 +138,15 @@ def vertical_bending(
                         f"{strength * width * thickness / 1e3:.3g} kN at most",
                         neglects=(),
                     )
-                raise BadGeometry(
-                    "more than 0.75 of the compressive strength is used at rest", ("material", "compressive_strength")
-                )
+                raise BadGeometry("more than 0.75 of the compressive strength is used at rest", ("material", "compressive_strength"))
         return VerticalBending(height, thickness, weight, load, arm, crack, setback)
 
     found = minimize_scalar(
-        lambda crack: at(crack).multiplier(), bounds=(LEAST_PART * height, (1.0 - LEAST_PART) * height), method="bounded",
+        lambda crack: at(crack).multiplier(),
+        bounds=(LEAST_PART * height, (1.0 - LEAST_PART) * height),
+        method="bounded",
         options={"xatol": 1e-9 * height},
-    )  # fmt: skip
+    )
     return at(float(found.x))
 
 

@@ -23,9 +23,15 @@ DAMPING = 0.05
 #: Displacement capacity by limit state: of which displacement, and which part. NTC: C8.7.1.3.1; EN 1998-3 C.3 (verify clause);
 #: NZSEE C2 (verify clause)
 CAPACITY = {
-    "SLC": ("ultimate", 1.0), "SLV": ("ultimate", 0.75), "SLD": ("yield", 1.0), "SLO": ("yield", 2.0 / 3.0),
-    "NC": ("ultimate", 1.0), "SD": ("ultimate", 0.75), "DL": ("yield", 1.0), "ULS": ("ultimate", 1.0),
-}  # fmt: skip
+    "SLC": ("ultimate", 1.0),
+    "SLV": ("ultimate", 0.75),
+    "SLD": ("yield", 1.0),
+    "SLO": ("yield", 2.0 / 3.0),
+    "NC": ("ultimate", 1.0),
+    "SD": ("ultimate", 0.75),
+    "DL": ("yield", 1.0),
+    "ULS": ("ultimate", 1.0),
+}
 #: Greatest q* of existing masonry (C8.7.1.3.1)
 GREATEST_Q = {"SLV": 3.0, "SLC": 4.0}
 #: Part of the greatest base shear below which piers at their strength do not end SLD (C8.7.1.3.1)
@@ -160,9 +166,7 @@ def annex_b(curve: CapacityCurve, spectrum: Spectrum, corner: float) -> tuple[Os
     return found
 
 
-def capacity_spectrum_factors(
-    curve: CapacityCurve, spectrum: Spectrum, quality: float
-) -> tuple[np.ndarray, np.ndarray]:
+def capacity_spectrum_factors(curve: CapacityCurve, spectrum: Spectrum, quality: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacements d* [m] up to collapse, and the factor on the spectrum whose performance point each is.
 
     The damping is 5 % and quality times that of the elastic-plastic loop of equal area (C7.3.4.2, ATC-40): 63.7 quality

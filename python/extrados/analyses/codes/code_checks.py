@@ -44,15 +44,17 @@ def run(context: Context, options: CodeChecks) -> Result:
         lines, beside = _block(context, options, block)
         if options.axial_load is not None:
             width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
-            more, _ = _pier(
-                context, options, width, height, options.thickness or block.depth, float(block.mass[0]) * GRAVITY
-            )
+            more, _ = _pier(context, options, width, height, options.thickness or block.depth, float(block.mass[0]) * GRAVITY)
             lines += more
     lines = apart(lines)
     r = out.CodeChecks(
-        checks={line.rule: line.check() for line in lines}, jurisdiction=code.jurisdiction, code=code.name,
-        by_default=context.deck.code is None, clause="", **beside,
-    )  # fmt: skip
+        checks={line.rule: line.check() for line in lines},
+        jurisdiction=code.jurisdiction,
+        code=code.name,
+        by_default=context.deck.code is None,
+        clause="",
+        **beside,
+    )
     r = r.model_copy(update=r.concluded())
     result.results = r
     rows = result.tables["code_checks"] = table(lines)
@@ -65,8 +67,11 @@ def run(context: Context, options: CodeChecks) -> Result:
     words = [r.overall().statement, *([f"In detail: {'; '.join(said)}."] if said else [])]
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
-        spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and recovers",
-                  "no-hinging": "does not rock"}[r.dynamic_outcome]  # fmt: skip
+        spoken = {
+            "collapse": "overturns",
+            "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and recovers",
+            "no-hinging": "does not rock",
+        }[r.dynamic_outcome]
         words.append(f"Computed under the motion itself, the block {spoken}.")
     if (weakest := r.weakest()) is not None and said:
         words.append(f"As a pier its least strength is {(weakest[1].capacity or 0.0) / 1e3:.4g} kN ({weakest[0]}).")
@@ -94,9 +99,11 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     factor = code.factor if options.confidence_factor is None else options.confidence_factor
     q = options.behaviour_factor or BEHAVIOUR.get(code.jurisdiction, 1.0)
     beside: dict[str, Any] = {
-        "peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv, "confidence_factor": factor,
+        "peak_ground_acceleration_g": pga,
+        "peak_ground_velocity_m_s": pgv,
+        "confidence_factor": factor,
         "behaviour_factor": q,
-    }  # fmt: skip
+    }
     violated, friction = [], context.building.joints.coefficient
     if code.jurisdiction == "NTC" and factor < ntc.LC1 and context.building.material.compressive_strength is None:
         violated.append(ntc.below_lc1(factor))
@@ -109,9 +116,13 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         motion = context.motion
         start = rocker.start_rotation
         dynamic = core_rocking.history(
-            rocker.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
-            start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
-        )  # fmt: skip
+            rocker.body,
+            motion.ground,
+            motion.end + 30.0 / float(model.frequency.min()),
+            0.01,
+            start_side=1 if start >= 0.0 else -1,
+            start_rotation=abs(start),
+        )
         conditions = of_one(rocker, dynamic)
         context.warnings += told(conditions)
         violated += [text for text in conditions.violated if text.startswith("Hinges form elsewhere")]
@@ -129,22 +140,13 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         match code.jurisdiction:
             case "NTC":
                 found = ntc.Capacities(
-                    alpha0 * GRAVITY / factor,
-                    block.centre_height * alpha0,
-                    alpha0 * GRAVITY / factor,
-                    f"alpha_0 {alpha0:.4g}, e* 1",
+                    alpha0 * GRAVITY / factor, block.centre_height * alpha0, alpha0 * GRAVITY / factor, f"alpha_0 {alpha0:.4g}, e* 1"
                 )
                 rows = ntc.checks(found, q, action.state, action.peak, action.spectrum, _placed(action, below))
             case "EN1998":
                 rows = en1998(part, action.peak, action.state)
             case "ASCE41":
-                rows = asce41(
-                    part,
-                    None if action.spectrum is None else action.spectrum(1.0, 0.05),
-                    "one-story",
-                    None,
-                    action.state,
-                )
+                rows = asce41(part, None if action.spectrum is None else action.spectrum(1.0, 0.05), "one-story", None, action.state)
             case "NZSEE":
                 rows = nzsee(part, action.spectrum, action.state)
             case _:
@@ -164,9 +166,7 @@ def _placed(action: Action, below: FloorBelow | None) -> ntc.Place:
     return ntc.Place(True, floor)
 
 
-def _formulas(
-    context: Context, options: CodeChecks, main: Action, size: tuple[float, float], pgv: float | None
-) -> list[Line]:
+def _formulas(context: Context, options: CodeChecks, main: Action, size: tuple[float, float], pgv: float | None) -> list[Line]:
     """Formulas of other origin for a rocking block that the deck requests."""
     model, wanted = _block_of(context), code_of(context).research
     alpha = float(model.alpha.min())
@@ -206,9 +206,19 @@ def _pier(
     strength, joints, code = context.building.material.compressive_strength, context.building.joints, code_of(context)
     assert strength is not None and options.axial_load is not None
     pier = Pier(
-        width, height, thickness, options.axial_load, weight, options.fixity == "double", strength, joints.cohesion,
-        options.sliding_friction, options.diagonal_strength, options.interlocking_ratio, options.unit_strength,
-    )  # fmt: skip
+        width,
+        height,
+        thickness,
+        options.axial_load,
+        weight,
+        options.fixity == "double",
+        strength,
+        joints.cohesion,
+        options.sliding_friction,
+        options.diagonal_strength,
+        options.interlocking_ratio,
+        options.unit_strength,
+    )
     if pier.load >= 0.7 * strength * pier.area:
         raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)", ("analysis", "axial_load"))
     factor = code.factor if options.confidence_factor is None else options.confidence_factor

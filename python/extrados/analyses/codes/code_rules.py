@@ -48,18 +48,36 @@ class Line:
     def check(self) -> Check:
         """The rule as a result."""
         return Check(
-            capacity=self.capacity, demand=self.demand, unit=self.unit, quantity=self.quantity, verdict=self.verdict, source=self.source,
-            note=self.note, code=self.code, limit_state=self.state, scope=self.scope, alternative=self.alternative, reason=self.barred,
-        )  # fmt: skip
+            capacity=self.capacity,
+            demand=self.demand,
+            unit=self.unit,
+            quantity=self.quantity,
+            verdict=self.verdict,
+            source=self.source,
+            note=self.note,
+            code=self.code,
+            limit_state=self.state,
+            scope=self.scope,
+            alternative=self.alternative,
+            reason=self.barred,
+        )
 
 
 def table(lines: list[Line]) -> TableData:
     """The rules as rows."""
-    return TableData({
-        "rule": [x.rule for x in lines], "quantity": [x.quantity for x in lines],
-        "capacity": [np.nan if x.capacity is None else x.capacity for x in lines],
-        "demand": [np.nan if x.demand is None else x.demand for x in lines], "unit": [x.unit for x in lines],
-        "verdict": [x.verdict for x in lines], "source": [x.source for x in lines], "note": [x.note for x in lines],
-        "code": [x.code for x in lines], "limit_state": [x.state for x in lines], "scope": [x.scope for x in lines],
-        "reason": [x.barred for x in lines],
-    })  # fmt: skip
+    return TableData(
+        {
+            "rule": [x.rule for x in lines],
+            "quantity": [x.quantity for x in lines],
+            "capacity": [np.nan if x.capacity is None else x.capacity for x in lines],
+            "demand": [np.nan if x.demand is None else x.demand for x in lines],
+            "unit": [x.unit for x in lines],
+            "verdict": [x.verdict for x in lines],
+            "source": [x.source for x in lines],
+            "note": [x.note for x in lines],
+            "code": [x.code for x in lines],
+            "limit_state": [x.state for x in lines],
+            "scope": [x.scope for x in lines],
+            "reason": [x.barred for x in lines],
+        }
+    )

@@ -112,9 +112,7 @@ def spectral(weight: np.ndarray, displacement: np.ndarray, travel: float | np.nd
     return travel * float(weight @ displacement**2) / float(weight @ displacement)
 
 
-def capacity(
-    alpha0: float, weight: np.ndarray, displacement: np.ndarray, travel: float | None, alone: float | None = None
-) -> Capacity:
+def capacity(alpha0: float, weight: np.ndarray, displacement: np.ndarray, travel: float | None, alone: float | None = None) -> Capacity:
     """Of a mechanism by the weights [N] of its kinematic chain, P and Q, and their horizontal virtual displacements (with sign).
 
     e* = (sum P d)^2/(sum P sum P d^2) [C8.7.1.5], M* = e* sum P/g, a0* = alpha0 g/e* [C8.7.1.3] without FC. Weights that do not
@@ -124,7 +122,11 @@ def capacity(
     first, second, total = float(weight @ displacement), float(weight @ displacement**2), float(weight.sum())
     part = first**2 / (total * second)
     return Capacity(
-        alpha0, part * total / GRAVITY, part, alpha0 * GRAVITY / part,
+        alpha0,
+        part * total / GRAVITY,
+        part,
+        alpha0 * GRAVITY / part,
         float(spectral(weight, displacement, travel)) if travel else None,
-        (alpha0 if alone is None else alone) * GRAVITY / part, total,
-    )  # fmt: skip
+        (alpha0 if alone is None else alone) * GRAVITY / part,
+        total,
+    )

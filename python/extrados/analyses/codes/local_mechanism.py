@@ -102,22 +102,16 @@ def run(context: Context, options: LocalMechanism) -> Result:
             return Result("local-mechanism", results=none, answer=none.statement())
     else:
         if options.mechanism == "corner" and building.material.compressive_strength is not None:
-            context.warnings.append(
-                "The corner is assumed to overturn about its outer edge: crushing there is neglected."
-            )
+            context.warnings.append("The corner is assumed to overturn about its outer edge: crushing there is neglected.")
         body = body_of(options, building.material.density, building.material.compressive_strength)
         z = options.hinge_height if options.base_height is None else options.base_height
         z += 0.0 if below is None or options.base_height is not None else below.height
-        turnings = [
-            _body(body, f"the {options.mechanism}", (z, (options.building_height or options.height) if z else None))
-        ]
+        turnings = [_body(body, f"the {options.mechanism}", (z, (options.building_height or options.height) if z else None))]
     for turning in turnings:
         _refuse_fallen(turning)
     judged = [_judged(context, options, turning) for turning in turnings]
     context.warnings = list(dict.fromkeys(context.warnings))  # what goes for one goes for the others
-    judged.sort(
-        key=lambda j: (np.inf if (least := j.results.least()) is None else least, j.results.activation_acceleration_g)
-    )
+    judged.sort(key=lambda j: (np.inf if (least := j.results.least()) is None else least, j.results.activation_acceleration_g))
     return _of_walls(context, judged) if on_plan else _result(judged[0])
 
 
@@ -133,27 +127,19 @@ def _refuse_fallen(turning: _Turning) -> None:
     """CannotStand where the weights and thrusts of a mechanism drive it at rest, which is the proof."""
     if turning.found.alpha0 > 0.0:
         return
-    work = (
-        ""
-        if turning.body is None
-        else f": they do work of {-turning.body.work() / 1e3:.3g} kNm per radian, and nothing resists it"
-    )
+    work = "" if turning.body is None else f": they do work of {-turning.body.work() / 1e3:.3g} kNm per radian, and nothing resists it"
     raise CannotStand(
         f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; certificate: weights and thrusts set it in motion{work}",
         neglects=(),
     )
 
 
-def _body(
-    body: Overturning | Bending, words: str, place: tuple[float, float | None], part: WallPart | None = None
-) -> _Turning:  # fmt: skip
+def _body(body: Overturning | Bending, words: str, place: tuple[float, float | None], part: WallPart | None = None) -> _Turning:
     """A body that turns about a hinge."""
     weight, displacement = body.swaying
     end, alone = body.ultimate(), body.alone
     last = alone.ultimate()
-    found = capacity(
-        body.multiplier(), weight, displacement, float(body.travel(last)) if last else None, alone.multiplier()
-    )
+    found = capacity(body.multiplier(), weight, displacement, float(body.travel(last)) if last else None, alone.multiplier())
     turned = np.linspace(0.0, end if end else 0.1, STEPS)
     moved = np.asarray(spectral(weight, displacement, body.travel(turned)))
     return _Turning(found, (moved, np.array([body.multiplier(q) for q in turned])), words, place, None, part, body)
@@ -177,17 +163,21 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
     assert isinstance(plan, Plan)
     walls = [
         out.WallMechanism(
-            wall=t.part.wall, storey=t.part.storey, foot_m=t.part.foot, multiplier=r.multiplier,
-            activation_acceleration_g=r.activation_acceleration_g, zero_displacement_m=r.zero_displacement_m, margin=j.margin,
-        ) for j in judged if (t := j.turning).part is not None and (r := j.results)
-    ]  # fmt: skip
+            wall=t.part.wall,
+            storey=t.part.storey,
+            foot_m=t.part.foot,
+            multiplier=r.multiplier,
+            activation_acceleration_g=r.activation_acceleration_g,
+            zero_displacement_m=r.zero_displacement_m,
+            margin=j.margin,
+        )
+        for j in judged
+        if (t := j.turning).part is not None and (r := j.results)
+    ]
     worst = _Judged(judged[0].turning, judged[0].lines, judged[0].results.model_copy(update={"walls": walls}))
     result = _result(worst)
     result.tables["walls"] = TableData(
-        {
-            name: [np.nan if (v := getattr(row, name)) is None else v for row in walls]
-            for name in out.WallMechanism.model_fields
-        }
+        {name: [np.nan if (v := getattr(row, name)) is None else v for row in walls] for name in out.WallMechanism.model_fields}
     )
     result.answer += (
         f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls, each considered apart from the walls across it; flexible floors, "
@@ -205,9 +195,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     found, (z, building), code = turning.found, turning.place, code_of(context)
     d0, fc = found.d0, confidence(context, options)
     if d0 is None and found.alone <= 0.0:
-        context.warnings.append(
-            "Without its ties the body has no equilibrium: the nonlinear check, which neglects them, is not made."
-        )
+        context.warnings.append("Without its ties the body has no equilibrium: the nonlinear check, which neglects them, is not made.")
     structure = context.building.structure
     storeys = len(structure.storeys) if isinstance(structure, Plan) else options.storeys or storeys_in(building or 0.0)
     lines, more = _checks(context, options, turning, storeys, fc)
@@ -220,15 +208,27 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
             "building_height."
         )
     made = out.LocalMechanism(
-        mechanism=options.mechanism, multiplier=found.alpha0, participating_mass_kg=found.mass, participating_part=found.part,
-        activation_acceleration_g=found.acceleration / fc / GRAVITY, zero_displacement_m=d0,
-        ultimate_displacement_m=None if d0 is None else ntc.SLV * d0, collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
-        equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / fc, d0), swaying_weight_N=found.weight,
-        base_height_m=z, confidence_factor=fc,
+        mechanism=options.mechanism,
+        multiplier=found.alpha0,
+        participating_mass_kg=found.mass,
+        participating_part=found.part,
+        activation_acceleration_g=found.acceleration / fc / GRAVITY,
+        zero_displacement_m=d0,
+        ultimate_displacement_m=None if d0 is None else ntc.SLV * d0,
+        collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
+        equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / fc, d0),
+        swaying_weight_N=found.weight,
+        base_height_m=z,
+        confidence_factor=fc,
         behaviour_factor=options.behaviour_factor,
-        **given(building_height_m=building, bound=turning.bound, violated=violated or None), checks={x.rule: x.check() for x in lines}, jurisdiction=code.jurisdiction,
-        code=code.name, by_default=context.deck.code is None, clause="", **more,
-    )  # fmt: skip
+        **given(building_height_m=building, bound=turning.bound, violated=violated or None),
+        checks={x.rule: x.check() for x in lines},
+        jurisdiction=code.jurisdiction,
+        code=code.name,
+        by_default=context.deck.code is None,
+        clause="",
+        **more,
+    )
     made = made.model_copy(update=made.concluded())
 
     def by(other: Capacity) -> out.LocalMechanism:
@@ -241,10 +241,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     if turning.associated is not None:
         governing = by(turning.associated).governing()
         made = made.model_copy(
-            update={
-                "multiplier_associated": turning.associated.alpha0,
-                "margin_associated": governing[0][0] if governing else None,
-            }
+            update={"multiplier_associated": turning.associated.alpha0, "margin_associated": governing[0][0] if governing else None}
         )
     if turning.links is not None and made.overall().outcome == "stands":
         if by(turning.links).overall().outcome != "stands":
@@ -264,7 +261,7 @@ def _result(judged: _Judged) -> Result:
     result.arrays = {
         "displacement": Array(curve[0], ("point",), "m", "d* of the equivalent oscillator"),
         "acceleration": Array(curve[1] / (found.part * fc), ("point",), "g", "a* of the capacity curve"),
-    }  # fmt: skip
+    }
     result.tables["local_mechanism"] = table(judged.lines)
     d0 = found.d0
     limit = "" if d0 is None else f", and vanishes at d_0* = {d0:.3g} m"
@@ -341,9 +338,13 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
             "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
         )
     return _Turning(
-        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(context, stones, chain, options), bound,
+        found,
+        (np.asarray(spectral(*moving, travel)), alpha),
+        _words(building),
+        _place(context, stones, chain, options),
+        bound,
         links=links if differ else None,
-    )  # fmt: skip
+    )
 
 
 def _words(building: Building) -> str:
@@ -402,9 +403,7 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
             least, motion = _without_dilatancy(limit, sense)
         except (NoAnswer, NoEquilibrium) as error:
             bound = "upper"
-            context.warnings.append(
-                f"Joints slide: the multiplier is an {DILATANT}. No state without dilatancy is given: {error}."
-            )
+            context.warnings.append(f"Joints slide: the multiplier is an {DILATANT}. No state without dilatancy is given: {error}.")
         else:
             associated = found
             found, chain = _capacity_at_rest(stones, least, motion)
@@ -416,8 +415,14 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
                     f"the {DILATANT}. The checks use the lower value."
                 )
     return _Turning(
-        found, (np.zeros(1), np.array([found.alpha0])), words, _place(context, stones, chain, options), bound, slides=slides, associated=associated,
-    )  # fmt: skip
+        found,
+        (np.zeros(1), np.array([found.alpha0])),
+        words,
+        _place(context, stones, chain, options),
+        bound,
+        slides=slides,
+        associated=associated,
+    )
 
 
 def _capacity_at_rest(stones: Assembly, multiplier: float, mechanism: Mechanism) -> tuple[Capacity, np.ndarray]:
@@ -444,9 +449,7 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     return least, mechanism
 
 
-def _place(
-    context: Context, stones: Assembly, chain: np.ndarray, options: LocalMechanism
-) -> tuple[float, float | None]:
+def _place(context: Context, stones: Assembly, chain: np.ndarray, options: LocalMechanism) -> tuple[float, float | None]:
     """z and H [m]: of the deck, else of the lowest joint between the chain and what stays at rest, and of the top of all, above the
     lowest support; a mechanism that reaches the ground stands on it."""
     moves = np.append(chain, False)  # GROUND = -1 is the last
@@ -479,9 +482,7 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
     return moment
 
 
-def _checks(
-    context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float
-) -> tuple[list[Line], Keys]:
+def _checks(context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float) -> tuple[list[Line], Keys]:
     """The rules of the code at each of its limit states, and results that stand beside them."""
     code, asked = code_of(context), actions(context, options)
     part = _part(context, options, turning)
@@ -511,9 +512,7 @@ def _asce(options: LocalMechanism, part: Part, action: Action) -> list[Line]:
     return asce41(part, one_second, options.storey, short, action.state)
 
 
-def _ntc(
-    context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float, action: Action
-) -> tuple[list[Line], Keys]:
+def _ntc(context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float, action: Action) -> tuple[list[Line], Keys]:
     """The checks of NTC at a limit state, and a_Z."""
     found, (z, height) = turning.found, turning.place
     note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}"
@@ -563,14 +562,23 @@ def _part(context: Context, options: LocalMechanism, turning: _Turning) -> Part:
     if options.mechanism == "building" and turning.part is None:
         element = "chain of blocks"
     held = element == "vertical-bending" or (
-        options.thickness is not None
-        and any(tie.height + options.thickness >= float(options.height or 0.0) for tie in options.ties)
+        options.thickness is not None and any(tie.height + options.thickness >= float(options.height or 0.0) for tie in options.ties)
     )
     load = sum(floor.load for floor in options.floors)
     first = None if height is None else options.building_period or ntc.first_period(height)
     if options.modes:
         first = max(m.period for m in options.modes)
     return Part(
-        element, turning.found.alpha0, top, options.thickness, z, height, load > 0.0, held, load, weight=turning.found.weight,
-        period=_period(context, options), first=first,
-    )  # fmt: skip
+        element,
+        turning.found.alpha0,
+        top,
+        options.thickness,
+        z,
+        height,
+        load > 0.0,
+        held,
+        load,
+        weight=turning.found.weight,
+        period=_period(context, options),
+        first=first,
+    )

@@ -14,17 +14,25 @@ from extrados.schema.constants import GRAVITY
 
 #: What each mechanism needs beyond density and height
 NEEDS = {
-    "facade": ("height", "thickness"), "corner": ("height", "thickness", "crack_angle"), "gable": ("height", "thickness", "width"),
-    "parapet": ("height", "thickness"), "wall": ("height", "thickness"), "tower": ("height", "thickness"),
-    "chimney": ("height", "thickness"), "vertical-bending": ("height", "thickness"),
+    "facade": ("height", "thickness"),
+    "corner": ("height", "thickness", "crack_angle"),
+    "gable": ("height", "thickness", "width"),
+    "parapet": ("height", "thickness"),
+    "wall": ("height", "thickness"),
+    "tower": ("height", "thickness"),
+    "chimney": ("height", "thickness"),
+    "vertical-bending": ("height", "thickness"),
     "horizontal-bending": ("height", "thickness", "width"),
-}  # fmt: skip
+}
 #: Keys of some mechanisms alone, with those that use them
 ONLY = {
-    "crack_angle": ("corner",), "abutment_force": ("horizontal-bending",), "wings": ("facade",), "interlocking": ("facade",),
+    "crack_angle": ("corner",),
+    "abutment_force": ("horizontal-bending",),
+    "wings": ("facade",),
+    "interlocking": ("facade",),
     "side_walls": ("facade", "gable", "parapet", "wall", "tower"),
     "ties": ("facade", "corner", "gable", "parapet", "wall", "tower", "chimney"),
-}  # fmt: skip
+}
 #: Parts that are free to vibrate at a period of their own [C8.7.1.9]
 FREE_TO_VIBRATE = ("parapet", "gable", "chimney")
 #: Mechanisms that are a wall of the width 1 m where none is given; others are as wide as thick
@@ -54,9 +62,7 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
                 )
         load = sum(f.load for f in options.floors)
         moment = sum(f.load * (0.5 * thickness if f.arm is None else f.arm) for f in options.floors)
-        return vertical_bending(
-            height, thickness, width, weight, load, moment / load if load else 0.5 * thickness, strength
-        )
+        return vertical_bending(height, thickness, width, weight, load, moment / load if load else 0.5 * thickness, strength)
     sway = sum(f.load * f.sways + f.pushing for f in options.floors)
     thrust = sum(f.thrust for f in options.floors)
     if options.abutment_force is None:
@@ -99,16 +105,12 @@ def _refuse_sizes(options: LocalMechanism) -> None:
         raise Refused(f"{options.mechanism} needs {' and '.join(missing)}", ("analysis",))
     top = float(options.height or 0.0)
     if options.hinge_height >= top:
-        raise Refused(
-            f"{options.hinge_height:g} m is not below the top of the wall, {top:g} m", ("analysis", "hinge_height")
-        )
+        raise Refused(f"{options.hinge_height:g} m is not below the top of the wall, {top:g} m", ("analysis", "hinge_height"))
     parts: dict[str, Sequence[Floor | WallTie]] = {"floors": options.floors, "ties": options.ties}
     for name, those in parts.items():
         for k, part in enumerate(those):
             if part.height > top:
-                raise Refused(
-                    f"{part.height:g} m is above the top of the wall, {top:g} m", ("analysis", name, k, "height")
-                )
+                raise Refused(f"{part.height:g} m is above the top of the wall, {top:g} m", ("analysis", name, k, "height"))
     for name, users in ONLY.items():
         if name in options.model_fields_set and getattr(options, name) and options.mechanism not in users:
             raise Refused(

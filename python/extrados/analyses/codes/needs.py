@@ -47,9 +47,7 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
                 yield partial(_refuse_unheld, what, key)
         if options.mechanism == "building":
             yield lambda: _refuse_nothing(building)
-            for name in sorted(
-                options.model_fields_set & {*OF_A_BODY, *(OF_A_PLACE if isinstance(structure, Plan) else ())}
-            ):
+            for name in sorted(options.model_fields_set & {*OF_A_BODY, *(OF_A_PLACE if isinstance(structure, Plan) else ())}):
                 yield partial(_refuse_given, name)
             if isinstance(structure, Plan):
                 yield lambda: _read_walls(building)
@@ -93,8 +91,7 @@ def _refuse_elsewhere(context: Context, options: LocalMechanism) -> None:
     for name in ("one_second_acceleration", "storey"):
         if name in options.model_fields_set and own != "ASCE41":
             raise Refused(
-                f'{name} is of ASCE 41, the report is by {own}: remove it, or give [code] jurisdiction = "ASCE41"',
-                ("analysis", name),
+                f'{name} is of ASCE 41, the report is by {own}: remove it, or give [code] jurisdiction = "ASCE41"', ("analysis", name)
             )
 
 
@@ -108,8 +105,7 @@ def _refuse_wall(building: Building, options: CodeChecks) -> None:
         raise Refused("a wall is checked as a pier: give axial_load", ("analysis",))
     if len(building.pier_blocks().mass) > 1:
         raise Refused(
-            "the pier rules are for a rectangle without openings: check each pier between openings as its own panel",
-            ("structure",),
+            "the pier rules are for a rectangle without openings: check each pier between openings as its own panel", ("structure",)
         )
 
 

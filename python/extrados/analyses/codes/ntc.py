@@ -97,9 +97,7 @@ def first_period(building: float) -> float:
     return 0.05 * building**0.75
 
 
-def floor(
-    ground: Spectrum, height: float, building: float, storeys: int, period: float | None, damping: float = 0.05
-) -> Floor:
+def floor(ground: Spectrum, height: float, building: float, storeys: int, period: float | None, damping: float = 0.05) -> Floor:
     """Of a place at `height` in a building so high [m], with so many storeys: psi_1 = z/H, gamma_1 = 3 n/(2 n + 1)
     [C7.2.10]; T_1 = 0.05 H^0.75 where none is known."""
     part = height / building * 3.0 * storeys / (2.0 * storeys + 1.0)
@@ -119,9 +117,7 @@ def own_period(height: float, thickness: float, density: float, young: float) ->
 TOOTH_FRICTION, TOOTH_SHARE = 0.577, 0.8
 
 
-def toothed_edge(
-    courses: int, unit_height: float, overlap: float, thickness: float, weight: float
-) -> tuple[float, float]:
+def toothed_edge(courses: int, unit_height: float, overlap: float, thickness: float, weight: float) -> tuple[float, float]:
     """Friction F by which a toothed edge holds a wall, F = 0.4 n (n + 1) phi mu l^2 t_s w with phi = h_b/l [C8.7.1.2], and how far [m]
     below the top of the teeth it acts: every course holds by the weight of those above, so that it is two thirds of the depth.
 
@@ -180,9 +176,7 @@ class Place:
         return None if self.at_height is None else max(self.at_height.acceleration, peak or 0.0)
 
 
-def checks(
-    found: Capacities, q: float, state: str, peak: float | None, spectrum: Spectrum | None, place: Place
-) -> list[Line]:
+def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum: Spectrum | None, place: Place) -> list[Line]:
     """The checks of a limit state.
 
     SLD: the mechanism does not start. SLV: it keeps within d_SLV or does not start at all, since a_g,SLV is not taken below a_g,SLD
@@ -205,17 +199,23 @@ def checks(
         else ""
     )
     note = found.note if place.period is None or not place.free else f"{found.note}, T_0 {place.period:.3g} s"
-    starts = (
-        "[C8.7.1.9]: alpha_0 g/(e* FC) >= S_eZ(T_0)"
-        if place.free
-        else "[C8.7.1.8]: alpha_0 g/(e* FC) >= a_Z, at the ground a_g S"
-    )
+    starts = "[C8.7.1.9]: alpha_0 g/(e* FC) >= S_eZ(T_0)" if place.free else "[C8.7.1.8]: alpha_0 g/(e* FC) >= a_Z, at the ground a_g S"
     if state == "SLD":
         return [
-            Line(f"NTC activation at SLD ({where})", quantity, found.a0 / GRAVITY, demand, "g",
-                 f"NTC 2018, Circ. 7/2019 {starts}: the mechanism does not start", note, CODE, scope=f"{SCOPE}; rigid until it starts",
-                 state=state, barred=unknown)
-        ]  # fmt: skip
+            Line(
+                f"NTC activation at SLD ({where})",
+                quantity,
+                found.a0 / GRAVITY,
+                demand,
+                "g",
+                f"NTC 2018, Circ. 7/2019 {starts}: the mechanism does not start",
+                note,
+                CODE,
+                scope=f"{SCOPE}; rigid until it starts",
+                state=state,
+                barred=unknown,
+            )
+        ]
     lines = []
     compared = False
     if found.d0 is not None:
@@ -223,17 +223,40 @@ def checks(
         compared = lines[0].demand is not None
     if compared:
         lines.append(
-            Line(f"NTC activation ({where})", quantity, found.a0 / GRAVITY, demand, "g",
-                 f"NTC 2018, Circ. 7/2019 {starts}: the mechanism does not start", note, CODE, scope=f"{SCOPE}; rigid until it starts",
-                 state=state, alternative=state, barred=unknown)
-        )  # fmt: skip
+            Line(
+                f"NTC activation ({where})",
+                quantity,
+                found.a0 / GRAVITY,
+                demand,
+                "g",
+                f"NTC 2018, Circ. 7/2019 {starts}: the mechanism does not start",
+                note,
+                CODE,
+                scope=f"{SCOPE}; rigid until it starts",
+                state=state,
+                alternative=state,
+                barred=unknown,
+            )
+        )
     lines.append(
-        Line(f"NTC linear ({where})", quantity, q * found.a0 / GRAVITY, demand, "g",
-             "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z, at the ground a_g S; [C8.7.1.8], [C8.7.1.9], [C7.2.8]",
-             f"{note}, q {q:g}", CODE, scope=f"{SCOPE}; rigid until it starts; no displacement check", state=state, alternative=state,
-             barred=unknown or ("the displacement is checked: q is for mechanisms of which only the multiplier is known (C8.7.1.2.1.7)"
-                                if compared else ""))
-    )  # fmt: skip
+        Line(
+            f"NTC linear ({where})",
+            quantity,
+            q * found.a0 / GRAVITY,
+            demand,
+            "g",
+            "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z, at the ground a_g S; [C8.7.1.8], [C8.7.1.9], [C7.2.8]",
+            f"{note}, q {q:g}",
+            CODE,
+            scope=f"{SCOPE}; rigid until it starts; no displacement check",
+            state=state,
+            alternative=state,
+            barred=unknown
+            or (
+                "the displacement is checked: q is for mechanisms of which only the multiplier is known (C8.7.1.2.1.7)" if compared else ""
+            ),
+        )
+    )
     return lines
 
 
@@ -248,8 +271,16 @@ def _nonlinear(found: Capacities, state: str, spectrum: Spectrum | None, place: 
     elif spectrum is not None and not place.raised:
         demand = displacement(spectrum, period, damping)
     return Line(
-        "NTC nonlinear at SLC" if late else "NTC nonlinear", "displacement", share * found.d0, demand, "m",
+        "NTC nonlinear at SLC" if late else "NTC nonlinear",
+        "displacement",
+        share * found.d0,
+        demand,
+        "m",
         f"NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_{state} = {share:g} d_0 >= S_D(T_{state}) at {100 * damping:.0f} %, T_{state} = {factor:g} pi "
-        f"sqrt(d_{state}/a(d_{state})) [C8.7.1.{11 if late else 10}], [C8.7.1.12]", f"T_{state} = {period:.3f} s", CODE, scope=SCOPE,
-        state=state, alternative="" if late else state,
-    )  # fmt: skip
+        f"sqrt(d_{state}/a(d_{state})) [C8.7.1.{11 if late else 10}], [C8.7.1.12]",
+        f"T_{state} = {period:.3f} s",
+        CODE,
+        scope=SCOPE,
+        state=state,
+        alternative="" if late else state,
+    )

@@ -12,15 +12,7 @@ from extrados.analyses.codes.code_rules import Line
 from extrados.schema.constants import GRAVITY
 
 #: EN 1998-1 Table 4.4, q_a: cantilevers, and walls (the same values as Table C7.2.I of Circolare 7/2019)
-PART_FACTOR = {
-    "parapet": 1.0,
-    "gable": 1.0,
-    "chimney": 1.0,
-    "wall": 2.0,
-    "facade": 2.0,
-    "vertical-bending": 2.0,
-    "horizontal-bending": 2.0,
-}
+PART_FACTOR = {"parapet": 1.0, "gable": 1.0, "chimney": 1.0, "wall": 2.0, "facade": 2.0, "vertical-bending": 2.0, "horizontal-bending": 2.0}
 #: ASCE 41 height over thickness up to which no out-of-plane check is required, for S_X1 up to 0.24 g, up to 0.37 g, above
 SLENDER = {"one-story": (20, 16, 13), "first": (20, 18, 15), "top": (14, 14, 9), "other": (20, 16, 13)}
 #: ASCE 41 height over thickness of parapets: life safety in low and moderate seismicity, else
@@ -68,63 +60,87 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
     elif part.loaded:
         barred = "the wall carries floors and is a structural element"
     elif not part.elevated:
-        barred = (
-            "the part is taken as supported by the ground: give base_height and building_height of a part of a building"
-        )
+        barred = "the part is taken as supported by the ground: give base_height and building_height of a part of a building"
     elif peak is not None:
         assert part.building is not None
         shape = 3.0 * (1.0 + part.place / part.building) / (1.0 + (1.0 - tuned) ** 2) - 0.5
         asked = peak / GRAVITY * max(shape, 1.0)
     return [
         Line(
-            "EN 1998-1 part of a building", "S_a", None if q_a is None else part.multiplier * q_a, asked, "g",
+            "EN 1998-1 part of a building",
+            "S_a",
+            None if q_a is None else part.multiplier * q_a,
+            asked,
+            "g",
             "EN 1998-1:2004 4.3.5.2 Eqs (4.24), (4.25): F_a = S_a W_a gamma_a/q_a, S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5) "
             ">= a_g S, gamma_a 1; Table 4.4 (verify clause)",
-            (f"T_a/T_1 {tuned:.3g}" if known else "T_a or T_1 unknown: resonance, T_a/T_1 1, is taken") + ("" if q_a is None else f", q_a {q_a:g}"), "EN 1998-1", state=state, barred=barred,
+            (f"T_a/T_1 {tuned:.3g}" if known else "T_a or T_1 unknown: resonance, T_a/T_1 1, is taken")
+            + ("" if q_a is None else f", q_a {q_a:g}"),
+            "EN 1998-1",
+            state=state,
+            barred=barred,
             scope="non-structural element (parapet, gable, chimney, wall without floors on it); fixed at its foot; on a building, at z > 0",
         ),
         Line(
-            "EN 1998-3 local mechanism", "", None, None, "", "EN 1998-3:2005 Annex C (verify clause)", "", "EN 1998-3", state=state,
-            scope="masonry walls in their plane", barred="Annex C of the 2005 edition has rules for walls in their plane alone, none for "
-            "rigid-body mechanisms out of plane",
+            "EN 1998-3 local mechanism",
+            "",
+            None,
+            None,
+            "",
+            "EN 1998-3:2005 Annex C (verify clause)",
+            "",
+            "EN 1998-3",
+            state=state,
+            scope="masonry walls in their plane",
+            barred="Annex C of the 2005 edition has rules for walls in their plane alone, none for rigid-body mechanisms out of plane",
         ),
-    ]  # fmt: skip
+    ]
 
 
-def asce41(
-    part: Part, s_x1: float | None, storey: str, s_xs: float | None = None, state: str = "LS", edition: str = "13"
-) -> list[Line]:
+def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = None, state: str = "LS", edition: str = "13") -> list[Line]:
     """Height over thickness up to which no out-of-plane check is required, and that of parapets; s_x1, s_xs: spectral acceleration at 1 s
     and of short periods [m/s^2]."""
     slender = None if part.height is None or part.thickness is None else part.height / part.thickness
     barred = ""
     if part.element not in ("facade", "vertical-bending") or not part.anchored:
-        barred = (
-            "Table 11-5 covers walls between anchored diaphragms: "
-            + ("nothing anchors the top of this facade" if part.element == "facade" else f"this element is a {part.element}")
-        )  # fmt: skip
+        barred = "Table 11-5 covers walls between anchored diaphragms: " + (
+            "nothing anchors the top of this facade" if part.element == "facade" else f"this element is a {part.element}"
+        )
     elif state == "IO":
         barred = "Table 11-5 limits stability at LS and CP. At IO no cracking is permitted, which this program does not check"
-    limit = (
-        None if s_x1 is None else SLENDER[storey][0 if s_x1 <= 0.24 * GRAVITY else 1 if s_x1 <= 0.37 * GRAVITY else 2]
-    )
+    limit = None if s_x1 is None else SLENDER[storey][0 if s_x1 <= 0.24 * GRAVITY else 1 if s_x1 <= 0.37 * GRAVITY else 2]
     told = "S_X1 is not known" if s_x1 is None else f"S_X1 {s_x1 / GRAVITY:.3g} g"
     free = "" if part.element == "parapet" else f"the limit covers parapets only; this element is a {part.element}"
     high = s_x1 is not None and (s_x1 >= HIGH[1] * GRAVITY or (s_xs or 0.0) >= HIGH[0] * GRAVITY)
     most = None if s_x1 is None else PARAPET[1 if high or state == "CP" else 0]
     return [
         Line(
-            "ASCE 41 slenderness", "h/t", None if limit is None else float(limit), slender, "",
-            f"ASCE 41-{edition} 11.3.3.3 Table 11-5 (verify clause)", f"{storey}, {told}", "ASCE 41",
-            scope="wall between anchored diaphragms; held at foot and top; any storey", state=state, barred=barred,
+            "ASCE 41 slenderness",
+            "h/t",
+            None if limit is None else float(limit),
+            slender,
+            "",
+            f"ASCE 41-{edition} 11.3.3.3 Table 11-5 (verify clause)",
+            f"{storey}, {told}",
+            "ASCE 41",
+            scope="wall between anchored diaphragms; held at foot and top; any storey",
+            state=state,
+            barred=barred,
         ),
         Line(
-            "ASCE 41 parapet", "h/t", most, slender, "",
+            "ASCE 41 parapet",
+            "h/t",
+            most,
+            slender,
+            "",
             f"ASCE 41-{edition} 13.6.5: h/t at most 2.5 at life safety in low and moderate seismicity, else 1.5 (verify clause)",
-            f"{told}, {'high' if high else 'low or moderate'} seismicity" if s_x1 is not None else told, "ASCE 41",
-            scope="parapet of unreinforced masonry, laterally unsupported; on a building", state=state, barred=free,
+            f"{told}, {'high' if high else 'low or moderate'} seismicity" if s_x1 is not None else told,
+            "ASCE 41",
+            scope="parapet of unreinforced masonry, laterally unsupported; on a building",
+            state=state,
+            barred=free,
         ),
-    ]  # fmt: skip
+    ]
 
 
 def height_coefficient(height: float, building: float) -> float:
@@ -163,12 +179,20 @@ def _nz_parapet(part: Part, spectrum: Callable[[float, float], float] | None, st
             note += told
             demand = None if felt is None else 1.5 / slope * felt * (period / (2.0 * np.pi)) ** 2
     return Line(
-        "NZSEE C8 parapet", "displacement", capacity, demand, "m",
+        "NZSEE C8 parapet",
+        "displacement",
+        capacity,
+        demand,
+        "m",
         "NZSEE/MBIE 2017 C8: %NBS = 30 D_i/D_ph; displacement of instability D_i = t; displacement demand D_ph; period "
         "T_p = sqrt(0.65 h (1 + (t/h)^2)); participation factor gamma = 1.5/(1 + (t/h)^2); height h, thickness t (verify clause); "
-        "NZS 1170.5 section 8: C_p = C(0) C_Hi C_i", note, "NZSEE", scope="parapet; cantilever; on a building, at z > 0", state=state,
+        "NZS 1170.5 section 8: C_p = C(0) C_Hi C_i",
+        note,
+        "NZSEE",
+        scope="parapet; cantilever; on a building, at z > 0",
+        state=state,
         barred=barred,
-    )  # fmt: skip
+    )
 
 
 def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state: str) -> Line:
@@ -181,17 +205,23 @@ def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state
     else:
         found = one_way(part.height, part.thickness, part.weight, part.load)
         capacity = USABLE_WALL * found.instability
-        felt, told = _part_coefficient(
-            part.place + 0.5 * part.height, part.building or part.place + part.height, found.period, spectrum
-        )
+        felt, told = _part_coefficient(part.place + 0.5 * part.height, part.building or part.place + part.height, found.period, spectrum)
         note = f"T_p {found.period:.3f} s, gamma {found.participation:.3g}, D_i {found.instability:.3g} m{told}"
         demand = None if felt is None else found.participation * felt * (found.period / (2.0 * np.pi)) ** 2
     return Line(
-        "NZSEE C8 one-way wall", "displacement", capacity, demand, "m",
+        "NZSEE C8 one-way wall",
+        "displacement",
+        capacity,
+        demand,
+        "m",
         "NZSEE/MBIE 2017 C8: %NBS = 60 D_i/D_ph, D_i = b h/(2 a), T_p = 4.07 sqrt(J/a), D_ph = gamma (T_p/2 pi)^2 C_p g, hinge at mid height, "
-        "e_o = e_b = e_t = t_e/2, e_p = 0 (verify clause); NZS 1170.5 section 8: C_p = C(0) C_Hi C_i", note, "NZSEE",
-        scope="wall that spans one way between floors; held at foot and top by stiff diaphragms; any storey", state=state, barred=barred,
-    )  # fmt: skip
+        "e_o = e_b = e_t = t_e/2, e_p = 0 (verify clause); NZS 1170.5 section 8: C_p = C(0) C_Hi C_i",
+        note,
+        "NZSEE",
+        scope="wall that spans one way between floors; held at foot and top by stiff diaphragms; any storey",
+        state=state,
+        barred=barred,
+    )
 
 
 @dataclass(frozen=True)
@@ -218,9 +248,7 @@ def one_way(height: float, thickness: float, weight: float, load: float) -> OneW
     inertia = own + half / GRAVITY * (offset**2 + arm**2) + half / GRAVITY * ((3.0 * offset) ** 2 + arm**2)
     inertia += load / GRAVITY * (3.0 * offset) ** 2
     participation = 2.0 * half * arm * height / (2.0 * GRAVITY * inertia)
-    return OneWay(
-        effective, b * height / (2.0 * a), float(4.07 * np.sqrt(inertia / a)), participation, a, b, inertia
-    )  # fmt: skip
+    return OneWay(effective, b * height / (2.0 * a), float(4.07 * np.sqrt(inertia / a)), participation, a, b, inertia)
 
 
 def _part_coefficient(

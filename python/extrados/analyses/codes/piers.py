@@ -85,13 +85,28 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
     told = f"FC {factor:.3g}, gamma_M {partial:.3g}"
     slid, pressed = p.sliding(c, None if p.units is None else 0.065 * p.units / (0.7 * d))
     lines = [
-        _strength("NTC flexure", p.flexure(f, 0.85), demand,
-                  "NTC 2018 7.8.2.2.1 Eq. [7.8.2]: M_u = (l^2 t sigma_0/2)(1 - sigma_0/(0.85 f_d)), V = M_u/H_0", told, "NTC 2018", state),
-        _strength("NTC sliding", slid, demand,
-                  "NTC 2018 7.8.2.2.2 Eq. [7.8.3]: V = l' t f_vd, l' compressed length, f_vd = f_v0d + 0.4 sigma_n",
-                  f"{told}, l' {pressed:.3g} m", "NTC 2018", state,
-                  "" if p.cohesion > 0.0 else "the deck gives no f_v0 ([joints] cohesion): irregular masonry has the rule of diagonal cracking alone"),
-    ]  # fmt: skip
+        _strength(
+            "NTC flexure",
+            p.flexure(f, 0.85),
+            demand,
+            "NTC 2018 7.8.2.2.1 Eq. [7.8.2]: M_u = (l^2 t sigma_0/2)(1 - sigma_0/(0.85 f_d)), V = M_u/H_0",
+            told,
+            "NTC 2018",
+            state,
+        ),
+        _strength(
+            "NTC sliding",
+            slid,
+            demand,
+            "NTC 2018 7.8.2.2.2 Eq. [7.8.3]: V = l' t f_vd, l' compressed length, f_vd = f_v0d + 0.4 sigma_n",
+            f"{told}, l' {pressed:.3g} m",
+            "NTC 2018",
+            state,
+            ""
+            if p.cohesion > 0.0
+            else "the deck gives no f_v0 ([joints] cohesion): irregular masonry has the rule of diagonal cracking alone",
+        ),
+    ]
     b = float(np.clip(p.height / p.width, 1.0, 1.5))
     if p.diagonal is None:
         irregular = "the deck gives no tau_0: diagonal_strength"
@@ -100,10 +115,18 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
     tension = 1.5 * (p.diagonal or 0.0) / d
     cracked = None if not tension else p.area * tension / b * float(np.sqrt(1.0 + p.stress / tension))
     lines.append(
-        _strength("NTC diagonal cracking", cracked, demand,
-                  "Circ. 7/2019 [C8.7.1.16]: V_t = l t (1.5 tau_0d/b) sqrt(1 + sigma_0/(1.5 tau_0d)), 1 <= b = h/l <= 1.5",
-                  f"{told}, b {b:.3g}", "NTC 2018", state, irregular, "irregular masonry")
-    )  # fmt: skip
+        _strength(
+            "NTC diagonal cracking",
+            cracked,
+            demand,
+            "Circ. 7/2019 [C8.7.1.16]: V_t = l t (1.5 tau_0d/b) sqrt(1 + sigma_0/(1.5 tau_0d)), 1 <= b = h/l <= 1.5",
+            f"{told}, b {b:.3g}",
+            "NTC 2018",
+            state,
+            irregular,
+            "irregular masonry",
+        )
+    )
     if p.interlocking is not None:
         stepped = p.area / b * (c + JOINT_FRICTION * p.stress) / (1.0 + JOINT_FRICTION * p.interlocking)
         note = f"{told}, b {b:.3g}"
@@ -112,16 +135,29 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
             stepped = min(stepped, p.area * split / (2.3 * b) * float(np.sqrt(1.0 + p.stress / split)))
             note += f", f_btd {split / 1e6:.3g} MPa"
         lines.append(
-            _strength("NTC stepped cracking", stepped, demand,
-                      "Circ. 7/2019 [C8.7.1.17]: V_t = (l t/b)(f_v0d + mu sigma_0)/(1 + mu phi), mu 0.577, units at most "
-                      "(l t f_btd/(2.3 b)) sqrt(1 + sigma_0/f_btd), f_bt = 0.1 f_b", note, "NTC 2018", state,
-                      "" if p.cohesion > 0.0 else "the deck gives no f_v0 ([joints] cohesion)", "regular masonry")
-        )  # fmt: skip
+            _strength(
+                "NTC stepped cracking",
+                stepped,
+                demand,
+                "Circ. 7/2019 [C8.7.1.17]: V_t = (l t/b)(f_v0d + mu sigma_0)/(1 + mu phi), mu 0.577, units at most "
+                "(l t f_btd/(2.3 b)) sqrt(1 + sigma_0/f_btd), f_bt = 0.1 f_b",
+                note,
+                "NTC 2018",
+                state,
+                "" if p.cohesion > 0.0 else "the deck gives no f_v0 ([joints] cohesion)",
+                "regular masonry",
+            )
+        )
     for name, drift in (("flexure", 0.01), ("shear", 0.005)):
         lines.append(
-            _drift(f"NTC drift in {name}", drift * (0.75 if state == "SLV" else 1.0), "NTC 2018 7.8.2.2, Circ. 7/2019 C8.7.1.3.1.1: at "
-                   "SLC 0.01 in flexure, 0.005 in shear; SLV is 3/4 of SLC on the bilinear curve", state)
-        )  # fmt: skip
+            _drift(
+                f"NTC drift in {name}",
+                drift * (0.75 if state == "SLV" else 1.0),
+                "NTC 2018 7.8.2.2, Circ. 7/2019 C8.7.1.3.1.1: at "
+                "SLC 0.01 in flexure, 0.005 in shear; SLV is 3/4 of SLC on the bilinear curve",
+                state,
+            )
+        )
     return lines
 
 
@@ -132,16 +168,37 @@ def en1998_piers(p: Pier, factor: float, demand: float | None, state: str) -> li
     slid, pressed = p.sliding(c, 0.065 * f)
     worse = NEAR_COLLAPSE if state == "NC" else 1.0
     return [
-        _strength("EN 1998-3 flexure", p.flexure(f, 1.0 / 1.15), demand,
-                  "EN 1998-3:2005 C.4.2.1: V_f = D N (1 - 1.15 nu_d)/(2 H_0), nu_d = N/(D t f_d) (verify clause)", told, "EN 1998-3", state),
-        _strength("EN 1998-3 shear", slid, demand,
-                  "EN 1998-3:2005 C.4.3.1: V_f = f_vd D' t, D' compressed length, f_vd = f_vm0 + 0.4 N/(D' t) <= 0.065 f_m (verify clause)",
-                  f"{told}, D' {pressed:.3g} m", "EN 1998-3", state),
-        _drift("EN 1998-3 drift in flexure", worse * 0.008 * p.shear_span / p.width,
-               "EN 1998-3:2005 C.4.2.1: 0.008 H_0/D of primary walls at SD; NC 4/3 of it (verify clause)", state),
-        _drift("EN 1998-3 drift in shear", worse * 0.004,
-               "EN 1998-3:2005 C.4.3.1: 0.004 of primary walls at SD; NC 4/3 of it (verify clause)", state),
-    ]  # fmt: skip
+        _strength(
+            "EN 1998-3 flexure",
+            p.flexure(f, 1.0 / 1.15),
+            demand,
+            "EN 1998-3:2005 C.4.2.1: V_f = D N (1 - 1.15 nu_d)/(2 H_0), nu_d = N/(D t f_d) (verify clause)",
+            told,
+            "EN 1998-3",
+            state,
+        ),
+        _strength(
+            "EN 1998-3 shear",
+            slid,
+            demand,
+            "EN 1998-3:2005 C.4.3.1: V_f = f_vd D' t, D' compressed length, f_vd = f_vm0 + 0.4 N/(D' t) <= 0.065 f_m (verify clause)",
+            f"{told}, D' {pressed:.3g} m",
+            "EN 1998-3",
+            state,
+        ),
+        _drift(
+            "EN 1998-3 drift in flexure",
+            worse * 0.008 * p.shear_span / p.width,
+            "EN 1998-3:2005 C.4.2.1: 0.008 H_0/D of primary walls at SD; NC 4/3 of it (verify clause)",
+            state,
+        ),
+        _drift(
+            "EN 1998-3 drift in shear",
+            worse * 0.004,
+            "EN 1998-3:2005 C.4.3.1: 0.004 of primary walls at SD; NC 4/3 of it (verify clause)",
+            state,
+        ),
+    ]
 
 
 def asce41_piers(p: Pier, factor: float, demand: float | None, ductility: float, state: str) -> list[Line]:
@@ -157,36 +214,82 @@ def asce41_piers(p: Pier, factor: float, demand: float | None, ductility: float,
     told = f"kappa {1.0 / factor:.3g}, m {ductility:.3g}"
     forced = f"kappa {1.0 / factor:.3g}, force-controlled, lower-bound strength"
     lines = [
-        _strength("ASCE 41 rocking of a pier", 0.9 * toes / factor, eased,
-                  f"ASCE 41-13 11.3.2.2: V_r = 0.9 (alpha P_D + 0.5 P_W) L/h_eff, alpha 0.5 free, 1 fixed at the top ({book} 2.31)", told,
-                  "ASCE 41", state),
-        _strength("ASCE 41 bed-joint sliding", 0.5 * (0.75 * p.cohesion * p.area + p.axial) / factor, eased,
-                  f"ASCE 41-13 11.3.2.2: V_bjs1 = 0.75 (0.75 v_te + P_D/A_n)/1.5 A_n, v_te = cohesion ({book} 2.33)", told, "ASCE 41", state,
-                  "" if state == "IO" else f"V_bjs1 is the strength of the uncracked joint, at IO; at {state} V_bjs2 is left", "at IO"),
-        _strength("ASCE 41 residual sliding", 0.5 * p.axial / factor, eased,
-                  f"ASCE 41-13 11.3.2.2: V_bjs2 = 0.5 P_D, residual strength of the cracked joint ({book} 2.34)", told, "ASCE 41", state,
-                  "V_bjs2 is the residual strength, beyond IO" if state == "IO" else "", "beyond IO", "residual strength"),
-        _strength("ASCE 41 toe crushing", toes * max(0.0, 1.0 - pressed / (0.7 * p.strength)) / factor, demand,
-                  f"ASCE 41-13 11.3.2.2: V_tc = (alpha P_D + 0.5 P_W) L/h_eff (1 - f_a/(0.7 f_m)), f_a of 1.1 times the loads ({book} 2.35)",
-                  forced, "ASCE 41", state),
-    ]  # fmt: skip
+        _strength(
+            "ASCE 41 rocking of a pier",
+            0.9 * toes / factor,
+            eased,
+            f"ASCE 41-13 11.3.2.2: V_r = 0.9 (alpha P_D + 0.5 P_W) L/h_eff, alpha 0.5 free, 1 fixed at the top ({book} 2.31)",
+            told,
+            "ASCE 41",
+            state,
+        ),
+        _strength(
+            "ASCE 41 bed-joint sliding",
+            0.5 * (0.75 * p.cohesion * p.area + p.axial) / factor,
+            eased,
+            f"ASCE 41-13 11.3.2.2: V_bjs1 = 0.75 (0.75 v_te + P_D/A_n)/1.5 A_n, v_te = cohesion ({book} 2.33)",
+            told,
+            "ASCE 41",
+            state,
+            "" if state == "IO" else f"V_bjs1 is the strength of the uncracked joint, at IO; at {state} V_bjs2 is left",
+            "at IO",
+        ),
+        _strength(
+            "ASCE 41 residual sliding",
+            0.5 * p.axial / factor,
+            eased,
+            f"ASCE 41-13 11.3.2.2: V_bjs2 = 0.5 P_D, residual strength of the cracked joint ({book} 2.34)",
+            told,
+            "ASCE 41",
+            state,
+            "V_bjs2 is the residual strength, beyond IO" if state == "IO" else "",
+            "beyond IO",
+            "residual strength",
+        ),
+        _strength(
+            "ASCE 41 toe crushing",
+            toes * max(0.0, 1.0 - pressed / (0.7 * p.strength)) / factor,
+            demand,
+            f"ASCE 41-13 11.3.2.2: V_tc = (alpha P_D + 0.5 P_W) L/h_eff (1 - f_a/(0.7 f_m)), f_a of 1.1 times the loads ({book} 2.35)",
+            forced,
+            "ASCE 41",
+            state,
+        ),
+    ]
     beta = float(np.clip(p.width / p.height, 0.67, 1.0))
     tension = 1.5 * (p.diagonal or 0.0)
     split = None if not tension else beta * p.area * tension * float(np.sqrt(1.0 + pressed / tension)) / factor
     lines.append(
-        _strength("ASCE 41 diagonal tension", split, demand,
-                  f"ASCE 41-13 11.3.2.2: V_dt = f_dt A_n beta sqrt(1 + f_a/f_dt), f_dt = 1.5 tau_0, 0.67 <= beta = L/h_eff <= 1 ({book} 2.36)",
-                  forced, "ASCE 41", state, "" if split else "the deck gives no tau_0: diagonal_strength")
-    )  # fmt: skip
+        _strength(
+            "ASCE 41 diagonal tension",
+            split,
+            demand,
+            f"ASCE 41-13 11.3.2.2: V_dt = f_dt A_n beta sqrt(1 + f_a/f_dt), f_dt = 1.5 tau_0, 0.67 <= beta = L/h_eff <= 1 ({book} 2.36)",
+            forced,
+            "ASCE 41",
+            state,
+            "" if split else "the deck gives no tau_0: diagonal_strength",
+        )
+    )
     return lines
 
 
 def nzsee_piers() -> list[Line]:
     """No rule: the equations of C8 in the plane could not be read."""
     return [
-        Line("NZSEE C8 in-plane strength", "lateral strength", None, None, "N", "NZSEE/MBIE 2017 C8.8 (verify clause)", "", "NZSEE",
-             scope=PIER, barred="the equations of C8 for piers in their plane are not implemented: their text could not be read")
-    ]  # fmt: skip
+        Line(
+            "NZSEE C8 in-plane strength",
+            "lateral strength",
+            None,
+            None,
+            "N",
+            "NZSEE/MBIE 2017 C8.8 (verify clause)",
+            "",
+            "NZSEE",
+            scope=PIER,
+            barred="the equations of C8 for piers in their plane are not implemented: their text could not be read",
+        )
+    ]
 
 
 def weakest(lines: Sequence[Line]) -> Line | None:
@@ -196,9 +299,17 @@ def weakest(lines: Sequence[Line]) -> Line | None:
 
 
 def _strength(
-    rule: str, capacity: float | None, demand: float | None, source: str, note: str, code: str, state: str, barred: str = "",
-    more: str = "", quantity: str = "lateral strength",
-) -> Line:  # fmt: skip
+    rule: str,
+    capacity: float | None,
+    demand: float | None,
+    source: str,
+    note: str,
+    code: str,
+    state: str,
+    barred: str = "",
+    more: str = "",
+    quantity: str = "lateral strength",
+) -> Line:
     scope = f"{PIER}; {more}" if more else PIER
     return Line(rule, quantity, capacity, demand, "N", source, note, code, scope=scope, state=state, barred=barred)
 

@@ -20,16 +20,7 @@ def housner(p: float, alpha: float, pga: float | None, period: float) -> Line:
     """Half of a sine of period T = 2 pi/w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
     x = float(np.hypot(1.0, 2.0 * np.pi / (period * p)))
     note = f"for half a sine of {period:.3g} s"
-    return Line(
-        "Housner half sine",
-        "PGA",
-        x * np.tan(alpha),
-        pga,
-        "g",
-        "Housner 1963, Eq. 15 (verify clause)",
-        note,
-        scope=BLOCK,
-    )
+    return Line("Housner half sine", "PGA", x * np.tan(alpha), pga, "g", "Housner 1963, Eq. 15 (verify clause)", note, scope=BLOCK)
 
 
 def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) -> tuple[Line, Line]:
@@ -38,26 +29,8 @@ def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) 
     speed = 10.0 * 100.0 * width / np.sqrt(100.0 * height) / 100.0
     note = "overturning requires that the motion exceeds both limits"
     return (
-        Line(
-            "Ishiyama acceleration",
-            "PGA",
-            width / height,
-            pga,
-            "g",
-            source,
-            note,
-            scope=BLOCK,
-        ),
-        Line(
-            "Ishiyama velocity",
-            "PGV",
-            float(speed),
-            pgv,
-            "m/s",
-            source,
-            note,
-            scope=BLOCK,
-        ),
+        Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note, scope=BLOCK),
+        Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note, scope=BLOCK),
     )
 
 
@@ -76,25 +49,34 @@ def asce43(width: float, height: float, sa: Callable[[float, float], float] | No
     capacity = float(2.0 * f1 / (c3 * theta))
     source, scope = "ASCE/SEI 43-05, App. A (verify clause)", f"{BLOCK}; Housner's coefficient of restitution above 0"
     if not c_r > 0.0:
-        return Line("ASCE 43 rocking", "SA", capacity, None, "g", source, scope=scope,
-                    barred=f"the block of b/h = {ratio:.3g} does not rock: Housner's coefficient of restitution is {c_r:.3g}, and "
-                    "gives no equivalent damping")  # fmt: skip
+        return Line(
+            "ASCE 43 rocking",
+            "SA",
+            capacity,
+            None,
+            "g",
+            source,
+            scope=scope,
+            barred=f"the block of b/h = {ratio:.3g} does not rock: Housner's coefficient of restitution is {c_r:.3g}, and "
+            "gives no equivalent damping",
+        )
     gamma = -2.0 * np.log(c_r)
     damping = float(gamma / np.sqrt(4.0 * np.pi**2 + gamma**2))
     demand = None if sa is None else sa(1.0 / frequency, damping)
-    return Line("ASCE 43 rocking", "SA", capacity, demand, "g", source,
-                f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha", scope=scope)  # fmt: skip
+    return Line(
+        "ASCE 43 rocking",
+        "SA",
+        capacity,
+        demand,
+        "g",
+        source,
+        f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha",
+        scope=scope,
+    )
 
 
 def formulas_of_piers(
-    width: float,
-    height: float,
-    thickness: float,
-    load: float,
-    strength: float,
-    cohesion: float,
-    friction: float,
-    double: bool,
+    width: float, height: float, thickness: float, load: float, strength: float, cohesion: float, friction: float, double: bool
 ) -> list[Line]:
     """Lateral strength of a wall pier, `load` [N] in all at its base; lengths [m], stresses [Pa]."""
     area = width * thickness
@@ -108,23 +90,10 @@ def formulas_of_piers(
     crushing = factor * load * width / height * max(0.0, 1.0 - stress / (0.7 * strength))
     rocking = width * load * share / (2.0 * effective)
     # Magenes and Calvi 1997: bed-joint sliding of the cracked base, and diagonal cracking of the units left out
-    cracked = (
-        thickness
-        * width
-        * (1.5 * cohesion + friction * stress)
-        / (1.0 + 3.0 * cohesion * slenderness / max(stress, 1e-300))
-    )
+    cracked = thickness * width * (1.5 * cohesion + friction * stress) / (1.0 + 3.0 * cohesion * slenderness / max(stress, 1e-300))
     shear = area * (cohesion + friction * stress) / (1.0 + slenderness)
     return [
-        Line(
-            "FEMA 356 rocking",
-            "lateral strength",
-            fema,
-            None,
-            "N",
-            "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)",
-            scope=PIER,
-        ),
+        Line("FEMA 356 rocking", "lateral strength", fema, None, "N", "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)", scope=PIER),
         Line(
             "FEMA 356 bed-joint sliding",
             "lateral strength",
@@ -143,31 +112,7 @@ def formulas_of_piers(
             "FEMA 356 Eq. 7-6: alpha P L/h (1 - f_a/(0.7 f_m)) (verify clause)",
             scope=PIER,
         ),
-        Line(
-            "Magenes-Calvi rocking",
-            "lateral strength",
-            rocking,
-            None,
-            "N",
-            "Magenes and Calvi 1997, Eq. 1 (verify clause)",
-            scope=PIER,
-        ),
-        Line(
-            "Magenes-Calvi shear",
-            "lateral strength",
-            shear,
-            None,
-            "N",
-            "Magenes and Calvi 1997, Eq. 6 (verify clause)",
-            scope=PIER,
-        ),
-        Line(
-            "Magenes-Calvi sliding",
-            "lateral strength",
-            cracked,
-            None,
-            "N",
-            "Magenes and Calvi 1997, Eq. 4 (verify clause)",
-            scope=PIER,
-        ),
+        Line("Magenes-Calvi rocking", "lateral strength", rocking, None, "N", "Magenes and Calvi 1997, Eq. 1 (verify clause)", scope=PIER),
+        Line("Magenes-Calvi shear", "lateral strength", shear, None, "N", "Magenes and Calvi 1997, Eq. 6 (verify clause)", scope=PIER),
+        Line("Magenes-Calvi sliding", "lateral strength", cracked, None, "N", "Magenes and Calvi 1997, Eq. 4 (verify clause)", scope=PIER),
     ]

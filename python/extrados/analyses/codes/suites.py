@@ -17,7 +17,7 @@ from extrados.schema.constants import GRAVITY
 
 def fragilities(
     context: Context, options: Verification, curves: Sequence[tuple[cc.CapacityCurve, cc.Oscillator]], states: Sequence[str]
-) -> tuple[list[out.BuildingFragility], np.ndarray]:  # fmt: skip
+) -> tuple[list[out.BuildingFragility], np.ndarray]:
     """Lognormal fragility at each limit state, and the peak ground accelerations (motions, states) [g] that are carried: of each
     motion its peak times the least factor of all curves at which N2 reaches the displacement capacity."""
     rows = []
@@ -25,19 +25,20 @@ def fragilities(
         values = core.response_spectra(samples, step, cc.PERIODS, [cc.DAMPING]).psa.reshape(-1)
         corner, peak = cc.corner_of(values), float(np.abs(samples).max())
         spectrum = spectrum_of_motion(samples, step, peak)
-        rows.append([
-            peak / GRAVITY * min(cc.n2_factor(o, spectrum, corner, cc.capacity_of(c, o, state) / o.participation) for c, o in curves)
-            for state in states
-        ])  # fmt: skip
+        rows.append(
+            [
+                peak / GRAVITY * min(cc.n2_factor(o, spectrum, corner, cc.capacity_of(c, o, state) / o.participation) for c, o in curves)
+                for state in states
+            ]
+        )
     carried = np.array(rows)
     log = np.log(carried)
     fitted = [
         out.BuildingFragility(
-            limit_state=state, motions=len(carried), median_pga_g=float(np.exp(log[:, k].mean())),
-            dispersion=float(log[:, k].std(ddof=1)),
+            limit_state=state, motions=len(carried), median_pga_g=float(np.exp(log[:, k].mean())), dispersion=float(log[:, k].std(ddof=1))
         )
         for k, state in enumerate(states)
-    ]  # fmt: skip
+    ]
     return fitted, carried
 
 
@@ -57,7 +58,5 @@ def _motions(context: Context, options: Verification) -> list[tuple[np.ndarray, 
     if broken:
         context.warnings.append(f"{broken} of {count} motions cannot be read: the fragility has no part of them.")
     if len(found) < 2:
-        raise Refused(
-            f"a fragility needs two motions or more, the deck has {len(found)}", ("analysis", "verification", "motions")
-        )
+        raise Refused(f"a fragility needs two motions or more, the deck has {len(found)}", ("analysis", "verification", "motions"))
     return found

@@ -17,24 +17,17 @@ class CodeChecks(BuildingAnalysis):
     """The rules of the code of the deck for a rocking body, or for a wall as a pier, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
-    uses: ClassVar = (
-        "material.density", "material.compressive_strength", "joints.friction", "joints.cohesion", "joints.restitution",
-    )  # fmt: skip
+    uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction", "joints.cohesion", "joints.restitution")
     beside: ClassVar = ("joints.energy_ratio", "initial.rotation_ratio", "supports.abutting_wall", "supports.stiffness")
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
-    spectrum: CodeSpectrum | None = key(
-        None, "the demand: elastic spectrum of the code at the site; default that of a `compatible` motion"
-    )
+    spectrum: CodeSpectrum | None = key(None, "the demand: elastic spectrum of the code at the site; default that of a `compatible` motion")
     peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
     peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
     motion_spectrum: bool = key(
-        False,
-        "without a spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity",
+        False, "without a spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity"
     )
-    pulse_period: Time | None = key(
-        None, "period of the sine whose half cycle Housner's formula takes; adds this check", gt=0
-    )
+    pulse_period: Time | None = key(None, "period of the sine whose half cycle Housner's formula takes; adds this check", gt=0)
     behaviour_factor: float | None = key(
         None,
         "q of the linear check of a mechanism, and of the demand on a pier (of ASCE 41 its m); default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)",
@@ -42,13 +35,14 @@ class CodeChecks(BuildingAnalysis):
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
     )
-    confidence_factor: float | None = key(
-        None, "FC; default that of [code]", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV"
-    )
+    confidence_factor: float | None = key(None, "FC; default that of [code]", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     partial_factor: float | None = key(
-        None, "gamma_M of a pier by NTC; default 2 where a demand is compared (linear analysis with q), else 1", ge=1, le=3,
+        None,
+        "gamma_M of a pier by NTC; default 2 where a demand is compared (linear analysis with q), else 1",
+        ge=1,
+        le=3,
         source="NTC 2018 7.8.1.1",
-    )  # fmt: skip
+    )
     axial_load: Force | None = key(None, "vertical load on top of the wall; adds the pier rules", ge=0)
     thickness: Length | None = key(None, "thickness of the pier; default the depth of the block", gt=0)
     sliding_friction: float = key(
@@ -58,15 +52,9 @@ class CodeChecks(BuildingAnalysis):
         None, "tau_0, shear strength of the masonry without compression; adds the rule of diagonal cracking", gt=0
     )
     interlocking_ratio: float | None = key(
-        None,
-        "phi = h_b/l of a pier of regular masonry: adds the rule of stepped cracking",
-        gt=0,
-        le=5,
-        source="Circ. 7/2019 [C8.7.1.17]",
+        None, "phi = h_b/l of a pier of regular masonry: adds the rule of stepped cracking", gt=0, le=5, source="Circ. 7/2019 [C8.7.1.17]"
     )
-    unit_strength: Stress | None = key(
-        None, "f_b, compressive strength of the units of a pier, which limits its shear", gt=0
-    )
+    unit_strength: Stress | None = key(None, "f_b, compressive strength of the units of a pier, which limits its shear", gt=0)
     fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top: free or held")
 
     def reckons_with(self, building: "Building") -> set[str]:
@@ -75,13 +63,7 @@ class CodeChecks(BuildingAnalysis):
         if self.axial_load is None:
             found -= {"material.compressive_strength", "joints.cohesion"}
         if building.structure is not None and building.structure.rocks_as == "piers":
-            found -= {
-                "joints.friction",
-                "joints.restitution",
-                "joints.energy_ratio",
-                "initial.rotation_ratio",
-                "supports.stiffness",
-            }
+            found -= {"joints.friction", "joints.restitution", "joints.energy_ratio", "initial.rotation_ratio", "supports.stiffness"}
         return found
 
 
@@ -121,10 +103,7 @@ class Verification(Table):
     motion_spectrum: bool = key(False, "without a spectrum of a code, the response spectrum of the deck's motion")
 
     motions: int | None = key(
-        None,
-        "motions of the set in [motion] of which N2 makes a fragility, record by record; default none",
-        ge=2,
-        le=10_000,
+        None, "motions of the set in [motion] of which N2 makes a fragility, record by record; default none", ge=2, le=10_000
     )
 
     @model_validator(mode="after")
@@ -208,16 +187,20 @@ class LocalMechanism(BuildingAnalysis):
     view: ClassVar = ""
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     starter: ClassVar = {
-        "mechanism": '"facade"', "height": "6.0", "thickness": '"60 cm"', "width": "1.0", "peak_acceleration": '"0.15 g"',
+        "mechanism": '"facade"',
+        "height": "6.0",
+        "thickness": '"60 cm"',
+        "width": "1.0",
+        "peak_acceleration": '"0.15 g"',
         "floors": '[{ height = 5.8, load = "10 kN", arm = 0.4 }]',
-    }  # fmt: skip
+    }
     mechanism: Literal[
-        "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building",
+        "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building"
     ] = key(
         about="facade, corner of two walls, gable, parapet or chimney on a building, free-standing wall, tower as one body; wall that bends "
         "between held floors, or level between side walls; or `building`, "
         "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults), of a building on a plan its walls"
-    )  # fmt: skip
+    )
     height: Length | None = key(None, "top of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
     width: Length | None = key(None, "length of wall that overturns; default 1 m, of a tower its thickness", gt=0)
@@ -233,13 +216,9 @@ class LocalMechanism(BuildingAnalysis):
         "do not move, such as those that further walls flank: the strip crushes by [material] compressive_strength",
         gt=0,
     )
-    interlocking: Interlocking | None = key(
-        None, "teeth of side walls that hold a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
-    )
+    interlocking: Interlocking | None = key(None, "teeth of side walls that hold a facade by friction", source="Circ. 7/2019 [C8.7.1.2]")
     spectrum: CodeSpectrum | None = key(
-        None,
-        "elastic spectrum of the site; default that of a `compatible` motion",
-        source="EN 1998-1 3.2.2; NTC 2018 3.2.3",
+        None, "elastic spectrum of the site; default that of a `compatible` motion", source="EN 1998-1 3.2.2; NTC 2018 3.2.3"
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
     collapse_spectrum: CodeSpectrum | None = key(
@@ -269,27 +248,24 @@ class LocalMechanism(BuildingAnalysis):
         ge=0,
     )
     building_height: Length | None = key(
-        None,
-        "height H of the building, where z is above 0; default from the geometry, the top of all, of a table `height`",
-        gt=0,
+        None, "height H of the building, where z is above 0; default from the geometry, the top of all, of a table `height`", gt=0
     )
-    building_period: Time | None = key(
-        None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
-    )
+    building_period: Time | None = key(None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6")
     storeys: int | None = key(
-        None,
-        "storeys N of the building, for the modal participation; default one for each begun 3 m of its height",
-        ge=1,
-        le=50,
+        None, "storeys N of the building, for the modal participation; default one for each begun 3 m of its height", ge=1, le=50
     )
     modes: list[Mode] = key(
-        [], "modes of the building for the floor spectrum; default its first mode alone, linear over the height",
-        source="Circ. 7/2019 C7.2.3", max_length=20,
-    )  # fmt: skip
+        [],
+        "modes of the building for the floor spectrum; default its first mode alone, linear over the height",
+        source="Circ. 7/2019 C7.2.3",
+        max_length=20,
+    )
     period: Time | None = key(
-        None, "period T_0 of a part that is free to vibrate; default from [material] young, where the deck gives it", gt=0,
+        None,
+        "period T_0 of a part that is free to vibrate; default from [material] young, where the deck gives it",
+        gt=0,
         source="Circ. 7/2019 [C8.7.1.7]",
-    )  # fmt: skip
+    )
     one_second_acceleration: Acceleration | None = key(
         None, "S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
     )

@@ -21,9 +21,14 @@ from extrados.views.building import Building
 
 #: Strengths of the model, which the confidence factor divides
 STRENGTHS = (
-    "tensile_strength", "tensile_strength_parallel", "shear_strength", "compressive_strength", "compressive_strength_parallel",
-    "cohesion", "tension",
-)  # fmt: skip
+    "tensile_strength",
+    "tensile_strength_parallel",
+    "shear_strength",
+    "compressive_strength",
+    "compressive_strength_parallel",
+    "cohesion",
+    "tension",
+)
 Strong = TypeVar("Strong", Material, Joints, JointType)
 #: Limit drifts of piers at collapse, in shear and in flexure: C8.7.1.3.1.1; EN 1998-3 C.4.2 and C.4.3, 4/3 of SD, at H_0 = D
 #: (verify clause)
@@ -36,10 +41,13 @@ DEMAND_CLAUSES = {
     "N2": {"NTC": "NTC 2018 7.8.1.6, [C7.3.8], [C7.3.9]", "EN1998": "EN 1998-1 Annex B (verify clause)", "NZSEE": "N2 (verify clause)"},
     "capacity-spectrum": {"NTC": "[C7.3.10]"},
     "coefficient": {"ASCE41": "ASCE 41-13 Eq. 7-28 (verify clause)"},
-}  # fmt: skip
+}
 CAPACITY_CLAUSES = {
-    "NTC": "C8.7.1.3.1", "EN1998": "EN 1998-3 C.3 (verify clause)", "NZSEE": "C2 (verify clause)", "ASCE41": "Table 11-4 (not read)",
-}  # fmt: skip
+    "NTC": "C8.7.1.3.1",
+    "EN1998": "EN 1998-3 C.3 (verify clause)",
+    "NZSEE": "C2 (verify clause)",
+    "ASCE41": "Table 11-4 (not read)",
+}
 
 
 @dataclass(frozen=True)
@@ -84,14 +92,15 @@ def divided(building: Building, factor: float) -> Building:
     joints = over(building.joints)
     joints = joints.model_copy(update={"types": [over(one) for one in joints.types]})
     return replace(
-        building, material=over(building.material), materials={name: over(m) for name, m in building.materials.items()},
-        joints=joints, views={},
-    )  # fmt: skip
+        building,
+        material=over(building.material),
+        materials={name: over(m) for name, m in building.materials.items()},
+        joints=joints,
+        views={},
+    )
 
 
-def displaced_shape(
-    model: Model, load: np.ndarray, control: Monitor, along: np.ndarray, free: np.ndarray
-) -> tuple[np.ndarray, float]:
+def displaced_shape(model: Model, load: np.ndarray, control: Monitor, along: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, float]:
     """phi of a pushed model of finite elements (nodes): its elastic displacement along the push, 1 at the control displacement;
     and the part of the pushing forces that goes through the structure, since those on supports are no part of its base shear.
 
@@ -106,12 +115,7 @@ def displaced_shape(
 
 
 def verify(
-    context: Context,
-    result: Result,
-    options: Verification,
-    pushes: list[Push],
-    violated: list[str],
-    factor: float | None = None,
+    context: Context, result: Result, options: Verification, pushes: list[Push], violated: list[str], factor: float | None = None
 ) -> out.Verification | None:
     """The verification of all pushes; None where no code is applied. factor: by which strengths were divided, by default that of
     the code."""
@@ -134,20 +138,24 @@ def verify(
             violated.append(unverified(push.name))
             continue
         rows = [
-            _check(push, oscillator, action, corners.get(action.state, 0.0), method, options, code.jurisdiction, known)
-            for action in states
+            _check(push, oscillator, action, corners.get(action.state, 0.0), method, options, code.jurisdiction, known) for action in states
         ]
         checks += rows
         made.append((push.curve, oscillator))
         law, gamma = oscillator.law, oscillator.participation
         curves.append(
             out.IdealisedCurve(
-                push=push.name, equivalent_mass_kg=oscillator.mass, participation_factor=gamma,
-                mass_ratio=oscillator.mass * gamma / push.total_mass, period_s=oscillator.period,
-                yield_load_N=gamma * law.yield_load, yield_displacement_m=gamma * law.yield_displacement,
-                ultimate_displacement_m=push.curve.ultimate, ended_by=push.curve.ended_by,
+                push=push.name,
+                equivalent_mass_kg=oscillator.mass,
+                participation_factor=gamma,
+                mass_ratio=oscillator.mass * gamma / push.total_mass,
+                period_s=oscillator.period,
+                yield_load_N=gamma * law.yield_load,
+                yield_displacement_m=gamma * law.yield_displacement,
+                ultimate_displacement_m=push.curve.ultimate,
+                ended_by=push.curve.ended_by,
             )
-        )  # fmt: skip
+        )
 
     def least(state: str) -> float | None:
         return min((c.factor for c in checks if c.limit_state == state and c.factor is not None), default=None)
@@ -157,18 +165,22 @@ def verify(
     if options.motions is not None and made and known_states:
         more["fragility"], carried = fragilities(context, options, made, known_states)
         result.arrays["carried_pga"] = Array(
-            carried,
-            ("motion", "limit_state"),
-            "g",
-            f"peak ground acceleration carried of each motion, at {', '.join(known_states)}",
+            carried, ("motion", "limit_state"), "g", f"peak ground acceleration carried of each motion, at {', '.join(known_states)}"
         )
     if code.jurisdiction == "NZSEE" and (found := least("ULS")) is not None:
         more["nbs_percent"] = 100.0 * found
     return out.Verification(
-        jurisdiction=code.jurisdiction, code=code.name, by_default=code is NATIVE, method=method,
-        confidence_factor=(code.factor if factor is None else factor) if given else None, curves=curves, checks=checks,
-        zeta_E=least("SLV") if code.jurisdiction == "NTC" else None, violated=violated, **more,
-    )  # fmt: skip
+        jurisdiction=code.jurisdiction,
+        code=code.name,
+        by_default=code is NATIVE,
+        method=method,
+        confidence_factor=(code.factor if factor is None else factor) if given else None,
+        curves=curves,
+        checks=checks,
+        zeta_E=least("SLV") if code.jurisdiction == "NTC" else None,
+        violated=violated,
+        **more,
+    )
 
 
 def unverified(name: str) -> str:
@@ -188,8 +200,9 @@ def curve_arrays(context: Context, options: Verification, pushes: list[Push]) ->
     found: dict[str, Array] = {}
     for k, push in enumerate(pushes):
         for name, values, unit, about in (
-            ("displacement", push.curve.displacement, "m", "control displacement"), ("load", push.curve.force, "N", "base shear"),
-        ):  # fmt: skip
+            ("displacement", push.curve.displacement, "m", "control displacement"),
+            ("load", push.curve.force, "N", "base shear"),
+        ):
             found[f"verified_{name}_{k}"] = Array(
                 values, (f"verified_{k}",), unit, f"{about} of the verified curve {push.name}", f"verified_{name}"
             )
@@ -199,16 +212,20 @@ def curve_arrays(context: Context, options: Verification, pushes: list[Push]) ->
     for action in given:
         assert action.spectrum is not None
         values = np.array([action.spectrum(float(t), cc.DAMPING) for t in DRAWN])
-        found[f"spectrum_{action.state}"] = Array(
-            values, ("periods",), "m/s^2", f"elastic spectrum at {action.state}", "spectrum"
-        )
+        found[f"spectrum_{action.state}"] = Array(values, ("periods",), "m/s^2", f"elastic spectrum at {action.state}", "spectrum")
     return found
 
 
 def _check(
-    push: Push, oscillator: Oscillator, action: Action, corner: float, method: out.Method, options: Verification, jurisdiction: str,
+    push: Push,
+    oscillator: Oscillator,
+    action: Action,
+    corner: float,
+    method: out.Method,
+    options: Verification,
+    jurisdiction: str,
     known: dict[float, float],
-) -> out.DisplacementCheck:  # fmt: skip
+) -> out.DisplacementCheck:
     """A curve at a limit state. corner: T_C of the action [s]; known: accelerations of the return periods, of `return_period`."""
     state, gamma, curve = action.state, oscillator.participation, push.curve
     capacity = cc.capacity_of(curve, oscillator, state) if state in cc.CAPACITY else None
@@ -231,12 +248,20 @@ def _check(
         years = cc.return_period(carried * GRAVITY, known)
     clause = DEMAND_CLAUSES[method].get(jurisdiction, method)
     return out.DisplacementCheck(
-        push=push.name, limit_state=state, demand_m=demand, capacity_m=capacity, strength_ratio=ratio,
-        greatest_strength_ratio=limit, factor=factor, demand_pga_g=peak, capacity_pga_g=carried,
-        return_period_years=action.years, capacity_return_period_years=years,
+        push=push.name,
+        limit_state=state,
+        demand_m=demand,
+        capacity_m=capacity,
+        strength_ratio=ratio,
+        greatest_strength_ratio=limit,
+        factor=factor,
+        demand_pga_g=peak,
+        capacity_pga_g=carried,
+        return_period_years=action.years,
+        capacity_return_period_years=years,
         verdict="" if factor is None else "holds" if factor >= 1.0 else "fails",
         clause=f"{clause}; {CAPACITY_CLAUSES[jurisdiction]}",
-    )  # fmt: skip
+    )
 
 
 def _scaled(demanded: partial[float | None], spectrum: Spectrum, factor: float) -> float | None:
@@ -246,7 +271,7 @@ def _scaled(demanded: partial[float | None], spectrum: Spectrum, factor: float) 
 
 def _demand(
     push: Push, oscillator: Oscillator, method: out.Method, quality: float, jurisdiction: str, corner: float, spectrum: Spectrum
-) -> float | None:  # fmt: skip
+) -> float | None:
     """Displacement demand of the control point [m]; None beyond collapse."""
     gamma = oscillator.participation
     if method == "coefficient":

@@ -98,11 +98,7 @@ def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: di
         top = float(plan.levels[k]) - foot
         if loads.get((wall.name, k), 0.0) > 0.0:
             weights.append(Weight(loads[wall.name, k], arm, top))
-        weights += [
-            Weight(p.force, arm, top, sways=False)
-            for p in plan.prestress
-            if p.wall == wall.name and (p.level or last) == k
-        ]
+        weights += [Weight(p.force, arm, top, sways=False) for p in plan.prestress if p.wall == wall.name and (p.level or last) == k]
     if material.compressive_strength is not None:
         weights = set_back(weights, material.compressive_strength, sole, 2.0 * arm)
     return WallPart(wall.name, storey, foot, Overturning(tuple(weights)))

@@ -51,9 +51,7 @@ class Curve:
 class Search:
     """Asks round by round which pulses (curve, amplitude, duration) bring the structure down."""
 
-    def __init__(
-        self, context: Context, options: DemDomain, model: Model | SolidModel, curves: list[Curve], rounds: float
-    ):
+    def __init__(self, context: Context, options: DemDomain, model: Model | SolidModel, curves: list[Curve], rounds: float):
         self.context, self.options, self.model, self.curves = context, options, model, curves
         self.settle = options.settle or dem_model.settle_time(model)
         self.collapse = measures.Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
@@ -74,11 +72,12 @@ class Search:
 
     def _runs(self, pulses: list[Pulse], output_step: float = 1e3) -> list[Any]:
         runs = answered(
-            self.context, "dem-domain", self.job(pulses, output_step), "",
-            tell=lambda done: self.context.progress(
-                min(self.asked + done, self.total), self.total, "failure domain by discrete elements"
-            ),
-        )  # fmt: skip
+            self.context,
+            "dem-domain",
+            self.job(pulses, output_step),
+            "",
+            tell=lambda done: self.context.progress(min(self.asked + done, self.total), self.total, "failure domain by discrete elements"),
+        )
         self.asked += len(pulses)
         for run in runs:
             dem_model.checked(run, self.model)
@@ -94,10 +93,16 @@ class Search:
     def core_options(self, curve: int, end: float, output_step: float) -> dict[str, Any]:
         """What of the core's options is the same of a section and of solids; `end` of the pulse [s]."""
         return {
-            "end_time": end + self.settle, "output_step": output_step, "fraction": self.options.fraction,
-            **self.collapse.options, "settle_damping": self.curves[curve].values.settle_damping, "stop_at_rest": True, "rigid": self.curves[curve].rigid, "rebound": self.options.rebound,
+            "end_time": end + self.settle,
+            "output_step": output_step,
+            "fraction": self.options.fraction,
+            **self.collapse.options,
+            "settle_damping": self.curves[curve].values.settle_damping,
+            "stop_at_rest": True,
+            "rigid": self.curves[curve].rigid,
+            "rebound": self.options.rebound,
             "step": self.options.time_step or 0.0,
-        }  # fmt: skip
+        }
 
 
 def _of_section(search: Search, model: Model) -> Callable[[list[Pulse], float], Runs]:
@@ -153,9 +158,7 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
     search = Search(context, options, model, curves, len(durations) + refining)
     shortest = _shortest(search.fails, len(curves), amplitudes, durations, options.accuracy)
-    at_once = (
-        _shortest(search.falls_at_once, 1, amplitudes, durations, options.accuracy)[0] if options.mode_II else None
-    )
+    at_once = _shortest(search.falls_at_once, 1, amplitudes, durations, options.accuracy)[0] if options.mode_II else None
     checked = _cross_check(search, amplitudes, durations) if options.cross_check else None
     result = Result("dem-domain")
     numbers = {
@@ -224,10 +227,7 @@ def _varied(options: DemDomain, base: JointValues) -> list[Curve]:
 
 def _springs(curve: Curve) -> dict[str, float | None]:
     """Stiffness and damping of a curve; None of rigid contacts."""
-    told: dict[str, float | None] = {
-        "beta_s": curve.values.beta,
-        "stiffness_Pa_per_m": float(curve.values.stiffness.max()),
-    }
+    told: dict[str, float | None] = {"beta_s": curve.values.beta, "stiffness_Pa_per_m": float(curve.values.stiffness.max())}
     told |= {f"damping_ratio_{name}": ratio for name, ratio in curve.values.ratios().items()}
     return dict.fromkeys(told) if curve.rigid else told
 
@@ -275,11 +275,7 @@ def _swings_once(run: dem.Run, count: int) -> bool:
 
 
 def _shortest(
-    fails: Callable[[list[Pulse]], list[bool]],
-    curves: int,
-    amplitudes: np.ndarray,
-    durations: np.ndarray,
-    accuracy: float,
+    fails: Callable[[list[Pulse]], list[bool]], curves: int, amplitudes: np.ndarray, durations: np.ndarray, accuracy: float
 ) -> np.ndarray:
     """Shortest failing duration (curves, amplitudes): the first failing one of those tried, refined by bisection.
 
@@ -299,10 +295,11 @@ def _shortest(
         open_rows = [r for r, failed in zip(open_rows, found, strict=True) if not failed]
     while True:
         wide = [
-            r for r in range(len(rows))
+            r
+            for r in range(len(rows))
             # as fine as numbers are where the middle is one of the ends
             if np.isfinite(high[r]) and high[r] - low[r] > accuracy and low[r] < 0.5 * (low[r] + high[r]) < high[r]
-        ]  # fmt: skip
+        ]
         if not wide:
             return high.reshape(curves, len(amplitudes))
         found = fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide])
@@ -315,9 +312,15 @@ def _shortest(
 
 
 def _beside(
-    context: Context, options: DemDomain, model: Model | SolidModel, amplitudes: np.ndarray, durations: np.ndarray, result: Result,
-    table: dict, units: dict,
-) -> dict[str, np.ndarray]:  # fmt: skip
+    context: Context,
+    options: DemDomain,
+    model: Model | SolidModel,
+    amplitudes: np.ndarray,
+    durations: np.ndarray,
+    result: Result,
+    table: dict,
+    units: dict,
+) -> dict[str, np.ndarray]:
     """Shortest failing durations of the four-hinge model at the same amplitudes, where the structure is an arch: their
     keys; arrays and columns go to `result` and `table`."""
     if not isinstance(model.assembly, ArchAssembly):
@@ -325,9 +328,7 @@ def _beside(
     arch = ArchModel(model.assembly, context.building.joints.restitution)
     try:
         tried = np.linspace(0.1 * durations[0], 1.5 * durations[-1], 120)
-        found = shortest_durations(
-            arch.body, options.pulse, amplitudes, tried, settling_time(arch), 1e-4, context.threads, context
-        )
+        found = shortest_durations(arch.body, options.pulse, amplitudes, tried, settling_time(arch), 1e-4, context.threads, context)
     except (BadGeometry, Refused, CoreError) as error:
         result.warnings.append(f"no four-hinge curves beside these: {error}")
         return {}

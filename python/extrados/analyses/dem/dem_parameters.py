@@ -17,13 +17,8 @@ def run(context: Context, options: DemParameters) -> Result:
     model = make_model(context, options)
     v = model.values
     result = Result("dem-parameters")
-    constants = {
-        name: impact_rules.damping_constant(float(v.impact.of(name).max())) for name in ("rotation", "corner", "edge")
-    }
-    each = {
-        name: impact_rules.damping_ratio(v.beta, v.impact.of(name), options.mass_damping)
-        for name in ("rotation", "corner", "edge")
-    }
+    constants = {name: impact_rules.damping_constant(float(v.impact.of(name).max())) for name in ("rotation", "corner", "edge")}
+    each = {name: impact_rules.damping_ratio(v.beta, v.impact.of(name), options.mass_damping) for name in ("rotation", "corner", "edge")}
     ratios = {name: float(of_joints.min()) for name, of_joints in each.items()}
     result.results = out.DemParameters(
         joint_stiffness_min_Pa_per_m=float(v.stiffness.min()),
@@ -49,9 +44,7 @@ def run(context: Context, options: DemParameters) -> Result:
     units |= {f"{name}_frequency": "rad/s" for name in ("rotation", "corner", "edge")}
     result.tables["dem_parameters"] = TableData(columns, units)
     result.arrays = {
-        name: Array(np.asarray(values), ("joint",), units.get(name, ""))
-        for name, values in columns.items()
-        if name != "joint"
+        name: Array(np.asarray(values), ("joint",), units.get(name, "")) for name, values in columns.items() if name != "joint"
     }
     result.answer = (
         f"Joints of {engineering(v.stiffness.min(), 'Pa/m')} to {engineering(v.stiffness.max(), 'Pa/m')}; impact frequencies up to {v.impact.rotation.max():.4g} "

@@ -36,9 +36,7 @@ def joint_values(building: Building, rigid: bool = False) -> JointValues:
     if beta is None:
         rule = "edge" if wanted else joints.damping
         beta = impact_rules.damping_constant(float(impact.of(rule).max()), joints.damping_ratio)
-    shear = (
-        np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
-    )
+    shear = np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
     values = JointValues(
         stiffness,
         shear,

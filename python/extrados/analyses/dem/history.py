@@ -52,9 +52,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
     def outcome_of(one: dem.Run) -> str:
         return Seen.of(model, one, options.floor is not None).fate(trial.collapse).outcome
 
-    chaos = probe_chaos(
-        context, shadow, trial.idle, found, model.rigid.count, trial.collapse, outcome_of, result, f"{name}-perturbed"
-    )
+    chaos = probe_chaos(context, shadow, trial.idle, found, model.rigid.count, trial.collapse, outcome_of, result, f"{name}-perturbed")
     numbers = _numbers(options, trial, seen, ground) | chaos | {"animation": options.animation}
     _store(options, seen, ground, result)
     if seen.slides:
@@ -64,14 +62,10 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
             f"{', '.join(who[:6])} slides off its footing: in `dem`, floor = {measures.ground_level(model):.4g} names a floor to slide on"
         )
     if found.residual > 0.01:
-        result.warnings.append(
-            f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged"
-        )
+        result.warnings.append(f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged")
     result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if numbers["still_moving"]:
-        result.warnings.append(
-            "the structure still moves at the end of the run: a longer end_time may give another outcome"
-        )
+        result.warnings.append("the structure still moves at the end of the run: a longer end_time may give another outcome")
     if trial.idle:
         result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
     if result.status == "ok":
@@ -97,9 +91,7 @@ def _numbers(options: Dem, trial: Trial, seen: Seen, ground: np.ndarray) -> dict
         "stopped_by": [model.rigid.names[k] for k in found.blamed],
         "stop_time_s": found.stop_time,
         "still_moving": found.reason == "end" and measures.moving(found, model),
-        "peak_rotation_rad": {
-            names[i]: float(seen.rotation[peak[i], i]) for i in measures.tracked(model, options, found)
-        },
+        "peak_rotation_rad": {names[i]: float(seen.rotation[peak[i], i]) for i in measures.tracked(model, options, found)},
         "collapse_displacement_m": trial.collapse.displacement,
         "peak_displacement_m": measures.peak_displacement(found, seen.farthest, trial.collapse.displacement),
         "peak_slip_m": seen.sliding.peak,
@@ -113,9 +105,7 @@ def _numbers(options: Dem, trial: Trial, seen: Seen, ground: np.ndarray) -> dict
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
         "energy_residual_ratio": found.residual,
         "restitution_measured": measures.restitution(found, seen.state, ground) if model.rigid.count == 1 else None,
-        "restitution_housner": float(BlockModel(model.assembly).housner[0])
-        if isinstance(model.assembly, BlockAssembly)
-        else None,
+        "restitution_housner": float(BlockModel(model.assembly).housner[0]) if isinstance(model.assembly, BlockAssembly) else None,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
         **tie_rows(model.ties, found),
@@ -152,25 +142,16 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
         **geometry_arrays(model.assembly),
         "time": Array(found.time, ("time",), "s", "output times"),
         "place": Array(
-            measures.block_places(model, found.place),
-            ("time", "block", "component"),
-            "m, m, rad",
-            "centroid and rotation of the blocks",
+            measures.block_places(model, found.place), ("time", "block", "component"), "m, m, rad", "centroid and rotation of the blocks"
         ),
         "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
         "rotation": Array(seen.rotation, ("time", "block"), "rad", "from the settled state, positive to +x"),
         "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
-        "hinge": Array(
-            seen.state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"
-        ),
+        "hinge": Array(seen.state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
         "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints"),
         "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends"),
         "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
-        **{
-            f"{name}_energy": Array(values, ("time",), "J")
-            for name, values in found.energy.items()
-            if name != "leapfrog"
-        },
+        **{f"{name}_energy": Array(values, ("time",), "J") for name, values in found.energy.items() if name != "leapfrog"},
         **tie_arrays(model.ties, found.tension),
         **section_arrays(model.ties),
         "ground": Array(ground, ("time",), "m/s^2"),

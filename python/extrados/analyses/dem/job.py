@@ -78,11 +78,7 @@ class Runs(Job[dem.Run]):
     tasks: list[Task]
 
     def one(
-        self,
-        k: int,
-        threads: int = 1,
-        state: np.ndarray | None = None,
-        watch: Callable[[dem.Model, float], None] | None = None,
+        self, k: int, threads: int = 1, state: np.ndarray | None = None, watch: Callable[[dem.Model, float], None] | None = None
     ) -> dem.Run:
         """A run, however it ends; from a state of it, and watched, where wanted (see core.dem.Model.run)."""
         task, bodies = self.tasks[k], self.bodies[self.tasks[k].bodies]
@@ -98,10 +94,7 @@ class Runs(Job[dem.Run]):
     def rows(self, found: dem.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""
         length = max(len(task.times) for task in self.tasks)
-        return {
-            **recorded(found, length),
-            "blamed": np.array([*found.blamed, -1, -1][:2]),
-        }
+        return {**recorded(found, length), "blamed": np.array([*found.blamed, -1, -1][:2])}
 
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
         """The run of row k, but for the forces in its contacts at the end."""
@@ -133,11 +126,7 @@ class SolidRuns(Job[dem3.Run]):
     tasks: list[SolidTask]
 
     def one(
-        self,
-        k: int,
-        threads: int = 1,
-        state: np.ndarray | None = None,
-        watch: Callable[[dem3.Model, float], None] | None = None,
+        self, k: int, threads: int = 1, state: np.ndarray | None = None, watch: Callable[[dem3.Model, float], None] | None = None
     ) -> dem3.Run:
         """A run, however it ends; from a state of it, and watched, where wanted (see core.dem3.Model.run)."""
         task = self.tasks[k]
@@ -242,13 +231,9 @@ def watched(context: Context, name: str, job: Any, text: str) -> Any:
 
 
 @overload
-def answered(
-    context: Context, name: str, job: Runs, text: str, tell: Callable[[int], None] | None = None
-) -> list[dem.Run]: ...
+def answered(context: Context, name: str, job: Runs, text: str, tell: Callable[[int], None] | None = None) -> list[dem.Run]: ...
 @overload
-def answered(
-    context: Context, name: str, job: SolidRuns, text: str, tell: Callable[[int], None] | None = None
-) -> list[dem3.Run]: ...
+def answered(context: Context, name: str, job: SolidRuns, text: str, tell: Callable[[int], None] | None = None) -> list[dem3.Run]: ...
 def answered(context: Context, name: str, job: Any, text: str, tell: Callable[[int], None] | None = None) -> list[Any]:
     """All runs of the job, kept by the batch layer; Unfinished where some are missing."""
     swept = sweep(context, name, job, len(job.tasks), text, slow=True, parallel=True, tell=tell).whole()

@@ -196,9 +196,15 @@ class Fate:
 
 
 def fate(
-    run: dem.Run | dem3.Run, collapse: Collapse, away: np.ndarray, turn: np.ndarray, drop: np.ndarray, unsupported: set[int],
-    rocks: bool, slides: bool,
-) -> Fate:  # fmt: skip
+    run: dem.Run | dem3.Run,
+    collapse: Collapse,
+    away: np.ndarray,
+    turn: np.ndarray,
+    drop: np.ndarray,
+    unsupported: set[int],
+    rocks: bool,
+    slides: bool,
+) -> Fate:
     """How a run ends, by the displacements [m], rotations [rad] and losses of height [m] of its bodies (time, body).
 
     unsupported: bodies that slid off their footings; rocks: some joint opened; slides: some joint slid.
@@ -320,9 +326,11 @@ def snapshot_times(options: Dem, run: dem_run.FoundRun) -> np.ndarray:
 def hinge_table(model: Model, time: np.ndarray, state: np.ndarray) -> TableData:
     """Changes of the hinges over time."""
     words = {
-        CLOSED: "closed", HINGED_FIRST: "hinge at the first end (intrados)",
-        HINGED_SECOND: "hinge at the second end (extrados)", APART: "open",
-    }  # fmt: skip
+        CLOSED: "closed",
+        HINGED_FIRST: "hinge at the first end (intrados)",
+        HINGED_SECOND: "hinge at the second end (extrados)",
+        APART: "open",
+    }
     if not len(time):
         return TableData({"time": np.zeros(0), "joint": [], "state": []}, {"time": "s"})
     before = np.vstack([np.full_like(state[:1], CLOSED), state[:-1]])

@@ -39,9 +39,13 @@ class JointValues:
         root = np.sqrt(stiffness)
         impact = impact_rules.Impact(self.impact.corner * root, self.impact.edge * root, self.impact.rotation * root)
         return replace(
-            self, stiffness=self.stiffness * stiffness, shear_stiffness=self.shear_stiffness * stiffness, beta=self.beta * damping, impact=impact,
+            self,
+            stiffness=self.stiffness * stiffness,
+            shear_stiffness=self.shear_stiffness * stiffness,
+            beta=self.beta * damping,
+            impact=impact,
             friction=self.friction if friction is None else np.full_like(self.friction, friction),
-        )  # fmt: skip
+        )
 
     @property
     def settle_damping(self) -> float:
@@ -50,10 +54,7 @@ class JointValues:
 
     def ratios(self) -> dict[str, float]:
         """Least fraction of critical damping over the joints at each impact frequency."""
-        return {
-            name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min())
-            for name in ("rotation", "corner", "edge")
-        }
+        return {name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min()) for name in ("rotation", "corner", "edge")}
 
 
 @dataclass(frozen=True)
@@ -80,14 +81,7 @@ class Model:
         v = values or self.values
 
         def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
-            return Law(
-                float(k),
-                float(shear),
-                float(friction),
-                cohesion=float(cohesion),
-                tension=float(tension),
-                damping=v.beta,
-            )
+            return Law(float(k), float(shear), float(friction), cohesion=float(cohesion), tension=float(tension), damping=v.beta)
 
         laws = [law(np.median(v.stiffness), np.median(v.shear_stiffness), np.median(v.friction))]
         numbers: dict[Law, int] = {}
@@ -101,9 +95,7 @@ class Model:
                 laws.append(one)
             joints[pair] = numbers[one]
         r = self.rigid
-        return dem.Bodies(
-            r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core
-        )
+        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core)
 
 
 class Falls(Refused):
@@ -114,9 +106,7 @@ class Restless(Refused):
     """The structure does not come to rest under its own weight."""
 
 
-def checked(
-    run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")
-) -> Found:
+def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")) -> Found:
     """The run where it ended in one of the ways of `keep`; Refused says what stopped it and which block, Falls where it
     fell before it was shaken, Cancelled where it was interrupted before."""
     if run.interrupted and not len(run.time):
@@ -152,9 +142,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
         return found
     found += doubts_of_springs(values or model.values)
     if options.mass_damping > 0.0:
-        found.append(
-            "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
-        )
+        found.append("mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe")
     return found
 
 

@@ -21,7 +21,7 @@ def chaos_of(outcome: str, other: str, grown: float) -> dict[str, Any]:
     chaotic = grown > CHAOTIC or turns > 0.0
     told = chaos_told(
         grown, turns, "the displacement of a block", "the one that counts as collapse", "repeat it under other factors on the motion"
-    )  # fmt: skip
+    )
     return {
         "decided_by_last_digits": chaotic,
         "perturbation_growth": grown,
@@ -31,19 +31,21 @@ def chaos_of(outcome: str, other: str, grown: float) -> dict[str, Any]:
 
 
 def probe_chaos(
-    context: Context, job: Runs | SolidRuns | None, idle: bool, found: dem.Run | dem3.Run, count: int, collapse: measures.Collapse,
-    outcome_of: Callable[[Any], str], result: Result, name: str = "dem-perturbed",
-) -> dict[str, Any]:  # fmt: skip
+    context: Context,
+    job: Runs | SolidRuns | None,
+    idle: bool,
+    found: dem.Run | dem3.Run,
+    count: int,
+    collapse: measures.Collapse,
+    outcome_of: Callable[[Any], str],
+    result: Result,
+    name: str = "dem-perturbed",
+) -> dict[str, Any]:
     """Results on chaos of a run of `count` bodies. job: the run under the motion times FACTOR, None where it is not wanted; idle:
     nothing moves the building; outcome_of: of a run; name: of what is kept of it. An interruption is told in `result`."""
     if idle:
         return chaos_of(outcome_of(found), outcome_of(found), 0.0)
-    unknown: dict[str, Any] = {
-        "decided_by_last_digits": False,
-        "perturbation_growth": None,
-        "perturbed_outcome": None,
-        "violated": [],
-    }
+    unknown: dict[str, Any] = {"decided_by_last_digits": False, "perturbation_growth": None, "perturbed_outcome": None, "violated": []}
     if job is None or result.status != "ok":
         return unknown
     try:

@@ -35,9 +35,17 @@ class Seen:
         a, body = model.assembly, model.rigid.body_of_block
         off = np.zeros(state.shape, dtype=bool) if floor else measures.off_footing(a.a, a.b, state, slip, a.length)
         return cls(
-            model, run, gap_p, gap_q, slip, state, off, -(run.place[:, body, 2] - run.settled[body, 2]),
-            measures.movements(model, run), measures.Slip.of(state, slip, a.length),
-        )  # fmt: skip
+            model,
+            run,
+            gap_p,
+            gap_q,
+            slip,
+            state,
+            off,
+            -(run.place[:, body, 2] - run.settled[body, 2]),
+            measures.movements(model, run),
+            measures.Slip.of(state, slip, a.length),
+        )
 
     @property
     def farthest(self) -> float:

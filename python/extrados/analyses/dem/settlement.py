@@ -63,9 +63,7 @@ def closed_settlement(model: Model, values: JointValues) -> tuple[float, float]:
     return (float(far[0]), float(far[1])) if np.isfinite(far).all() else (np.nan, np.nan)
 
 
-def _apart(
-    axis: np.ndarray, point: np.ndarray, one: np.ndarray, two: np.ndarray, centroid: np.ndarray
-) -> sparse.csr_matrix:
+def _apart(axis: np.ndarray, point: np.ndarray, one: np.ndarray, two: np.ndarray, centroid: np.ndarray) -> sparse.csr_matrix:
     """How body `one` moves away from body `two` at points, along axes: (joints, 3 bodies)."""
     rows = np.repeat(np.arange(len(one)), 6).reshape(-1, 6)
     columns = np.hstack([3 * one[:, None] + np.arange(3), 3 * two[:, None] + np.arange(3)])

@@ -76,22 +76,15 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     _store(options, seen, ground, result)
     if across is not None:
         result.arrays["ground_across"] = Array(
-            Motion("", across).sample(found.time),
-            ("time",),
-            "m/s^2",
-            "acceleration of the ground at 90 degrees to the direction",
+            Motion("", across).sample(found.time), ("time",), "m/s^2", "acceleration of the ground at 90 degrees to the direction"
         )
     if seen.slides:
         result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if found.residual > 0.01:
-        result.warnings.append(
-            f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged"
-        )
+        result.warnings.append(f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged")
     result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if r.still_moving:
-        result.warnings.append(
-            "the structure still moves at the end of the run: a longer end_time may give another outcome"
-        )
+        result.warnings.append("the structure still moves at the end of the run: a longer end_time may give another outcome")
     if moved is None:
         result.warnings.append("nothing moves it: add [motion]")
     result.answer = solid_answer(r, moved is None)
@@ -125,9 +118,7 @@ def _numbers(options: Dem, seen: SolidsSeen) -> dict[str, Any]:
         "dowels_out": int(found.dowel_out.sum()),
         "peak_rotation_rad": {names[i]: float(angle[i]) for i in solid_measures.followed(seen, options.track)},
         "collapse_displacement_m": collapse.displacement,
-        "peak_displacement_m": measures.peak_displacement(
-            found, float(seen.away.max(initial=0.0)), collapse.displacement
-        ),
+        "peak_displacement_m": measures.peak_displacement(found, float(seen.away.max(initial=0.0)), collapse.displacement),
         "final_displacement_m": float(apart[-1].max(initial=0.0)) if len(found.time) else 0.0,
         "peak_opening_m": float(np.where(seen.state == out.APART, 0.0, seen.opening).max(initial=0.0)),
         "peak_slip_m": seen.sliding.peak,
@@ -159,24 +150,26 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
     return scene_arrays(model.assembly) | {
         "time": Array(run.time, ("time",), "s", "output times"),
         "pose": Array(
-            solid_measures.poses(model, run), ("time", "block", "pose"), "m, m, m, rad, rad, rad",
+            solid_measures.poses(model, run),
+            ("time", "block", "pose"),
+            "m, m, m, rad, rad, rad",
             "shifts of the centroids and rotation vectors, from where the stones were drawn",
         ),
         "rate": Array(
-            run.rate[:, : model.count], ("time", "block", "motion"), "m/s, m/s, m/s, rad/s, rad/s, rad/s",
+            run.rate[:, : model.count],
+            ("time", "block", "motion"),
+            "m/s, m/s, m/s, rad/s, rad/s, rad/s",
             "velocities of the centroids and spins",
         ),
         "snapshot_time": Array(shown, ("snapshot",), "s"),
-    }  # fmt: skip
+    }
 
 
 def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -> None:
     """Arrays, tables and files of the run into `result`; ground: its acceleration along the direction (time) [m/s^2]."""
     model, found, names = seen.model, seen.run, seen.model.assembly.block_names
     tracked = solid_measures.followed(seen, options.track)
-    energies = {
-        f"{name}_energy": values for name, values in found.energy.items() if name not in ("leapfrog", "mass_damping")
-    }
+    energies = {f"{name}_energy": values for name, values in found.energy.items() if name not in ("leapfrog", "mass_damping")}
     shift = found.place[:, : model.count] - found.settled[: model.count]
     columns = {"time": found.time}
     for i in tracked:
@@ -184,9 +177,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         columns[f"rotation of {names[i]}"] = seen.angle[:, i]
     units = {key: "rad" if key.startswith("rotation") else "m" for key in columns} | {"time": "s"}
     forces = tie_columns(model.ties, found.tension)
-    result.tables["dem"] = TableData(
-        columns | energies | forces, units | dict.fromkeys(energies, "J") | dict.fromkeys(forces, "N")
-    )
+    result.tables["dem"] = TableData(columns | energies | forces, units | dict.fromkeys(energies, "J") | dict.fromkeys(forces, "N"))
     result.arrays = {
         **run_arrays(model, found, measures.snapshot_times(options, found)),
         "shift": Array(shift, ("time", "block", "axis3"), "m", "of the centroids, from the settled state"),
@@ -198,7 +189,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         **{name: Array(values, ("time",), "J") for name, values in energies.items()},
         **tie_arrays(model.ties, found.tension),
         "ground": Array(ground, ("time",), "m/s^2", "acceleration of the ground along the direction"),
-    }  # fmt: skip
+    }
     if len(found.time):
         every = np.arange(0, len(found.time), max(1, int(np.ceil(len(found.time) / MOST_FRAMES))))
         one, poses, times = model.assembly, solid_measures.poses(model, found)[every], found.time[every]

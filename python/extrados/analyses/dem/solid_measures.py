@@ -5,17 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from extrados.analyses.dem.measures import (
-    MOST_TRACKED,
-    OPEN,
-    SLIDES,
-    Collapse,
-    Fate,
-    Slip,
-    blocks_off,
-    fate,
-    off_footing,
-)
+from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, SLIDES, Collapse, Fate, Slip, blocks_off, fate, off_footing
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.core import dem3
 from extrados.model.geometry.solids.contacts import GROUND

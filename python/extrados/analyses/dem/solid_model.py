@@ -40,10 +40,7 @@ class SolidValues:
 
     def ratios(self) -> dict[str, float]:
         """Least fraction of critical damping over the contacts at each frequency of impact."""
-        return {
-            name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min())
-            for name in ("rotation", "corner", "edge")
-        }
+        return {name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min()) for name in ("rotation", "corner", "edge")}
 
 
 @dataclass(frozen=True)
@@ -94,11 +91,17 @@ class SolidModel:
         middle = [p.vertices.mean(axis=0) for p in below]
         count = len(below)
         return dem3.Solids(
-            np.concatenate([one.centroid, np.reshape(middle, (-1, 3))]), np.concatenate([one.mass, np.zeros(count)]),
-            np.concatenate([one.inertia, np.tile(np.eye(3), (count, 1, 1))]), [p.vertices for p in parts],
-            [p.faces for p in parts], [*one.owner.tolist(), *range(self.count, self.count + count)], laws, joints,
-            self._dowels(), self.ties.core,
-        )  # fmt: skip
+            np.concatenate([one.centroid, np.reshape(middle, (-1, 3))]),
+            np.concatenate([one.mass, np.zeros(count)]),
+            np.concatenate([one.inertia, np.tile(np.eye(3), (count, 1, 1))]),
+            [p.vertices for p in parts],
+            [p.faces for p in parts],
+            [*one.owner.tolist(), *range(self.count, self.count + count)],
+            laws,
+            joints,
+            self._dowels(),
+            self.ties.core,
+        )
 
     def _dowels(self) -> dem3.Dowels | None:
         """The keys, each as stiff as the shear springs of all contacts of the two stones that it holds together."""
@@ -116,12 +119,8 @@ class SolidModel:
         return dem3.Dowels(stands, one.keys.point, axis, np.array(stiffness), one.keys.strength, one.keys.reach, v.beta)
 
 
-def _law(
-    values: SolidValues, stiffness: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0
-) -> Law:
-    stiffness, shear, friction, cohesion, tension = (
-        float(f"{x:.12g}") for x in (stiffness, shear, friction, cohesion, tension)
-    )
+def _law(values: SolidValues, stiffness: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
+    stiffness, shear, friction, cohesion, tension = (float(f"{x:.12g}") for x in (stiffness, shear, friction, cohesion, tension))
     return Law(stiffness, shear, friction, cohesion=cohesion, tension=tension, damping=values.beta)
 
 
@@ -143,7 +142,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),
-    ]  # fmt: skip
+    ]
     if isinstance(options, Dem):
         asked += [
             ('base = "moving"', options.base == "moving", ("analysis", "base")),
@@ -155,10 +154,8 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked += [
             ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
-        ]  # fmt: skip
-    return [
-        (f"dem of solids cannot take {what} into account: leave it out", key) for what, there, key in asked if there
-    ]
+        ]
+    return [(f"dem of solids cannot take {what} into account: leave it out", key) for what, there, key in asked if there]
 
 
 def refuse_mortar(building: Building, assembly: SolidAssembly | None = None) -> None:
@@ -174,17 +171,15 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
         if (most := max(map(len, part.faces))) > dem3.MOST_CORNERS:
             raise Refused(
                 f"{assembly.block_names[owner]} has a face of {most} corners: dem of solids takes up to {dem3.MOST_CORNERS}; cut it, or "
-                "draw it with fewer", ("structure",),
-            )  # fmt: skip
+                "draw it with fewer",
+                ("structure",),
+            )
     if rigid:
         refuse_mortar(building, assembly)
         if assembly.keys is not None:
             raise Refused(f"{RIGID} have no dowels", ("structure", "dowels"))
     if len(assembly.fill):
-        raise Refused(
-            "fill: `dem` of solids does not consider weights that rest on the blocks; remove the fill",
-            ("structure", "fill"),
-        )
+        raise Refused("fill: `dem` of solids does not consider weights that rest on the blocks; remove the fill", ("structure", "fill"))
 
 
 def solid_values(building: Building, assembly: SolidAssembly) -> SolidValues:
@@ -197,12 +192,8 @@ def solid_values(building: Building, assembly: SolidAssembly) -> SolidValues:
     beta = joints.beta
     if beta is None:
         beta = impact_rules.damping_constant(float(impact.of(joints.damping).max()), joints.damping_ratio)
-    shear = (
-        np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
-    )
-    friction, cohesion, tension = (
-        building.joint_property(name, assembly) for name in ("friction", "cohesion", "tension")
-    )
+    shear = np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
+    friction, cohesion, tension = (building.joint_property(name, assembly) for name in ("friction", "cohesion", "tension"))
     return SolidValues(stiffness, shear, friction, np.nan_to_num(cohesion), np.nan_to_num(tension), beta, impact)
 
 

@@ -24,15 +24,21 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     if without := unused(context, options):
         context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
     base = replace(
-        core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
-        output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
-        collapse_turn=0.0, collapse_drop=0.0,  # under a constant push a block that slides slides on
-    )  # fmt: skip
+        core_options(context, options, model),
+        end_time=RAMP + dem_model.settle_time(model),
+        stop_at_rest=False,
+        output_step=0.05,
+        collapse=options.collapse_displacement or 0.05 * model.size,
+        collapse_turn=0.0,
+        collapse_drop=0.0,  # under a constant push a block that slides slides on
+    )
     bodies = model.bodies()
     (collapse, last), (back, back_run) = capacities(
-        context, options, lambda asked: SolidRuns(bodies, [SolidTask(base, pushed(a, base.end_time)) for a in asked]),
+        context,
+        options,
+        lambda asked: SolidRuns(bodies, [SolidTask(base, pushed(a, base.end_time)) for a in asked]),
         lambda run: dem_model.checked(run, model),
-    )  # fmt: skip
+    )
     effort = last.effort.with_(back_run.effort)
     r = out.SolidDemTilt(
         test="tilt",
@@ -47,9 +53,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         opening_contacts=_openings(model, last),
         opening_contacts_opposite=_openings(model, back_run),
         interval=len(model.assembly.a) > model.count
-        and any(
-            slides(solid_measures.contacts(model, one)[1][_begun(model, one)], model.size) for one in (last, back_run)
-        ),
+        and any(slides(solid_measures.contacts(model, one)[1][_begun(model, one)], model.size) for one in (last, back_run)),
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,

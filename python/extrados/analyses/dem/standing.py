@@ -21,9 +21,7 @@ from extrados.model.errors import WHOLE
 from extrados.results.model import Result
 from extrados.views.building import Building
 
-WEDGED = (
-    "limit analysis does not prove collapse: friction may hold a wedged block by forces that elements do not start with"
-)
+WEDGED = "limit analysis does not prove collapse: friction may hold a wedged block by forces that elements do not start with"
 JAMMED = (
     "on rigid contacts it is in equilibrium by forces that self-weight does not cause, as friction holds a wedged block; "
     "on springs, which start without such forces,"
@@ -106,10 +104,7 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     try:
         checked(found, model)
     except Restless:
-        return (
-            "",
-            f"on springs it does not come to rest in {SETTLING} steps: equilibrium by jamming alone is not excluded",
-        )
+        return ("", f"on springs it does not come to rest in {SETTLING} steps: equilibrium by jamming alone is not excluded")
     except Falls:
         answer = "Its initial equilibrium may be by jamming alone: settled on springs it collapses."
         return answer, f"{JAMMED} {model.body_names[found.blamed[0]]} falls"

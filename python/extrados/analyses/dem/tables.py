@@ -18,9 +18,19 @@ if TYPE_CHECKING:
 SPRINGS = ("material.young", "joints.cohesion", "joints.tension", "joints.normal_stiffness", "joints.damping")
 #: What says how stiff and damped springs are
 OF_SPRINGS = {"material.young"} | {
-    f"joints.{name}" for name in ("normal_stiffness", "stiffness_rule", "shear_stiffness", "shear_ratio", "damping",
-                                  "damping_ratio", "beta", "restitution", "energy_ratio")
-}  # fmt: skip
+    f"joints.{name}"
+    for name in (
+        "normal_stiffness",
+        "stiffness_rule",
+        "shear_stiffness",
+        "shear_ratio",
+        "damping",
+        "damping_ratio",
+        "beta",
+        "restitution",
+        "energy_ratio",
+    )
+}
 Positive = Annotated[float, Field(gt=0.0)]
 
 
@@ -44,35 +54,49 @@ class DemTable(BuildingAnalysis):
     bears: ClassVar = ("[[ties]]",)
 
     uses: ClassVar = (
-        "material.density", "material.young", "joints.friction", "joints.cohesion", "joints.tension",
-        "joints.normal_stiffness", "joints.damping",
-    )  # fmt: skip
-    beside: ClassVar = (
-        "joints.shear_stiffness", "joints.shear_ratio", "joints.stiffness_rule", "joints.damping_ratio", "joints.beta",
-        "joints.restitution", "joints.energy_ratio", "joints.worn_corners", "supports.stiffness", "initial.rotation_ratio",
-        "initial.movements",
-    )  # fmt: skip
-    solver: Literal["compliant", "nonsmooth"] = key(
-        "compliant", "springs and dashpots at the joints, or rigid contacts that neither overlap nor pull (Moreau 1988, "
-        "Jean 1999): no stiffness, no damping, large time steps; each checks the other",
-    )  # fmt: skip
-    rebound: float = key(
-        0.0, "nonsmooth: Newton's coefficient of restitution at each contact point; 0 is the loss of Housner's block",
-        ge=0, le=1,
-    )  # fmt: skip
-    mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking", ge=0, le=1e4)
-    merge: Literal["none", "three-bars"] = key(
-        "none", "glue the voussoirs of an arch into the three links of its four-hinge mechanism"
+        "material.density",
+        "material.young",
+        "joints.friction",
+        "joints.cohesion",
+        "joints.tension",
+        "joints.normal_stiffness",
+        "joints.damping",
     )
+    beside: ClassVar = (
+        "joints.shear_stiffness",
+        "joints.shear_ratio",
+        "joints.stiffness_rule",
+        "joints.damping_ratio",
+        "joints.beta",
+        "joints.restitution",
+        "joints.energy_ratio",
+        "joints.worn_corners",
+        "supports.stiffness",
+        "initial.rotation_ratio",
+        "initial.movements",
+    )
+    solver: Literal["compliant", "nonsmooth"] = key(
+        "compliant",
+        "springs and dashpots at the joints, or rigid contacts that neither overlap nor pull (Moreau 1988, "
+        "Jean 1999): no stiffness, no damping, large time steps; each checks the other",
+    )
+    rebound: float = key(
+        0.0, "nonsmooth: Newton's coefficient of restitution at each contact point; 0 is the loss of Housner's block", ge=0, le=1
+    )
+    mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking", ge=0, le=1e4)
+    merge: Literal["none", "three-bars"] = key("none", "glue the voussoirs of an arch into the three links of its four-hinge mechanism")
     fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
     time_step: Time | None = key(
-        None, "instead of the fraction of the critical step, or nonsmooth of a 500th of the time of a free fall by the size "
-        "of the smallest block", gt=0,
-    )  # fmt: skip
+        None,
+        "instead of the fraction of the critical step, or nonsmooth of a 500th of the time of a free fall by the size "
+        "of the smallest block",
+        gt=0,
+    )
     floor: Length | None = key(
-        None, "height of a level floor on which detached blocks land and slide; default none, but a footing a "
+        None,
+        "height of a level floor on which detached blocks land and slide; default none, but a footing a "
         "quarter wider on both sides under each joint to the ground",
-    )  # fmt: skip
+    )
 
     @property
     def rigid(self) -> bool:
@@ -105,9 +129,12 @@ class SpatialDem(DemTable):
 
     solid: ClassVar = True
     direction: Angle | None = key(
-        None, "direction in plan of the horizontal motion or load, from +x to +y; with it, and for structures without a plane "
-        "section, the blocks are solids", ge=-360, le=360,
-    )  # fmt: skip
+        None,
+        "direction in plan of the horizontal motion or load, from +x to +y; with it, and for structures without a plane "
+        "section, the blocks are solids",
+        ge=-360,
+        le=360,
+    )
 
     @property
     def way(self) -> tuple[float, float, float]:
@@ -122,25 +149,25 @@ class Dem(SpatialDem, Animated):
     starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
     quasi_static: bool = key(
-        False, "nonsmooth: without inertia, so that moving supports are followed through large displacements until collapse",
-    )  # fmt: skip
+        False, "nonsmooth: without inertia, so that moving supports are followed through large displacements until collapse"
+    )
     test: Literal["motion", "tilt"] = key("motion", "follow the motion, or find the constant acceleration of collapse")
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
     base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
     collapse_displacement: Length | None = key(
-        None, "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, also if it "
-        "slides; default a fifth of the structure's size, in a tilt test a twentieth", gt=0,
-    )  # fmt: skip
+        None,
+        "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, also if it "
+        "slides; default a fifth of the structure's size, in a tilt test a twentieth",
+        gt=0,
+    )
     domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
     stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
     perturbed: bool = key(
-        True, "also follow the motion times 1 + 1e-6, to find whether the response is chaotic; takes as long as the run itself",
-    )  # fmt: skip
-    track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
-    snapshot_times: list[Time] = key(
-        [], "draw the structure at these times; default six characteristic ones", max_length=24
+        True, "also follow the motion times 1 + 1e-6, to find whether the response is chaotic; takes as long as the run itself"
     )
+    track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
+    snapshot_times: list[Time] = key([], "draw the structure at these times; default six characteristic ones", max_length=24)
     vtk: bool = key(False, "write VTU files and a PVD collection")
     vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
     vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)
@@ -160,30 +187,31 @@ class DemDomain(SpatialDem):
     starter_structure: ClassVar = "block"
     starter: ClassVar = {"amplitudes": '["0.5 g", "0.7 g"]', "durations": "[0.2, 0.4, 0.8]", "accuracy": "0.02"}
     pulse: Literal["step", "sine"] = key("step", "step pulse of duration t_p, or one sine of period T_p")
-    amplitudes: list[Acceleration] = key(
-        about="amplitudes at which the shortest failing duration is sought", min_length=1, max_length=200
-    )
+    amplitudes: list[Acceleration] = key(about="amplitudes at which the shortest failing duration is sought", min_length=1, max_length=200)
     durations: list[Time] = key(about="durations that are tried first, ascending", min_length=2, max_length=500)
     accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
     settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
     collapse_displacement: Length | None = key(
-        None, "displacement of a block that counts as collapse, if the block also rotates or loses height; default a fifth of the "
-        "structure's size", gt=0,
-    )  # fmt: skip
+        None,
+        "displacement of a block that counts as collapse, if the block also rotates or loses height; default a fifth of the "
+        "structure's size",
+        gt=0,
+    )
     mode_II: bool = key(
-        False, "also the shortest pulses that cause collapse in the first swing, before any impact; with merge = "
-        '"three-bars" beside the four-hinge curve of that name', source="thesis Fig. 7-11",
-    )  # fmt: skip
+        False,
+        "also the shortest pulses that cause collapse in the first swing, before any impact; with merge = "
+        '"three-bars" beside the four-hinge curve of that name',
+        source="thesis Fig. 7-11",
+    )
     cross_check: bool = key(
-        False, "also by the other solver: its curve, and the share of the cells of all amplitudes and durations in which both "
+        False,
+        "also by the other solver: its curve, and the share of the cells of all amplitudes and durations in which both "
         "have the same outcome",
-    )  # fmt: skip
+    )
     vary_damping: list[Positive] = key([], "further curves with beta times these factors", max_length=20)
     vary_stiffness: list[Positive] = key([], "further curves with joint stiffnesses times these factors", max_length=20)
     vary_friction: list[Positive] = key(
-        [],
-        "further curves with these coefficients of friction at all joints, those of [[joints.types]] too",
-        max_length=20,
+        [], "further curves with these coefficients of friction at all joints, those of [[joints.types]] too", max_length=20
     )
 
     @model_validator(mode="after")

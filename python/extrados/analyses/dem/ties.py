@@ -32,8 +32,7 @@ def refuse_rigid_ties(building: Building) -> None:
     for k, tie in enumerate(building.ties):
         if tie.stiffness is None:
             raise Refused(
-                f"{tie.name}: discrete elements need the stiffness EA/L of a tie (force per change of length)",
-                ("ties", k, "stiffness"),
+                f"{tie.name}: discrete elements need the stiffness EA/L of a tie (force per change of length)", ("ties", k, "stiffness")
             )
 
 
@@ -41,9 +40,7 @@ def section_strands(building: Building) -> tuple[Strand, ...]:
     """The ties of a plane section as lines of two points [x, y, 0]."""
     anchored = building.anchored()
     return tuple(
-        Strand(
-            k, np.column_stack([point, np.zeros(2)]), ((int(block[0]),), (int(block[1]),)), False, tie.least, tie.most
-        )
+        Strand(k, np.column_stack([point, np.zeros(2)]), ((int(block[0]),), (int(block[1]),)), False, tie.least, tie.most)
         for k, (tie, block, point) in enumerate(zip(building.ties, anchored.block, anchored.point, strict=True))
     )
 
@@ -65,9 +62,7 @@ def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block:
     ]
     point, body, place = zip(*anchors, strict=True)
     core = Ties(
-        stiffness=np.array(
-            [(t.stiffness or 0.0) * whole[s.tie] / s.length for t, s in zip(tables, strands, strict=True)]
-        ),
+        stiffness=np.array([(t.stiffness or 0.0) * whole[s.tie] / s.length for t, s in zip(tables, strands, strict=True)]),
         prestress=np.array([t.prestress for t in tables]),
         least=np.array([s.low for s in strands]),
         most=np.array([s.high for s in strands]),
@@ -89,15 +84,7 @@ def tie_rows(ties: ElementTies, run: FoundRun) -> dict[str, list[TieRun]]:
         lowest, highest, plastic = run.extreme[k].tolist()
         peak = highest if highest >= -lowest else lowest
         state: Literal["slack", "elastic", "yielded"] = "yielded" if plastic else "elastic" if peak else "slack"
-        found.append(
-            TieRun(
-                name=name,
-                peak_force_N=peak,
-                end_force_N=float(run.tension[-1, k]),
-                plastic_elongation_m=plastic,
-                state=state,
-            )
-        )
+        found.append(TieRun(name=name, peak_force_N=peak, end_force_N=float(run.tension[-1, k]), plastic_elongation_m=plastic, state=state))
     return {"ties": found}
 
 

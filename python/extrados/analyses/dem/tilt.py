@@ -32,9 +32,20 @@ SENSES = (1.0, -1.0)  # pushed to +x, pushed to -x
 GOES, TAKES_PART = 0.005, 0.1
 #: Keys of the deck that a tilt test does not look at.
 NOT_IN_TILT = (
-    "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "animation_speed", "vtk",
-    "vary_damping", "vary_stiffness", "vary_friction", "find_friction", "slip", "perturbed",
-)  # fmt: skip
+    "end_time",
+    "output_step",
+    "stop_at_collapse",
+    "snapshot_times",
+    "animation",
+    "animation_speed",
+    "vtk",
+    "vary_damping",
+    "vary_stiffness",
+    "vary_friction",
+    "find_friction",
+    "slip",
+    "perturbed",
+)
 
 
 def run(context: Context, options: Dem, model: Model) -> Result:
@@ -42,15 +53,22 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     if without := unused(context, options):
         context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
     base = replace(
-        core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
-        settlement=farthest_settlement(model, rigid=options.rigid), output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
-        collapse_turn=0.0, collapse_drop=0.0,  # under a constant push a block that slides slides on
-    )  # fmt: skip
+        core_options(context, options, model),
+        end_time=RAMP + dem_model.settle_time(model),
+        stop_at_rest=False,
+        settlement=farthest_settlement(model, rigid=options.rigid),
+        output_step=0.05,
+        collapse=options.collapse_displacement or 0.05 * model.size,
+        collapse_turn=0.0,
+        collapse_drop=0.0,  # under a constant push a block that slides slides on
+    )
     bodies = [model.bodies()]
     (collapse, last), (back, back_run) = capacities(
-        context, options, lambda asked: Runs(bodies, [Task(0, base, pushed(a, base.end_time)) for a in asked]),
+        context,
+        options,
+        lambda asked: Runs(bodies, [Task(0, base, pushed(a, base.end_time)) for a in asked]),
         lambda run: dem_model.checked(run, model),
-    )  # fmt: skip
+    )
     state, slip, at, found_hinges = _hinged(model, last)
     _, slip_back, at_back, back_hinges = _hinged(model, back_run)
     body = model.rigid.body_of_block
@@ -67,9 +85,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         load_direction="+x",
         hinges=found_hinges,
         hinges_opposite=back_hinges,
-        peak_rotation_rad={
-            model.assembly.block_names[i]: float(rotation[peak[i], i]) for i in measures.tracked(model, options, last)
-        },
+        peak_rotation_rad={model.assembly.block_names[i]: float(rotation[peak[i], i]) for i in measures.tracked(model, options, last)},
         peak_slip_m=float(np.nanmax(np.abs(slip[at]), initial=0.0)),
         interval=sum(pair is not None for pair in model.rigid.joints) > model.rigid.count
         and (slides(slip[at], model.size) or slides(slip_back[at_back], model.size)),
@@ -105,8 +121,9 @@ def pushed(acceleration: float, end: float) -> Ground:
     """The ground accelerates to -x, which pushes the structure to +x [m/s^2], until `end` [s]."""
     return Ground(
         breaks=np.array([0.0, RAMP, end + 1.0]),
-        linear=np.array([[[0.0, -acceleration / RAMP]], [[-acceleration, 0.0]]]), harmonic=np.zeros((2, 1, 0, 4)),
-    )  # fmt: skip
+        linear=np.array([[[0.0, -acceleration / RAMP]], [[-acceleration, 0.0]]]),
+        harmonic=np.zeros((2, 1, 0, 4)),
+    )
 
 
 def unused(context: Context, options: Dem) -> list[str]:
@@ -121,9 +138,7 @@ def unused(context: Context, options: Dem) -> list[str]:
     return found
 
 
-def capacities(
-    context: Context, options: Dem, job: Callable[[list[float]], Any], checked: Callable[[Any], Any]
-) -> list[tuple[float, Any]]:
+def capacities(context: Context, options: Dem, job: Callable[[list[float]], Any], checked: Callable[[Any], Any]) -> list[tuple[float, Any]]:
     """For each sense the acceleration [g] that brings it down and the last run that fell; both are bisected at once.
 
     job: runs under accelerations [m/s^2]; checked: the run, or Refused where it is none."""
@@ -148,9 +163,7 @@ def capacities(
             )
     while True:
         # as fine as numbers are where the middle is one of the ends
-        wide = [
-            k for k in (0, 1) if high[k] - low[k] > wanted and low[k] < 0.5 * (low[k] + high[k]) < high[k]
-        ]  # fmt: skip
+        wide = [k for k in (0, 1) if high[k] - low[k] > wanted and low[k] < 0.5 * (low[k] + high[k]) < high[k]]
         if not wide:
             return [(0.5 * (low[k] + high[k]) / GRAVITY, last[k]) for k in (0, 1)]
         middle = {k: 0.5 * (low[k] + high[k]) for k in wide}
@@ -170,5 +183,5 @@ def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, li
     rows = [
         NamedHinge(joint=j, name=model.assembly.joint_names[j], side="intrados" if state[at, j] == HINGED_FIRST else "extrados")
         for j in np.flatnonzero(np.isin(state[at], (HINGED_FIRST, HINGED_SECOND))).tolist()
-    ]  # fmt: skip
+    ]
     return state, slip, at, rows

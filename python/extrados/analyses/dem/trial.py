@@ -132,9 +132,14 @@ class Trial:
         moves = tuple(replace(m, dx=factor * m.dx, dy=factor * m.dy, turn=factor * m.turn) for m in self.moves)
         tasks = [
             Task(
-                k, replace(options, settlement=farthest_settlement(self.model, v, options.rigid), settle_damping=v.settle_damping),
-                self.ground, factor, shift, rate, moves,
+                k,
+                replace(options, settlement=farthest_settlement(self.model, v, options.rigid), settle_damping=v.settle_damping),
+                self.ground,
+                factor,
+                shift,
+                rate,
+                moves,
             )
             for k, v in enumerate(values)
-        ]  # fmt: skip
+        ]
         return Runs([self.model.bodies(v) for v in values], tasks)

@@ -33,8 +33,12 @@ def vary(context: Context, options: Dem, trial: Trial, result: Result) -> dict[s
         ratio = v.ratios()
         rows.append(
             out.Variation(
-                varied=what, value=factor, beta_s=v.beta, stiffness_Pa_per_m=float(v.stiffness.max()),
-                friction=float(v.friction.max()), damping_ratio_rotation=ratio["rotation"],
+                varied=what,
+                value=factor,
+                beta_s=v.beta,
+                stiffness_Pa_per_m=float(v.stiffness.max()),
+                friction=float(v.friction.max()),
+                damping_ratio_rotation=ratio["rotation"],
                 damping_ratio_edge=ratio["edge"],
                 outcome=fate.outcome if run.reason in ("end", "rest", "collapse", "left") else run.reason,
                 peak_rotation_rad=float(np.abs(seen.rotation).max(initial=0.0)),
@@ -43,13 +47,11 @@ def vary(context: Context, options: Dem, trial: Trial, result: Result) -> dict[s
                 peak_slip_m=seen.sliding.peak,
                 energy_residual_ratio=run.residual,
             )
-        )  # fmt: skip
+        )
     result.tables["dem_sensitivity"] = TableData({key: [row[key] for row in rows] for key in rows[0].keys()})
     for k, run in enumerate(runs):
         turn = -(run.place[:, trial.model.rigid.body_of_block, 2] - run.settled[trial.model.rigid.body_of_block, 2])
         follow = int(result.arrays["tracked"].data[0])
         result.arrays[f"varied_time_{k}"] = Array(run.time, (f"varied_time_{k}",), "s", series="varied_time")
-        result.arrays[f"varied_rotation_{k}"] = Array(
-            turn[:, follow], (f"varied_time_{k}",), "rad", series="varied_rotation"
-        )
+        result.arrays[f"varied_rotation_{k}"] = Array(turn[:, follow], (f"varied_time_{k}",), "rad", series="varied_rotation")
     return {"sensitivity": rows}

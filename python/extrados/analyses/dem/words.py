@@ -45,10 +45,11 @@ def _tied(ties: list[TieRun] | None) -> str:
         return ""
     ranked = sorted(ties, key=lambda tie: -abs(tie.peak_force_N))[:4]
     told = [
-        f"{tie.name} is slack" if tie.state == "slack" else f"{tie.name} reaches {1e-3 * tie.peak_force_N:.4g} kN"
-        + (" and yields" if tie.state == "yielded" else "")
+        f"{tie.name} is slack"
+        if tie.state == "slack"
+        else f"{tie.name} reaches {1e-3 * tie.peak_force_N:.4g} kN" + (" and yields" if tie.state == "yielded" else "")
         for tie in ranked
-    ]  # fmt: skip
+    ]
     return f" Forces of the ties (tension positive): {', '.join(told)}{', ...' if len(ties) > 4 else ''}."
 
 
@@ -74,9 +75,7 @@ def tilt_answer(r: DemTilt) -> str:
         f"Collapse under a constant horizontal acceleration of {collapse:.4f} g pushed to +x (a tilt of "
         f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
         f"Hinges as it goes to +x: {where}."
-        f"{_tied(r.ties)}"
-        + (f" {ONE_PATH}" if r.interval else "")
-        + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
+        f"{_tied(r.ties)}" + (f" {ONE_PATH}" if r.interval else "") + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )
 
 
@@ -106,7 +105,5 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
         f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
         f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at {r.collapse_acceleration_opposite_g:.4f} g the opposite way; "
         f"the least is {least:.4f} g. Contacts that gape or slide as it goes: {where}."
-        f"{_tied(r.ties)}"
-        + (f" {ONE_PATH}" if r.interval else "")
-        + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
+        f"{_tied(r.ties)}" + (f" {ONE_PATH}" if r.interval else "") + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )

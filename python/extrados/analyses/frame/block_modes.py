@@ -78,9 +78,7 @@ def run(context: Context, options: Modes) -> Result:
     result.results = out.Modes(modes=rows, moving_mass_kg=float(moving[0, 0]), blocks=len(blocks.mass))
     moved = np.array([s.reshape(-1, 3) / np.abs(s.reshape(-1, 3)[:, :2]).max() for s in shapes.T])
     result.arrays["place"] = Array(blocks.centroid, ("block", "xy"), "m", "centroids of the blocks")
-    result.arrays["shape"] = Array(
-        moved[:, :, :2], ("mode", "block", "direction"), "", "displacements of the blocks along x and y"
-    )
+    result.arrays["shape"] = Array(moved[:, :, :2], ("mode", "block", "direction"), "", "displacements of the blocks along x and y")
     first = rows[0]
     result.answer = (
         f"First natural frequency {first['frequency_Hz']:.3g} Hz (period {first['period_s']:.3g} s), all joints closed; it moves "

@@ -103,9 +103,11 @@ def _moved(frame: EquivalentFrame, options: FrameFragility, motion: Motion, scal
     if path.stop == "no equilibrium under the weight":
         raise NoEquilibrium(UNSTABLE, ("structure", "walls"))
     return {
-        "exceeded": np.array(exceeded(frame, path, way), np.int8), "drift": float(path.drift[:, frame.piers_at].max()),
-        "displacement": float(np.abs(control_of(frame, path, way)).max()), "shear": float(np.abs(path.shear).max()),
-    }  # fmt: skip
+        "exceeded": np.array(exceeded(frame, path, way), np.int8),
+        "drift": float(path.drift[:, frame.piers_at].max()),
+        "displacement": float(np.abs(control_of(frame, path, way)).max()),
+        "shear": float(np.abs(path.shear).max()),
+    }
 
 
 def exceeded(frame: EquivalentFrame, path: Path, way: np.ndarray) -> list[bool]:
@@ -153,11 +155,12 @@ class Curves:
                     continue
                 law = oscillator.law
                 row["oscillator"][i] = (
-                    oscillator.period, law.yield_load / oscillator.mass, law.yield_displacement, oscillator.participation,
-                )  # fmt: skip
-                row["capacity"][i] = [
-                    min(curve.limits.get(k, np.inf), curve.ultimate) for k in ("strength", "first", "drift")
-                ]
+                    oscillator.period,
+                    law.yield_load / oscillator.mass,
+                    law.yield_displacement,
+                    oscillator.participation,
+                )
+                row["capacity"][i] = [min(curve.limits.get(k, np.inf), curve.ultimate) for k in ("strength", "first", "drift")]
         except NoEquilibrium:
             row["capacity"][:] = 0.0
         except (Refused, BadGeometry, CoreError) as error:
@@ -165,14 +168,15 @@ class Curves:
         return row | more
 
 
-def pushed(
-    frame: EquivalentFrame, options: FrameFragility
-) -> list[tuple[cc.CapacityCurve, cc.Oscillator | None]]:  # fmt: skip
+def pushed(frame: EquivalentFrame, options: FrameFragility) -> list[tuple[cc.CapacityCurve, cc.Oscillator | None]]:
     """Capacity curves of both senses and all patterns, without eccentricity, and their oscillators."""
     given = FramePushover(
-        kind="frame-pushover", directions=[options.direction], patterns=options.patterns, eccentricities=[0.0],
+        kind="frame-pushover",
+        directions=[options.direction],
+        patterns=options.patterns,
+        eccentricities=[0.0],
         target_drift=options.target_drift,
-    )  # fmt: skip
+    )
     level = max(one.level for one in frame.masses)
     target = given.target_drift * float(frame.plan.levels[level])
     found = []
@@ -265,10 +269,17 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
             states[k] = one.model_copy(update={"probability": share})
     _describe(options, states, motions, x, result, histories=int(good.sum()), **more)
     result.tables["histories"] = TableData(
-        {"motion": swept.members[good] // (1 if levels is None else len(levels)) + 1, "intensity": x, "pga": rows["pga"][good],
-         "drift": drift, "displacement": rows["displacement"][good], "base_shear": rows["shear"][good], "limit_state": last_exceeded(hit)},
+        {
+            "motion": swept.members[good] // (1 if levels is None else len(levels)) + 1,
+            "intensity": x,
+            "pga": rows["pga"][good],
+            "drift": drift,
+            "displacement": rows["displacement"][good],
+            "base_shear": rows["shear"][good],
+            "limit_state": last_exceeded(hit),
+        },
         {"intensity": "g", "pga": "g", "displacement": "m", "base_shear": "N"},
-    )  # fmt: skip
+    )
     result.arrays |= {
         "intensity": Array(x, ("run",), "g", "intensity of each history"),
         "drift": Array(drift, ("run",), "", "greatest chord rotation of a pier"),
@@ -317,25 +328,29 @@ def _fitted(
 
 
 def _state(
-    name: out.FrameLimitState, count: int, runs: int, fit: tuple[float, float] | None, interval: tuple[float, float] | None,
+    name: out.FrameLimitState,
+    count: int,
+    runs: int,
+    fit: tuple[float, float] | None,
+    interval: tuple[float, float] | None,
     options: FrameFragility,
-) -> out.FrameLimitCurve:  # fmt: skip
+) -> out.FrameLimitCurve:
     low, high = wilson(count, runs, options.confidence)
     known = interval is not None and bool(np.isfinite(interval).all())
     return out.FrameLimitCurve(
-        limit_state=name, exceeded=count, share=count / runs, share_interval=[float(low), float(high)],
-        median_g=None if fit is None else fit[0], dispersion=None if fit is None else fit[1],
+        limit_state=name,
+        exceeded=count,
+        share=count / runs,
+        share_interval=[float(low), float(high)],
+        median_g=None if fit is None else fit[0],
+        dispersion=None if fit is None else fit[1],
         median_interval_g=list(interval) if known and interval is not None else None,
-    )  # fmt: skip
-
-
-def _by_pushovers(
-    context: Context, options: FrameFragility, sample: Sample, source: Source, motions: int, result: Result
-) -> None:
-    buildings = len(sample.draws)
-    swept = sweep(
-        context, "frame-curves", Curves(sample, options), buildings, "capacity curves", slow=True, parallel=True
     )
+
+
+def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, source: Source, motions: int, result: Result) -> None:
+    buildings = len(sample.draws)
+    swept = sweep(context, "frame-curves", Curves(sample, options), buildings, "capacity curves", slow=True, parallel=True)
     if _stopped(swept, result):
         return
     if not swept.complete:
@@ -371,13 +386,11 @@ def _by_pushovers(
         states.append(_state(state, hits, len(carried), fit, interval, options))
     more = _knowledge(context, options, sample, rows, [g for _, g in found], result) if options.uncertain else {}
     _describe(options, states, motions, carried.ravel(), result, buildings=buildings, **more)
-    result.arrays["carried"] = Array(
-        carried, ("run", "limit_state"), "g", "intensity of each motion at which N2 reaches a limit state"
-    )
+    result.arrays["carried"] = Array(carried, ("run", "limit_state"), "g", "intensity of each motion at which N2 reaches a limit state")
     result.tables["carried"] = TableData(
         {"motion": np.array([k + 1 for k, _ in found])[good], **{s.replace("-", "_"): carried[:, k] for k, s in enumerate(STATES)}},
         {s.replace("-", "_"): "g" for s in STATES},
-    )  # fmt: skip
+    )
 
 
 def _carried(ground: Ground, options: FrameFragility, rows: dict[str, np.ndarray], building: int) -> np.ndarray:
@@ -392,21 +405,14 @@ def _carried(ground: Ground, options: FrameFragility, rows: dict[str, np.ndarray
     corner = cc.corner_of(core_motion.response_spectra(values, step, cc.PERIODS, [cc.DAMPING]).psa.reshape(-1))
     spectrum = spectrum_of_motion(values, step, peak)
     factors = []
-    for (_, strength, start, gamma), capacity in zip(
-        rows["oscillator"][building], rows["capacity"][building], strict=True
-    ):
+    for (_, strength, start, gamma), capacity in zip(rows["oscillator"][building], rows["capacity"][building], strict=True):
         oscillator = cc.Oscillator(1.0, gamma, Bilinear(strength / start, strength, start, capacity[2] / gamma))
         factors.append([cc.n2_factor(oscillator, spectrum, corner, d / gamma) for d in capacity])
     return np.asarray(intensity_of(ground, options)[0] * np.min(factors, axis=0))
 
 
 def _knowledge(
-    context: Context,
-    options: FrameFragility,
-    sample: Sample,
-    rows: dict[str, np.ndarray],
-    grounds: list[Ground],
-    result: Result,
+    context: Context, options: FrameFragility, sample: Sample, rows: dict[str, np.ndarray], grounds: list[Ground], result: Result
 ) -> dict[str, Any]:
     """Where the building whose mean strengths are divided by the confidence factor of the code lies among the sampled ones: the
     share of these that carry less at collapse, under the motion in the middle of the set."""
@@ -434,24 +440,25 @@ def _knowledge(
     return {"confidence_factor": factor, "design_intensity_g": reached, "weaker_share": share}
 
 
-def _describe(
-    options: FrameFragility, states: list[out.FrameLimitCurve], motions: int, x: np.ndarray, result: Result, **more: Any
-) -> None:
+def _describe(options: FrameFragility, states: list[out.FrameLimitCurve], motions: int, x: np.ndarray, result: Result, **more: Any) -> None:
     """Results, curves and answer."""
     name = "PGA" if options.intensity == "pga" else f"SA({options.sa_period:g} s)"
     result.results = out.FrameFragility(
-        method=options.by, intensity=name, motions=motions, limit_states=states, confidence=options.confidence,
-        uncertain=sorted(options.uncertain), **more,
-    )  # fmt: skip
+        method=options.by,
+        intensity=name,
+        motions=motions,
+        limit_states=states,
+        confidence=options.confidence,
+        uncertain=sorted(options.uncertain),
+        **more,
+    )
     fits = [(s.limit_state, s.median_g, s.dispersion) for s in states if s.median_g and s.dispersion]
     ends = [float(x.min()), float(x.max()), *(m for _, m, _ in fits)]
     grid = np.linspace(0.0, 1.5 * max(ends), GRID)[1:]
     result.arrays["grid"] = Array(grid, ("grid",), "g", name)
     for state, median, spread in fits:
         values = norm.cdf(np.log(grid / median) / spread)
-        result.arrays[f"curve_{state.replace('-', '_')}"] = Array(
-            values, ("grid",), "", f"fitted probability of {state}", "frame_curve"
-        )
+        result.arrays[f"curve_{state.replace('-', '_')}"] = Array(values, ("grid",), "", f"fitted probability of {state}", "frame_curve")
     for one in states:
         if one.median_g is None:
             result.warnings.append(f"No curve of {one.limit_state}: the runs determine none.")

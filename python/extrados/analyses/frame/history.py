@@ -64,27 +64,27 @@ def run(context: Context, options: FrameHistory) -> Result:
     for k, strip in enumerate(frame.strips):
         there = np.flatnonzero(path.state[:, k] >= STATE["failed_flexure"])
         if len(there):
-            word: Literal["flexure", "shear"] = (
-                "shear" if path.state[there[0], k] == STATE["failed_shear"] else "flexure"
-            )
-            failed.append(
-                (
-                    time[there[0]],
-                    out.FailedElement(element=strip.name, mode=word, control_displacement_m=float(moved[there[0]])),
-                )
-            )
+            word: Literal["flexure", "shear"] = "shear" if path.state[there[0], k] == STATE["failed_shear"] else "flexure"
+            failed.append((time[there[0]], out.FailedElement(element=strip.name, mode=word, control_displacement_m=float(moved[there[0]]))))
     failed.sort(key=lambda row: row[0])
     first = {"first_failure_s": float(failed[0][0])} if failed else {}
     result.results = out.FrameHistory(
-        stop=path.stop, end_time_s=float(time[-1]), peak_displacement_m=float(np.abs(moved).max()),
-        peak_base_shear_N=float(np.abs(path.shear).max()), residual_displacement_m=float(moved[-1]),
-        peak_drift=float(drift[at]), peak_drift_element=frame.strips[piers[at[1]]].name, failed=[row for _, row in failed],
-        period_s=1.0 / mode.frequency, damping=list(damping), weight_N=frame.total_weight, steps=count - 1, **first,
-    )  # fmt: skip
-    result.arrays["time"] = Array(time, ("time",), "s", "time")
-    result.arrays["displacement"] = Array(
-        moved, ("time",), "m", "control displacement along the motion, relative to the ground"
+        stop=path.stop,
+        end_time_s=float(time[-1]),
+        peak_displacement_m=float(np.abs(moved).max()),
+        peak_base_shear_N=float(np.abs(path.shear).max()),
+        residual_displacement_m=float(moved[-1]),
+        peak_drift=float(drift[at]),
+        peak_drift_element=frame.strips[piers[at[1]]].name,
+        failed=[row for _, row in failed],
+        period_s=1.0 / mode.frequency,
+        damping=list(damping),
+        weight_N=frame.total_weight,
+        steps=count - 1,
+        **first,
     )
+    result.arrays["time"] = Array(time, ("time",), "s", "time")
+    result.arrays["displacement"] = Array(moved, ("time",), "m", "control displacement along the motion, relative to the ground")
     result.arrays["base_shear"] = Array(path.shear, ("time",), "N", "internal base shear along the motion")
     result.tables["frame_history"] = TableData(
         {"time": time, "ground_acceleration": ground[:count], "displacement": moved, "base_shear": path.shear},

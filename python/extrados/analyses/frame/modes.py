@@ -82,22 +82,19 @@ def run(context: Context, options: FrameModes) -> Result:
     total = sum(one.mass for one in frame.masses)
     rows = [
         out.FrameMode(
-            frequency_Hz=m.frequency, period_s=1.0 / m.frequency, mass_ratio_x= m.participating(np.array([1.0, 0.0])) / total,
+            frequency_Hz=m.frequency,
+            period_s=1.0 / m.frequency,
+            mass_ratio_x=m.participating(np.array([1.0, 0.0])) / total,
             mass_ratio_y=m.participating(np.array([0.0, 1.0])) / total,
         )
         for m in modes
-    ]  # fmt: skip
+    ]
     result.results = out.FrameModes(
-        modes=rows, moving_mass_kg=total, weight_N=frame.total_weight, piers=frame.piers,
-        spandrels=len(frame.elements) - frame.piers,
-    )  # fmt: skip
+        modes=rows, moving_mass_kg=total, weight_N=frame.total_weight, piers=frame.piers, spandrels=len(frame.elements) - frame.piers
+    )
     shapes = np.array([[one.rows @ (m.shape / np.abs(m.shape).max()) for one in frame.masses] for m in modes])
-    result.arrays["place"] = Array(
-        np.array([one.place for one in frame.masses]), ("mass", "xyz"), "m", "places of the masses"
-    )
-    result.arrays["shape"] = Array(
-        shapes, ("mode", "mass", "direction"), "", "displacements of the masses along x and y"
-    )
+    result.arrays["place"] = Array(np.array([one.place for one in frame.masses]), ("mass", "xyz"), "m", "places of the masses")
+    result.arrays["shape"] = Array(shapes, ("mode", "mass", "direction"), "", "displacements of the masses along x and y")
     first = rows[0]
     result.answer = (
         f"First period {first['period_s']:.3g} s; it moves {100 * first['mass_ratio_x']:.3g} % of the mass along x and "

@@ -56,15 +56,11 @@ def pushes_of(frame: EquivalentFrame, options: FramePushover, modes: Sequence[Mo
     mass = np.array([one.mass for one in frame.masses])
     rows = np.array([one.rows for one in frame.masses])
     corners = np.array([end for wall in frame.plan.walls for end in (wall.start, wall.end)])
-    for direction, pattern, sense, shift in itertools.product(
-        options.directions, options.patterns, options.senses, options.eccentricities
-    ):
+    for direction, pattern, sense, shift in itertools.product(options.directions, options.patterns, options.senses, options.eccentricities):
         way = way_of(direction)
         across = np.array([-way[1], way[0]])
         mode = max(modes, key=lambda m: m.participating(way))
-        shape = {
-            "uniform": np.ones(len(mass)), "static": places[:, 2], "modal": rows @ mode.shape @ way,
-        }[pattern]  # fmt: skip
+        shape = {"uniform": np.ones(len(mass)), "static": places[:, 2], "modal": rows @ mode.shape @ way}[pattern]
         if pattern == "modal" and shape.sum() < 0.0:
             shape = -shape
         own = mass * shape
@@ -108,11 +104,20 @@ def run(context: Context, options: FramePushover) -> Result:
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
     result.results = out.FramePushover(
-        runs=[out.FramePush(**row) for row in runs], weight_N=frame.total_weight, moving_mass_kg=sum(m.mass for m in frame.masses), control_level=level,
-        control_height_m=height, base_shear_N=peaks[least], ultimate_displacement_m=runs[least]["ultimate_displacement_m"],
-        governing=runs[least]["name"], failed=runs[least]["failed"], piers=frame.piers,
-        spandrels=len(frame.elements) - frame.piers, walls=[wall.name for wall in frame.plan.walls], remarks=frame.remarks,
-    )  # fmt: skip
+        runs=[out.FramePush(**row) for row in runs],
+        weight_N=frame.total_weight,
+        moving_mass_kg=sum(m.mass for m in frame.masses),
+        control_level=level,
+        control_height_m=height,
+        base_shear_N=peaks[least],
+        ultimate_displacement_m=runs[least]["ultimate_displacement_m"],
+        governing=runs[least]["name"],
+        failed=runs[least]["failed"],
+        piers=frame.piers,
+        spandrels=len(frame.elements) - frame.piers,
+        walls=[wall.name for wall in frame.plan.walls],
+        remarks=frame.remarks,
+    )
     verified = verify_frame(context, result, frame, rest.tangent, options, pushes, paths)
     if verified is not None:
         result.results = result.results.model_copy(update={"verification": verified})
@@ -131,15 +136,11 @@ def run(context: Context, options: FramePushover) -> Result:
 def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -> None:
     loose = [s.name for s, f in zip(frame.strips, force, strict=True) if s.kind == "pier" and f[0] <= 0.0]
     if loose:
-        context.warnings.append(
-            f"{len(loose)} piers carry no vertical load at rest, first {loose[0]}: they resist no horizontal force."
-        )
+        context.warnings.append(f"{len(loose)} piers carry no vertical load at rest, first {loose[0]}: they resist no horizontal force.")
     for strip, element, f in zip(frame.strips, frame.elements, force, strict=True):
         limit = element.strength * element.depth * element.thickness
         if strip.kind == "pier" and f[0] > 0.6 * limit:
-            context.warnings.append(
-                f"Pier '{strip.name}' carries {f[0] / limit:.0%} of its compressive strength at rest."
-            )
+            context.warnings.append(f"Pier '{strip.name}' carries {f[0] / limit:.0%} of its compressive strength at rest.")
 
 
 def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
@@ -163,16 +164,27 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
     elastic = 0.1 * shear[peak]
     ultimate = min(ends) if ends else None
     return {
-        "name": push.name, "direction_deg": float(push.direction), "sense": push.sense, "pattern": push.pattern,
-        "eccentricity": float(push.eccentricity), "stop": path.stop, "control_displacement_m": moved, "base_shear_N": shear,
-        "peak_base_shear_N": float(shear[peak]), "displacement_at_peak_m": float(moved[peak]), "drop_displacement_m": drop,
+        "name": push.name,
+        "direction_deg": float(push.direction),
+        "sense": push.sense,
+        "pattern": push.pattern,
+        "eccentricity": float(push.eccentricity),
+        "stop": path.stop,
+        "control_displacement_m": moved,
+        "base_shear_N": shear,
+        "peak_base_shear_N": float(shear[peak]),
+        "displacement_at_peak_m": float(moved[peak]),
+        "drop_displacement_m": drop,
         "ultimate_displacement_m": ultimate,
         "stiffness_N_m": float(elastic / np.interp(elastic, shear[: peak + 1], moved[: peak + 1])),
-        "period_s": 1.0 / push.mode.frequency, "equivalent_mass_kg": own, "participation_factor": own / square,
+        "period_s": 1.0 / push.mode.frequency,
+        "equivalent_mass_kg": own,
+        "participation_factor": own / square,
         "level_mass_kg": [sum(one.mass for one in frame.masses if one.level == k) for k in levels],
         "level_shape": [float(frame.control(push.way, k) @ shape) for k in levels],
-        "storeys": storeys, "failed": _failed(frame, path),
-    }  # fmt: skip
+        "storeys": storeys,
+        "failed": _failed(frame, path),
+    }
 
 
 def _limits(frame: EquivalentFrame, push: Push, path: Path) -> list[dict[str, Any]]:
@@ -192,11 +204,7 @@ def _limits(frame: EquivalentFrame, push: Push, path: Path) -> list[dict[str, An
 def storeys_of(frame: EquivalentFrame, way: np.ndarray) -> list[tuple[str, int, list[int]]]:
     """Wall, storey and numbers of the piers, of every storey of every wall that a push along `way` meets in its plane."""
     return [
-        (
-            wall.name,
-            storey,
-            [k for k, s in enumerate(frame.strips) if (s.kind, s.wall, s.storey) == ("pier", w, storey)],
-        )
+        (wall.name, storey, [k for k, s in enumerate(frame.strips) if (s.kind, s.wall, s.storey) == ("pier", w, storey)])
         for w, wall in enumerate(frame.plan.walls)
         if abs(float(wall.direction @ way)) >= FACING
         for storey in range(1, frame.plan.reach(wall)[1] + 1)
@@ -219,20 +227,11 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
     """What figures need: walls and elements once; of each run the states of its elements."""
     plan = frame.plan
     result.arrays["element_part"] = Array(
-        np.array([s.part for s in frame.strips]),
-        ("element", "box"),
-        "m",
-        "deformable parts: along the wall from, to, height from, to",
+        np.array([s.part for s in frame.strips]), ("element", "box"), "m", "deformable parts: along the wall from, to, height from, to"
     )
-    result.arrays["element_wall"] = Array(
-        np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0"
-    )
-    result.arrays["element_pier"] = Array(
-        np.array([int(e.pier) for e in frame.elements]), ("element",), "", "1: pier, 0: spandrel"
-    )
-    result.arrays["wall_length"] = Array(
-        np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls"
-    )
+    result.arrays["element_wall"] = Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0")
+    result.arrays["element_pier"] = Array(np.array([int(e.pier) for e in frame.elements]), ("element",), "", "1: pier, 0: spandrel")
+    result.arrays["wall_length"] = Array(np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls")
     result.arrays["wall_height"] = Array(
         np.array([plan.levels[plan.reach(w)[1]] for w in plan.walls]), ("wall",), "m", "heights of the walls"
     )
@@ -241,26 +240,28 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
         for w, wall in enumerate(plan.walls)
         for o in wall.openings
     ]
-    result.arrays["opening"] = Array(
-        np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "wall, along it from, to, height from, to"
-    )
+    result.arrays["opening"] = Array(np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "wall, along it from, to, height from, to")
     for k, path in enumerate(paths):
         result.arrays[f"state_{k + 1}"] = Array(
-            path.state.astype(np.int8), (f"step_{k + 1}", "element"), "", f"states of run {k + 1}: "
-            + ", ".join(f"{n} {word}" for n, word in STATES.items()), "states of elements",
-        )  # fmt: skip
+            path.state.astype(np.int8),
+            (f"step_{k + 1}", "element"),
+            "",
+            f"states of run {k + 1}: " + ", ".join(f"{n} {word}" for n, word in STATES.items()),
+            "states of elements",
+        )
         result.tables[f"curve_{k + 1}"] = TableData(
-            {"control_displacement": path.control, "base_shear": path.multiple},
-            {"control_displacement": "m", "base_shear": "N"},
+            {"control_displacement": path.control, "base_shear": path.multiple}, {"control_displacement": "m", "base_shear": "N"}
         )
     result.tables["elements"] = TableData(
         {
-            "name": [s.name for s in frame.strips], "kind": [s.kind for s in frame.strips],
-            "length": [e.length for e in frame.elements], "depth": [e.depth for e in frame.elements],
+            "name": [s.name for s in frame.strips],
+            "kind": [s.kind for s in frame.strips],
+            "length": [e.length for e in frame.elements],
+            "depth": [e.depth for e in frame.elements],
             "thickness": [e.thickness for e in frame.elements],
         },
         {"length": "m", "depth": "m", "thickness": "m"},
-    )  # fmt: skip
+    )
 
 
 def _answer(r: out.FramePushover) -> str:

@@ -66,9 +66,7 @@ def varied(building: Building, options: FrameOptions, factors: Mapping[str, floa
     plan = building.structure
     assert isinstance(plan, Plan)
     of_walls = {wall.material for wall in plan.walls}
-    materials: dict[str, Material] = {
-        name: times(one, MASONRY) if name in of_walls else one for name, one in building.materials.items()
-    }
+    materials: dict[str, Material] = {name: times(one, MASONRY) if name in of_walls else one for name, one in building.materials.items()}
     if "floor_stiffness" in given:
         floors = [
             floor if floor.young is None else floor.model_copy(update={"young": floor.young * given["floor_stiffness"]})
@@ -76,9 +74,8 @@ def varied(building: Building, options: FrameOptions, factors: Mapping[str, floa
         ]
         plan = plan.model_copy(update={"floors": floors})
     changed = building.having(
-        structure=plan, material=times(building.material, MASONRY), materials=materials,
-        joints=times(building.joints, ("cohesion",)),
-    ).apart()  # fmt: skip
+        structure=plan, material=times(building.material, MASONRY), materials=materials, joints=times(building.joints, ("cohesion",))
+    ).apart()
     return changed.frame(times(options, (*OPTIONS, "cohesion")))
 
 

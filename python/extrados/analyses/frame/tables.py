@@ -71,13 +71,17 @@ class FramePushover(FrameAnalysis):
         ["uniform", "static"],
         "forces in proportion to the masses, to the masses times their height, or to the masses times the mode of greatest "
         "participating mass",
-        min_length=1, max_length=3, source="NTC 2018, 7.3.4.2",
-    )  # fmt: skip
+        min_length=1,
+        max_length=3,
+        source="NTC 2018, 7.3.4.2",
+    )
     eccentricities: list[Annotated[float, Field(ge=-0.5, le=0.5)]] = key(
         [0.0, 0.05, -0.05],
         "accidental eccentricities of the forces, over the length of the building across the direction",
-        min_length=1, max_length=9, source="EN 1998-1, 4.3.2",
-    )  # fmt: skip
+        min_length=1,
+        max_length=9,
+        source="EN 1998-1, 4.3.2",
+    )
     verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
     out_of_plane: bool = key(
         True,
@@ -85,18 +89,11 @@ class FramePushover(FrameAnalysis):
         "period of the frame for the floor spectrum",
     )
     control_level: int | None = key(
-        None,
-        "storey whose mean displacement, weighted by the masses on its top, is followed; default the highest with masses",
-        ge=1,
+        None, "storey whose mean displacement, weighted by the masses on its top, is followed; default the highest with masses", ge=1
     )
     target_drift: float = key(0.02, "greatest control displacement, over the height of the control level", gt=0, le=0.2)
     steps: int = key(200, "steps to the target; steps are cut where needed", ge=10, le=10_000)
-    drop: float = key(
-        0.5,
-        "ends where the base shear is below this part of its greatest; 0.8 is the 20 % drop of codes",
-        ge=0,
-        le=0.95,
-    )
+    drop: float = key(0.5, "ends where the base shear is below this part of its greatest; 0.8 is the 20 % drop of codes", ge=0, le=0.95)
 
     @model_validator(mode="after")
     def _once(self) -> "FramePushover":
@@ -115,9 +112,11 @@ class FrameMotion(FrameAnalysis):
     time_step: Time = key(0.005, "of the integration; steps are cut where needed", gt=0, le=0.1)
     damping_ratio: float = key(0.03, "Rayleigh damping at the two frequencies", ge=0, le=0.5)
     damping_frequencies: list[Annotated[float, Field(gt=0)]] | None = key(
-        None, "two frequencies in Hz that have this ratio; default the first of the direction, and three times that",
-        min_length=2, max_length=2,
-    )  # fmt: skip
+        None,
+        "two frequencies in Hz that have this ratio; default the first of the direction, and three times that",
+        min_length=2,
+        max_length=2,
+    )
 
 
 class FrameHistory(FrameMotion):
@@ -142,21 +141,22 @@ class FrameFragility(FrameMotion):
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"], "of pushovers: patterns of the forces, as of frame-pushover", min_length=1, max_length=3
     )
-    target_drift: float = key(
-        0.02, "of pushovers: greatest control displacement, over the height of the highest level", gt=0, le=0.2
-    )
+    target_drift: float = key(0.02, "of pushovers: greatest control displacement, over the height of the highest level", gt=0, le=0.2)
     count: int | None = key(None, "number of motions; default 100, or the whole suite", ge=2, le=1_000_000)
     seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
     intensity: Literal["pga", "sa"] = key("pga", "measure of the motions: PGA [g], or SA(sa_period) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     levels: list[Annotated[float, Field(gt=0, le=100)]] | None = key(
-        None, "of histories: intensities [g] to which every motion is scaled; default: the motions as they are",
-        min_length=1, max_length=200,
-    )  # fmt: skip
+        None,
+        "of histories: intensities [g] to which every motion is scaled; default: the motions as they are",
+        min_length=1,
+        max_length=200,
+    )
     uncertain: dict[str, float] = key(
-        {}, "coefficients of variation of " + ", ".join(f"`{name}`" for name in UNCERTAIN) + "; lognormal factors of mean 1, one "
-        "for the whole building, drawn by a Sobol sequence; `strength` multiplies all strengths of the masonry"
-    )  # fmt: skip
+        {},
+        "coefficients of variation of " + ", ".join(f"`{name}`" for name in UNCERTAIN) + "; lognormal factors of mean 1, one "
+        "for the whole building, drawn by a Sobol sequence; `strength` multiplies all strengths of the masonry",
+    )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "draws for the intervals of the curves", ge=0, le=100_000)
 
@@ -170,7 +170,5 @@ class FrameFragility(FrameMotion):
             if name not in UNCERTAIN:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(UNCERTAIN)}")
             if not 0.0 < value <= 1.0:
-                raise ValueError(
-                    f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 1"
-                )
+                raise ValueError(f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 1")
         return self

@@ -44,9 +44,14 @@ class Push(Protocol):
 
 
 def verify_frame(
-    context: Context, result: Result, frame: EquivalentFrame, tangent: np.ndarray, options: FramePushover,
-    pushes: Sequence[Push], paths: Sequence[Path],
-) -> Verification | None:  # fmt: skip
+    context: Context,
+    result: Result,
+    frame: EquivalentFrame,
+    tangent: np.ndarray,
+    options: FramePushover,
+    pushes: Sequence[Push],
+    paths: Sequence[Path],
+) -> Verification | None:
     """Displacement demand and capacity of all pushes. tangent: stiffness (n, n) under the weight [N/m]."""
     total = sum(one.mass for one in frame.masses)
     rows, violated, sliding = [], [], []
@@ -77,9 +82,7 @@ def verify_frame(
     return verify(context, result, options.verification, rows, violated, options.frame.confidence_factor)
 
 
-def capacity_curve_of(
-    frame: EquivalentFrame, push: Push, path: Path, row: FramePush, shape: np.ndarray
-) -> CapacityCurve:  # fmt: skip
+def capacity_curve_of(frame: EquivalentFrame, push: Push, path: Path, row: FramePush, shape: np.ndarray) -> CapacityCurve:
     """The capacity curve of a push, with the limits of its piers. shape (n): displacements of the equivalent oscillator."""
     mass = frame.mass
     shape = shape / float(push.control @ shape)
@@ -98,27 +101,18 @@ def out_of_plane(context: Context, options: FramePushover, period: float) -> Out
     """Every wall above the foot of each storey as a local mechanism (C8.7.1.2), with the floor spectrum of a period [s]."""
     given = options.verification
     checks = LocalMechanism(
-        kind="local-mechanism", mechanism="building", spectrum=given.spectrum, motion_spectrum=given.motion_spectrum,
-        building_period=period,
-    )  # fmt: skip
+        kind="local-mechanism", mechanism="building", spectrum=given.spectrum, motion_spectrum=given.motion_spectrum, building_period=period
+    )
     found = run_local_mechanism(replace(context, warnings=[]), checks).results
     verdict = found.overall() if isinstance(found, Found) else None
-    wall = (
-        f"Wall {found.walls[0].wall}, storey {found.walls[0].storey}: "
-        if isinstance(found, Found) and found.walls
-        else ""
-    )
-    statement = (
-        f"{wall}{verdict.statement}"
-        if verdict is not None
-        else found.statement()
-        if isinstance(found, SelfWeight)
-        else ""
-    )
+    wall = f"Wall {found.walls[0].wall}, storey {found.walls[0].storey}: " if isinstance(found, Found) and found.walls else ""
+    statement = f"{wall}{verdict.statement}" if verdict is not None else found.statement() if isinstance(found, SelfWeight) else ""
     return OutOfPlane(
-        factor=None if verdict is None else verdict.ratio, outcome="not-applicable" if verdict is None else verdict.outcome,
-        building_period_s=period, statement=statement,
-    )  # fmt: skip
+        factor=None if verdict is None else verdict.ratio,
+        outcome="not-applicable" if verdict is None else verdict.outcome,
+        building_period_s=period,
+        statement=statement,
+    )
 
 
 def sliding_limit(frame: EquivalentFrame, building: Building, push: Push, factor: float = 1.0) -> tuple[float, int]:
@@ -132,9 +126,7 @@ def sliding_limit(frame: EquivalentFrame, building: Building, push: Push, factor
     for storey in range(1, len(frame.plan.storeys) + 1):
         above = [one.mass for one in frame.masses if one.level >= storey]
         weight = frame.total_weight if storey == 1 else GRAVITY * sum(above)
-        area = sum(
-            (s.masonry[1] - s.masonry[0]) * s.thickness for s in frame.strips if s.kind == "pier" and s.storey == storey
-        )
+        area = sum((s.masonry[1] - s.masonry[0]) * s.thickness for s in frame.strips if s.kind == "pier" and s.storey == storey)
         share = sum(float(unit[n] * push.forces[n]) for (_, level), n in frame.along.items() if level >= storey)
         if share > 0.0:
             found.append(((friction * weight + cohesion * area) / share, storey))

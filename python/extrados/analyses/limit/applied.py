@@ -35,10 +35,7 @@ def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
     if best < 0:
         low = min(float(o[:, 0].min()) for o in assembly.outlines)
         high = max(float(o[:, 0].max()) for o in assembly.outlines)
-        raise Refused(
-            f"a load at x = {x:.4g} m lies beside the structure, which extends from {low:.4g} to {high:.4g} m",
-            WHOLE,
-        )
+        raise Refused(f"a load at x = {x:.4g} m lies beside the structure, which extends from {low:.4g} to {high:.4g} m", WHOLE)
     return best, height
 
 
@@ -81,9 +78,7 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
     """Block and point (3) [m] of a load: at its height, or on the highest surface below."""
     key = ("analysis", "load", number)
     if load.x_end is not None or load.y is None:
-        raise Refused(
-            "a load on blocks in space acts at a point: give x, y in plan and, if it does not act on top, z", key
-        )
+        raise Refused("a load on blocks in space acts at a point: give x, y in plan and, if it does not act on top, z", key)
     if load.z is not None:
         point = np.array([load.x, load.y, load.z])
         try:

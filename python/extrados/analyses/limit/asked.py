@@ -139,9 +139,7 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     if deviation is None:
         deviation = getattr(building.structure, "contact_tolerance", None)
     if deviation is None:
-        raise Refused(
-            "give the deviation of a survey; only `blocks` have a contact_tolerance that gives it", ("analysis",)
-        )
+        raise Refused("give the deviation of a survey; only `blocks` have a contact_tolerance that gives it", ("analysis",))
     shortest = float(assembly.length.min())
     if 4.0 * deviation > shortest:
         raise Refused(
@@ -176,11 +174,7 @@ def partitions_of(building: Building) -> list[dict[str, Any]]:
     structure = building.structure
     assert structure is not None
     given = {name: getattr(structure, name) for name in (*structure.halved, *structure.bonds)}
-    changes = [
-        {name: type(given[name])(factor * given[name])}
-        for name, factor in structure.halved.items()
-        if given[name] is not None
-    ]
+    changes = [{name: type(given[name])(factor * given[name])} for name, factor in structure.halved.items() if given[name] is not None]
     return changes + [{name: bond} for name, bonds in structure.bonds.items() for bond in bonds if bond != given[name]]
 
 

@@ -24,9 +24,7 @@ def by_block_size(context: Context, options: Tilt, direction: float, gamma: floa
         blocks, found, reason = None, None, None
         try:
             data = building.structure.model_dump(exclude_unset=True)  # type: ignore[union-attr]
-            other = building.apart().having(
-                structure=read_table(type(building.require_structure()), {**data, **change})
-            )
+            other = building.apart().having(structure=read_table(type(building.require_structure()), {**data, **change}))
             blocks = len(other.solids().mass)
             if blocks > MOST_BLOCKS:
                 reason = f"more than {MOST_BLOCKS} blocks"

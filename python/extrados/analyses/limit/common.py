@@ -51,9 +51,7 @@ def loads_of(assembly: Assembly, options: Any, building: Building) -> Loads:
     for k, load in enumerate(getattr(options, "load", [])):
         earth = assembly.earth if load.y is None and load.force != 0.0 else None
         if earth is not None:
-            middle, length = (
-                (load.x, CONTACT) if load.x_end is None else (0.5 * (load.x + load.x_end), load.x_end - load.x)
-            )
+            middle, length = (load.x, CONTACT) if load.x_end is None else (0.5 * (load.x + load.x_end), load.x_end - load.x)
             dead += under_load(earth, len(dead), middle, load.force, length)
         for block, point, share in pieces(assembly, load, k):
             down = 0.0 if earth is not None else -share * load.force
@@ -104,9 +102,7 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
 def collapse_beside(without_dilatancy: LimitAnalysis, direction: int) -> tuple[State, Mechanism]:
     """The least state without dilatancy, to be given beside an upper bound by associated friction; NoAnswer of large structures."""
     if len(without_dilatancy.assembly.a) > MOST_BESIDE:
-        raise NoAnswer(
-            f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"'
-        )
+        raise NoAnswer(f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"')
     return without_dilatancy.collapse(direction)
 
 
@@ -116,9 +112,7 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
     assembly = building.blocks()
     leeward = assembly.buttresses[-1]
     try:
-        return fractured_collapse(
-            assembly, leeward, 1, building.friction(), lambda cracked: loads_of(cracked, options, building)
-        )
+        return fractured_collapse(assembly, leeward, 1, building.friction(), lambda cracked: loads_of(cracked, options, building))
     except NoCrack as error:
         raise Refused(f"fracture: {error}", ("analysis", "fracture")) from None
 
@@ -146,19 +140,10 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
     return earth_arrays(assembly) | {
         "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first ends of the joints (intrados)"),
         "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second ends of the joints (extrados)"),
-        "outline": Array(
-            np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"
-        ),
-        "outline_start": Array(
-            np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"
-        ),
+        "outline": Array(np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"),
+        "outline_start": Array(np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"),
         "centroid": Array(assembly.centroid, ("block", "axis"), "m", "centroids of the blocks"),
-        "joint_block": Array(
-            np.column_stack([assembly.a, assembly.b]),
-            ("joint", "joint_side"),
-            "",
-            "blocks on both sides, -1 the ground",
-        ),
+        "joint_block": Array(np.column_stack([assembly.a, assembly.b]), ("joint", "joint_side"), "", "blocks on both sides, -1 the ground"),
         **named_places("joint", assembly.joint_names, 0.5 * (assembly.p + assembly.q), "middles of the joints"),
         **named_places("block", assembly.block_names, assembly.centroid, "centroids of the blocks"),
     }
@@ -168,8 +153,7 @@ def named_places(dim: str, names: Sequence[str], places: np.ndarray, about: str)
     """What the places (n, 2 or 3) [m] along an axis are called and where they lie: its coordinates, by results.store.beside."""
     found = {f"{dim}_name": Array(np.array(names, dtype=object), (dim,), "", f"names of the {dim}s")}
     return found | {
-        f"{dim}_{axis}": Array(values, (dim,), "m", f"{axis} of the {about}")
-        for axis, values in zip("xyz", places.T, strict=False)
+        f"{dim}_{axis}": Array(values, (dim,), "m", f"{axis} of the {about}") for axis, values in zip("xyz", places.T, strict=False)
     }
 
 
@@ -184,9 +168,11 @@ def earth_arrays(assembly: Assembly) -> dict[str, Array]:
     made = {"fill_outline": Array(outline, ("fill_vertex", "axis"), "m", "outline of the fill")}
     if earth.surfacing > 0.0:
         made["surfacing_outline"] = Array(
-            np.array([[left, low], [right, low], [right, high], [left, high]]), ("surfacing_vertex", "axis"), "m",
+            np.array([[left, low], [right, low], [right, high], [left, high]]),
+            ("surfacing_vertex", "axis"),
+            "m",
             "outline of the surfacing",
-        )  # fmt: skip
+        )
     return made
 
 
@@ -201,9 +187,7 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
     if not point:
         return {}
     return {
-        "load_point": Array(
-            np.array(point), ("load_piece", "axis"), "m", "points of loads at rest, spread ones in pieces"
-        ),
+        "load_point": Array(np.array(point), ("load_piece", "axis"), "m", "points of loads at rest, spread ones in pieces"),
         "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "their forces, to +x and upward"),
         "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, from 0"),
     }
@@ -231,9 +215,7 @@ def tie_rows(building: Building, loads: Loads, state: State, key: str = "ties") 
     for tie, force in zip(building.ties, _tensions(building, loads, state), strict=True):
         least = SLACK * (tie.yield_force or loads.scale)
         yields = tie.yield_force is not None and abs(force) > tie.yield_force - least
-        sort: Literal["slack", "carries", "yields"] = (
-            "yields" if yields else "slack" if abs(force) < least else "carries"
-        )
+        sort: Literal["slack", "carries", "yields"] = "yields" if yields else "slack" if abs(force) < least else "carries"
         rows.append(TieForce(name=tie.name or "", force_N=force, state=sort))
     return {key: rows}
 
@@ -243,9 +225,7 @@ def tie_arrays(building: Building, loads: Loads, states: dict[str, State]) -> di
     if not building.ties:
         return {}
     forces = {
-        f"{name}_tie_force": Array(
-            _tensions(building, loads, state), ("tie",), "N", f"tension of the ties, state '{name}'"
-        )
+        f"{name}_tie_force": Array(_tensions(building, loads, state), ("tie",), "N", f"tension of the ties, state '{name}'")
         for name, state in states.items()
     }
     anchored = building.anchored()
@@ -269,7 +249,7 @@ def spoken_ties(rows: list[TieForce] | None) -> str:
     told = [
         words[r.state].format(name=r.name, force=f"{abs(r.force_N) / 1e3:.4g} kN in {'tension' if r.force_N > 0.0 else 'compression'}")
         for r in rows[:MOST_TIES]
-    ]  # fmt: skip
+    ]
     text = ", ".join(told) + (f" and {len(rows) - MOST_TIES} more" if len(rows) > MOST_TIES else "")
     return f" {text[:1].upper()}{text[1:]}."
 
@@ -285,7 +265,7 @@ def zone_arrays(assembly: Assembly, state: State, strength: float | None) -> dic
             assembly.p + (state.position + sign * half)[:, None] * along, ("joint", "axis"), "m", f"{about} end of the zone of thrust"
         )
         for name, sign, about in (("inner", -1.0, "intrados"), ("outer", 1.0, "extrados"))
-    }  # fmt: skip
+    }
 
 
 def state_arrays(assembly: Assembly, name: str, state: State, about: str) -> dict[str, Array]:
@@ -305,9 +285,7 @@ def packed(name: str, paths: dict[str, np.ndarray], unit: str, about: str) -> di
     return {
         name: Array(points, (f"{name}_vertex", "axis"), unit, about),
         f"{name}_start": Array(start, (f"{name}_edge",), "", f"first vertex of each path of {name}, and the end"),
-        f"{name}_of": Array(
-            np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"
-        ),
+        f"{name}_of": Array(np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"),
     }
 
 
@@ -318,7 +296,10 @@ def line_arrays(name: str, found: list[ThrustPath], about: str) -> dict[str, Arr
     return {
         title: Array(np.concatenate(points), (f"{title}_vertex", "axis"), "m", f"thrust lines {about}"),
         f"{title}_start": Array(
-            np.cumsum([0, *(len(path.points) for path in found)]), (f"{title}_edge",), "", f"first vertex of each path of {title}, and the end"
+            np.cumsum([0, *(len(path.points) for path in found)]),
+            (f"{title}_edge",),
+            "",
+            f"first vertex of each path of {title}, and the end",
         ),
         f"{title}_of": Array(
             np.array([path.name for path in found], dtype=object), (f"{title}_path",), "", f"the chain or stone of each path of {title}"
@@ -326,7 +307,7 @@ def line_arrays(name: str, found: list[ThrustPath], about: str) -> dict[str, Arr
         f"{title}_force": Array(
             np.array([path.force for path in found]), (f"{title}_path",), "N", f"greatest force along each path of {title}"
         ),
-    }  # fmt: skip
+    }
 
 
 def graphic_arrays(answer: Answer, name: str, state: State, about: str) -> dict[str, Array]:

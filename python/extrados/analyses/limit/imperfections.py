@@ -39,9 +39,12 @@ class Surveys:
     def _member(self, k: int) -> dict[str, np.ndarray]:
         survey = resurveyed(self.assembly, self.deviation, np.random.default_rng([self.options.seed, k]))
         limit = LimitAnalysis(
-            survey, self.friction, strength=self.strength, associated=self.options.friction_rule == "associated",
+            survey,
+            self.friction,
+            strength=self.strength,
+            associated=self.options.friction_rule == "associated",
             loads=loads_of(survey, self.options, self.building),
-        )  # fmt: skip
+        )
         gamma, answered, dilates = np.full(2, np.nan), True, False
         try:
             ends = [limit.collapse(sense) for sense in (1, -1)]

@@ -118,9 +118,7 @@ class Places:
             return None
         scale = self.dead.scale / total
         loads = Loads(self.dead.dead, live * scale, self.dead.resistance)
-        limit = LimitAnalysis(
-            self.assembly, self.friction, strength=self.strength, associated=self.associated, loads=loads
-        )
+        limit = LimitAnalysis(self.assembly, self.friction, strength=self.strength, associated=self.associated, loads=loads)
         try:
             state, mechanism = limit.collapse(1)
         except Immovable:
@@ -160,9 +158,13 @@ class Places:
         if found is None:
             nothing = np.full(self.assembly.p.shape, np.nan)
             return {
-                "capacity": np.array(np.inf), "factor": np.array(np.inf), "mechanism": np.array(""), "gap": np.array(0.0),
-                "line": nothing, "normal": nothing[:, 0],
-            }  # fmt: skip
+                "capacity": np.array(np.inf),
+                "factor": np.array(np.inf),
+                "mechanism": np.array(""),
+                "gap": np.array(0.0),
+                "line": nothing,
+                "normal": nothing[:, 0],
+            }
         state, mechanism = found.state, found.mechanism
         return {
             "capacity": np.array(found.factor if not self.train.known else found.load),
@@ -235,10 +237,19 @@ def run(context: Context, options: MovingLoad) -> Result:
     design = factors.live * factors.dynamic * strip if train.known else 1.0
     places, ways = _places(options, train, low, high)
     job = Places(
-        assembly, friction, strength, options.friction_rule == "associated", dead, places,
-        ways, Train(train.name, train.axles, train.forces * design, train.even * (1.0, 1.0, design), train.known),
-        (low, high), options.contact_length, options.adverse, _top(assembly, low, high),
-    )  # fmt: skip
+        assembly,
+        friction,
+        strength,
+        options.friction_rule == "associated",
+        dead,
+        places,
+        ways,
+        Train(train.name, train.axles, train.forces * design, train.even * (1.0, 1.0, design), train.known),
+        (low, high),
+        options.contact_length,
+        options.adverse,
+        _top(assembly, low, high),
+    )
     swept = sweep(context, "moving-load", job, len(places), "moving load", slow=True).whole()
     mechanisms, gap, factor = swept["mechanism"].tolist(), float(swept["gap"].max()), swept["factor"]
     capacity = swept["capacity"] / strip if train.known else swept["capacity"]
@@ -246,10 +257,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         capacity = factor * options.force * factors.live * factors.dynamic
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
-        raise Refused(
-            f"no load of this kind causes collapse of the {structure.word}: such a load only compresses the joints",
-            WHOLE,
-        )
+        raise Refused(f"no load of this kind causes collapse of the {structure.word}: such a load only compresses the joints", WHOLE)
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
         raise NoAnswer(f"the load at {places[k]:.4g} m caused collapse in the sweep, and not when computed again")
@@ -260,11 +268,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     if options.force is not None:
         asked |= {"load_N": options.force, "safety_factor": capacity[k] / options.force}
     if train.known:
-        asked |= {
-            "adequacy_factor": float(factor[k]),
-            "train": train.name,
-            "live_load_factor": factors.live * factors.dynamic,
-        }
+        asked |= {"adequacy_factor": float(factor[k]), "train": train.name, "live_load_factor": factors.live * factors.dynamic}
     if options.serviceability is not None:
         asked |= _permissible(context, options, options.serviceability, job, strip)
     if job.associated and friction is not None:
@@ -309,16 +313,16 @@ def run(context: Context, options: MovingLoad) -> Result:
         "mechanism_pose": Array(finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
         "chain_joint": Array(
             np.concatenate([np.array(j, dtype=int) for j in assembly.chains.values()] or [np.empty(0, dtype=int)]),
-            ("link",), "", "joints of the chains, one chain after the other",
+            ("link",),
+            "",
+            "joints of the chains, one chain after the other",
         ),
         "chain_start": Array(np.cumsum([0, *map(len, assembly.chains.values())]), ("chain_edge",), "", "first of each chain, and the end"),
-    }  # fmt: skip
+    }
     columns = {"place": places, "collapse_load": finite, "mechanism": mechanisms}
     if train.known:
         adequacy = np.where(np.isinf(factor), np.nan, factor)
-        result.arrays["adequacy"] = Array(
-            adequacy, ("place",), "", "multiple of the factored train that causes collapse"
-        )
+        result.arrays["adequacy"] = Array(adequacy, ("place",), "", "multiple of the factored train that causes collapse")
         columns = {"place": places, "way": ways, "adequacy": adequacy, "collapse_load": finite, "mechanism": mechanisms}
     result.tables = {"moving_load": TableData(columns, {"place": "m", "collapse_load": "N"})}
     result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
@@ -326,9 +330,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     return result
 
 
-def _permissible(
-    context: Context, options: MovingLoad, service: Serviceability, job: Places, strip: float
-) -> dict[str, object]:
+def _permissible(context: Context, options: MovingLoad, service: Serviceability, job: Places, strip: float) -> dict[str, object]:
     """Of the permissible limit state: least factor over all places [-], its place [m] and the permissible stress [Pa].
 
     All partial factors are one; the dynamic factor, an effect of the motion, multiplies the train here too. Limit analysis with the permissible stress as strength gives the greatest multiple of the
@@ -384,8 +386,7 @@ def _envelope(assembly: Assembly, line: np.ndarray, normal: np.ndarray) -> Table
     pressed_on = (normal > 0.0) & np.isfinite(share)
     some = pressed_on.any(axis=0)
     low, high = (
-        np.where(some, getattr(np.where(pressed_on, share, fill), end)(axis=0), np.nan)
-        for end, fill in (("min", np.inf), ("max", -np.inf))
+        np.where(some, getattr(np.where(pressed_on, share, fill), end)(axis=0), np.nan) for end, fill in (("min", np.inf), ("max", -np.inf))
     )
     return TableData(
         {

@@ -79,9 +79,7 @@ def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
 
 
 def _refuse_height(number: int) -> None:
-    raise Refused(
-        "z: belongs to blocks in space; y is the height in a plane section", ("analysis", "load", number, "z")
-    )
+    raise Refused("z: belongs to blocks in space; y is the height in a plane section", ("analysis", "load", number, "z"))
 
 
 def _refuse_alone(building: Building) -> None:

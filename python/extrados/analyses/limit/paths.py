@@ -22,18 +22,28 @@ def follow_paths(follow: Callable[[float, int], tuple[float, Certificate]], *, p
         except NoAnswer as error:
             rows.append(
                 LoadPath(
-                    shear_stiffness_ratio=ratio, collapse_acceleration_g=None, certified=False, zero_gap_g=None,
-                    equilibrium_residual=None, friction_residual=None, overlap_residual=None, reason=str(error),
+                    shear_stiffness_ratio=ratio,
+                    collapse_acceleration_g=None,
+                    certified=False,
+                    zero_gap_g=None,
+                    equilibrium_residual=None,
+                    friction_residual=None,
+                    overlap_residual=None,
+                    reason=str(error),
                 )
-            )  # fmt: skip
+            )
             continue
         rows.append(
             LoadPath(
-                shear_stiffness_ratio=ratio, collapse_acceleration_g=gamma, certified=proof.holds(gamma),
-                zero_gap_g=proof.zero_gap, equilibrium_residual=proof.equilibrium,
-                friction_residual=max(proof.friction, proof.tension), overlap_residual=proof.closing,
+                shear_stiffness_ratio=ratio,
+                collapse_acceleration_g=gamma,
+                certified=proof.holds(gamma),
+                zero_gap_g=proof.zero_gap,
+                equilibrium_residual=proof.equilibrium,
+                friction_residual=max(proof.friction, proof.tension),
+                overlap_residual=proof.closing,
             )
-        )  # fmt: skip
+        )
     return rows
 
 

@@ -23,16 +23,14 @@ def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Resu
     if building.supports.abutting_wall is not None:  # no statics takes the contact with the wall
         neglected.append(_WALL)
     text = str(proof)
-    found = SelfWeight(
-        collapse_acceleration_g=0.0, safety_factor=0.0, certificate=text[:1].upper() + text[1:], neglected=neglected
-    )
+    found = SelfWeight(collapse_acceleration_g=0.0, safety_factor=0.0, certificate=text[:1].upper() + text[1:], neglected=neglected)
     result = Result(kind, results=found, answer=found.statement())
     if proof.motion is not None:
         result.arrays = geometry_arrays(building.blocks()) | {
             "collapse_velocity": Array(
                 proof.motion, ("block", "component"), "", "collapse motion of the certificate: x, y [m], rotation; its scale is arbitrary"
             )
-        }  # fmt: skip
+        }
     return result
 
 

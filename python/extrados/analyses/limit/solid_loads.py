@@ -38,9 +38,7 @@ def strand_rows(building: Building, limit: SolidLimit, tension: np.ndarray) -> l
     for name, strand, force in zip(names, limit.strands, tension.tolist(), strict=True):
         whole = max(b for b in (strand.high, -strand.low, 0.0) if np.isfinite(b)) or float(limit.weight.sum())
         yields = force > strand.high - SLACK * whole or force < strand.low + SLACK * whole
-        state: Literal["slack", "carries", "yields"] = (
-            "slack" if abs(force) < SLACK * whole else "yields" if yields else "carries"
-        )
+        state: Literal["slack", "carries", "yields"] = "slack" if abs(force) < SLACK * whole else "yields" if yields else "carries"
         rows.append(TieForce(name=name, force_N=force, state=state))
     return rows
 
@@ -54,4 +52,4 @@ def strand_arrays(limit: SolidLimit, tension: np.ndarray) -> dict[str, Array]:
     return {
         "strand_segment": Array(np.array(ends), ("segment", "tie_end", "axis3"), "m", "both ends of the segments of ties and chains"),
         "strand_tension": Array(tension[of], ("segment",), "N", "tension in them at collapse"),
-    }  # fmt: skip
+    }

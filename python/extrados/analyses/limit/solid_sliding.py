@@ -37,12 +37,16 @@ def slide(
     starts_g = [state.gamma for state, _ in certified]
     least, proof = min(certified, key=lambda one: one[0].gamma, default=(None, None))
     row = out.SolidNonDilatant(
-        direction_deg=direction, associated_g=associated, load_path_g=design_value(paths), load_paths=paths,
-        least_g=None if least is None else least.gamma, starts_g=starts_g,
+        direction_deg=direction,
+        associated_g=associated,
+        load_path_g=design_value(paths),
+        load_paths=paths,
+        least_g=None if least is None else least.gamma,
+        starts_g=starts_g,
         spread_g=max(starts_g) - min(starts_g) if starts_g else None,
         zero_gap_g=None if proof is None else proof.zero_gap,
         equilibrium_residual=None if proof is None else proof.equilibrium,
         friction_residual=None if proof is None else max(proof.friction, proof.tension),
         overlap_residual=None if proof is None else proof.closing,
-    )  # fmt: skip
+    )
     return row, least

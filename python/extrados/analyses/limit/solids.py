@@ -45,9 +45,7 @@ def run(context: Context, options: Tilt) -> Result:
     count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
     angles = first + 360.0 * np.arange(count) / count if count else np.array([first, opposite])
     asked = np.unique(np.round(np.concatenate([[first, opposite], angles]), 9))
-    pushed = limit.pushes(
-        asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions")
-    )
+    pushed = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
     found_at = dict(zip(asked.tolist(), pushed, strict=True))
     there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, opposite))
     if there.gamma < 0.0 or back.gamma < 0.0:
@@ -60,11 +58,7 @@ def run(context: Context, options: Tilt) -> Result:
     capacity = np.array([np.inf if one is None else _stands(one, assembly).gamma for one in rose])
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
-    slides = max(
-        dilating_contacts(limit, one)
-        for one in (there, back, rose[least] if rose else there)
-        if isinstance(one, Programme)
-    )
+    slides = max(dilating_contacts(limit, one) for one in (there, back, rose[least] if rose else there) if isinstance(one, Programme))
     sliding: Keys = {}
     if slides:
         sought = asked.tolist() if options.friction_rule != "associated" else [first, opposite, float(angles[least])]
@@ -88,34 +82,47 @@ def run(context: Context, options: Tilt) -> Result:
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
     pose = pose_of(assembly, there.motion)
     found = out.SolidTilt(
-        collapse_acceleration_g=there.gamma, collapse_acceleration_opposite_g=back.gamma,
-        tilt_angle_deg=_degrees(there.gamma), tilt_angle_opposite_deg=_degrees(back.gamma), load_direction_deg=first,
-        least_acceleration_g=float(capacity[least]), least_direction_deg=float(angles[least]), blocks=len(assembly.mass),
-        contacts=len(assembly.a), moving_blocks=len(moving_blocks(assembly, there)),
-        fastest_block=assembly.block_names[int(speed.argmax())], opening_contacts=opens[:MOST_CONTACTS],
-        weight_N=float(limit.weight.sum() + GRAVITY * assembly.fill[:, 1].sum()), upper_bound_g=there.upper,
-        duality_gap=max(there.gap, back.gap), equilibrium_residual=max(there.equilibrium, back.equilibrium),
-        friction_residual=max(there.cone, back.cone), overlap_residual=max(there.overlap, back.overlap),
-        dilating_contacts=slides, **sliding,
+        collapse_acceleration_g=there.gamma,
+        collapse_acceleration_opposite_g=back.gamma,
+        tilt_angle_deg=_degrees(there.gamma),
+        tilt_angle_opposite_deg=_degrees(back.gamma),
+        load_direction_deg=first,
+        least_acceleration_g=float(capacity[least]),
+        least_direction_deg=float(angles[least]),
+        blocks=len(assembly.mass),
+        contacts=len(assembly.a),
+        moving_blocks=len(moving_blocks(assembly, there)),
+        fastest_block=assembly.block_names[int(speed.argmax())],
+        opening_contacts=opens[:MOST_CONTACTS],
+        weight_N=float(limit.weight.sum() + GRAVITY * assembly.fill[:, 1].sum()),
+        upper_bound_g=there.upper,
+        duality_gap=max(there.gap, back.gap),
+        equilibrium_residual=max(there.equilibrium, back.equilibrium),
+        friction_residual=max(there.cone, back.cone),
+        overlap_residual=max(there.overlap, back.overlap),
+        dilating_contacts=slides,
+        **sliding,
         **given(
             ties=strand_rows(building, limit, there.tension) if limit.strands else None,
             pyramids=None if options.pyramids is None else _pyramids(limit, first, options.pyramids),
         ),
-    )  # fmt: skip
+    )
     result.results = found
     force, centre = _resultants(assembly, there)
     result.arrays |= scene_arrays(assembly) | {
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
         "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, into their first stone"),
-        "collapse_force": Array(there.force, ("contact_corner", "component"), "N", "compression and both shears at the corners at collapse"),
+        "collapse_force": Array(
+            there.force, ("contact_corner", "component"), "N", "compression and both shears at the corners at collapse"
+        ),
         "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first stone of each contact at collapse"),
         "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application: centre of the compression"),
         "velocity": Array(there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, spin"),
         "mechanism_pose": Array(pose, ("block", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on: shift, rotation vector"),
         "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
         "rose_capacity": Array(capacity, ("direction",), "g", "capacity along them"),
-    }  # fmt: skip
+    }
     result.arrays |= strand_arrays(limit, there.tension)
     result.files |= scene_files(assembly.parts, assembly.owner, assembly.centroid, assembly.block_names, pose)
     result.answer = _words(word, found, count)
@@ -123,8 +130,13 @@ def run(context: Context, options: Tilt) -> Result:
 
 
 def _without_dilatancy(
-    context: Context, options: Tilt, limit: SolidLimit, directions: list[float], found_at: dict[float, Programme | Falls | None], result: Result
-) -> tuple[Keys, dict[float, Programme]]:  # fmt: skip
+    context: Context,
+    options: Tilt,
+    limit: SolidLimit,
+    directions: list[float],
+    found_at: dict[float, Programme | Falls | None],
+    result: Result,
+) -> tuple[Keys, dict[float, Programme]]:
     """Keys of the results on sliding without dilatancy, and the least states by direction: along the push, opposite, and further
     directions [deg]."""
     contacts = len(limit.assembly.a)
@@ -138,9 +150,7 @@ def _without_dilatancy(
         associated = found_at[direction]
         if not isinstance(associated, Programme):
             continue
-        row, state = slide(
-            limit, direction, associated.gamma, options.starts, patient=options.friction_rule == "non-associated"
-        )
+        row, state = slide(limit, direction, associated.gamma, options.starts, patient=options.friction_rule == "non-associated")
         rows.append(row)
         if state is not None:
             states[direction] = state
@@ -157,9 +167,7 @@ def _without_dilatancy(
     return told, states
 
 
-def _by_faces(
-    limit: SolidLimit, corners: Sequence[Programme | Falls | None], directions: Sequence[float], result: Result
-) -> Keys:
+def _by_faces(limit: SolidLimit, corners: Sequence[Programme | Falls | None], directions: Sequence[float], result: Result) -> Keys:
     """Keys of the results on the friction of whole faces; a warning where it is much less than that of corners."""
     law, spread = FaceLaw(limit), 0.0
     told: Keys = {}
@@ -200,7 +208,7 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
         "solid_face_block": Array(owner, ("face",), "", "stone of each face"),
         "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the blocks"),
         **named_places("block", assembly.block_names, assembly.centroid, "centroids of the blocks"),
-    }  # fmt: skip
+    }
 
 
 def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
@@ -208,9 +216,7 @@ def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Program
         raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks from all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
-        raise CannotStand(
-            f"certificate: a motion, fastest at {name}, that no contact hinders and by which the weights do work"
-        )
+        raise CannotStand(f"certificate: a motion, fastest at {name}, that no contact hinders and by which the weights do work")
     return found
 
 
@@ -306,11 +312,7 @@ def _openings(assembly: SolidAssembly, found: Programme) -> list[out.OpenContact
     rows = []
     for j in order[most.max(axis=0)[order] > OPEN][:MOST_CONTACTS].tolist():
         x, y, z = assembly.polygon[j].mean(axis=0)
-        rows.append(
-            out.OpenContact(
-                joint=j, name=assembly.joint_names[j], opening=most[0, j], sliding=most[1, j], x_m=x, y_m=y, z_m=z
-            )
-        )
+        rows.append(out.OpenContact(joint=j, name=assembly.joint_names[j], opening=most[0, j], sliding=most[1, j], x_m=x, y_m=y, z_m=z))
     return rows
 
 
@@ -347,9 +349,7 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
         f"The {word} becomes a mechanism at a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g {along}, or when "
         f"its base is tilted by {r.tilt_angle_deg:.2f} degrees; opposite {r.collapse_acceleration_opposite_g:.4f} g. "
     )
-    moving = (
-        "all of its blocks move" if r.moving_blocks == r.blocks else f"{r.moving_blocks} of its {r.blocks} blocks move"
-    )
+    moving = "all of its blocks move" if r.moving_blocks == r.blocks else f"{r.moving_blocks} of its {r.blocks} blocks move"
     names = [c.name for c in r.opening_contacts[:MOST_NAMED]]
     opens = f"; most open: {', '.join(names)}" if names else ""
     text += f"In the mechanism {moving}, {r.fastest_block} fastest{opens}. "

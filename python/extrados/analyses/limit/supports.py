@@ -66,18 +66,13 @@ def run(context: Context, options: MovingSupports) -> Result:
     r = out.MovingSupports(
         movement_at_fall_m=float(movement[-1]),
         movement_at_fall_over_span=float(movement[-1] / span),
-        span_change_at_fall_ratio=float(
-            movement[-1] * options.spread / np.hypot(options.spread, options.settle) / span
-        ),
+        span_change_at_fall_ratio=float(movement[-1] * options.spread / np.hypot(options.spread, options.settle) / span),
         thrust_at_rest_N=float(force[0, 0]),
         thrust_at_fall_N=float(force[-1, 0]),
         hinges_at_rest=[out.JointHinge(joint=k, side=side) for k, side in states[0].hinges],
         hinges_at_fall=[out.JointHinge(joint=k, side=side) for k, side in last.hinges],
         joints_touched_at_fall=fourth,
-        stages=[
-            out.Stage(movement_m=movement[i], hinges=[_place(arch, hinge) for hinge in states[i].hinges])
-            for i in stages
-        ],
+        stages=[out.Stage(movement_m=movement[i], hinges=[_place(arch, hinge) for hinge in states[i].hinges]) for i in stages],
     )
     result.results = r
     shown = [int(np.abs(movement - share * movement[-1]).argmin()) for share in SHOWN]
@@ -88,23 +83,35 @@ def run(context: Context, options: MovingSupports) -> Result:
         "energy": Array(np.array([s.energy for s in states]), ("movement",), "J", "potential energy over that at rest"),
         "hinge": Array(np.array([[h[0] for h in s.hinges] for s in states]), ("movement", "hinge_number"), "", "joints that hinge"),
         "shown_movement": Array(movement[shown], ("shown",), "m", "movements drawn"),
-        "shown_pose": Array(np.array([states[i].pose for i in shown]), ("shown", "block", "component"), "m, m, rad", "places of the centroids, rotations"),
-        "shown_point": Array(np.array([states[i].points for i in shown]), ("shown", "joint", "axis"), "m", "thrust line on the displaced joints"),
-    }  # fmt: skip
+        "shown_pose": Array(
+            np.array([states[i].pose for i in shown]), ("shown", "block", "component"), "m, m, rad", "places of the centroids, rotations"
+        ),
+        "shown_point": Array(
+            np.array([states[i].points for i in shown]), ("shown", "joint", "axis"), "m", "thrust line on the displaced joints"
+        ),
+    }
     if options.animation != "none":
         film = np.unique(np.linspace(0, len(states) - 1, FILM).astype(int))
         result.arrays |= {
             "film_movement": Array(movement[film], ("film",), "m", "movements in the animation"),
-            "film_pose": Array(np.array([states[i].pose for i in film]), ("film", "block", "component"), "m, m, rad", "places of the centroids, rotations"),
-            "film_line": Array(np.array([states[i].points for i in film]), ("film", "joint", "axis"), "m", "thrust line on the displaced joints"),
-        }  # fmt: skip
+            "film_pose": Array(
+                np.array([states[i].pose for i in film]), ("film", "block", "component"), "m, m, rad", "places of the centroids, rotations"
+            ),
+            "film_line": Array(
+                np.array([states[i].points for i in film]), ("film", "joint", "axis"), "m", "thrust line on the displaced joints"
+            ),
+        }
     result.tables = {
         "supports": TableData(
-            {"movement": movement, "horizontal": force[:, 0], "vertical": force[:, 1],
-             "hinges": ["; ".join(f"{side} {k}" for k, side in s.hinges) for s in states]},
+            {
+                "movement": movement,
+                "horizontal": force[:, 0],
+                "vertical": force[:, 1],
+                "hinges": ["; ".join(f"{side} {k}" for k, side in s.hinges) for s in states],
+            },
             {"movement": "m", "horizontal": "N", "vertical": "N"},
         )
-    }  # fmt: skip
+    }
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
         f"The right support {way}: the arch follows on three hinges ({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) "
@@ -126,8 +133,7 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            "the structure has one support, which moves all of it. State by [[initial.movements]] which joints on the "
-            "ground move",
+            "the structure has one support, which moves all of it. State by [[initial.movements]] which joints on the ground move",
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -155,26 +161,25 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     wide = motion[:, :2].max(axis=1)
     moving = np.flatnonzero(np.abs(motion).max(axis=1) > OPENS * np.abs(motion).max())
     arched = {j for joints in assembly.chains.values() if not is_stack(assembly, joints) for j in joints}
-    sides: dict[bool, tuple[out.OpenSide, out.OpenSide]] = {
-        True: ("intrados", "extrados"), False: ("first end", "second end")
-    }  # fmt: skip
+    sides: dict[bool, tuple[out.OpenSide, out.OpenSide]] = {True: ("intrados", "extrados"), False: ("first end", "second end")}
     result = Result("supports")
     opened = [
         out.JointOpening(
-            joint=j, name=assembly.joint_names[j], opening_mm=1e3 * float(wide[j]),
-            side=sides[j in arched][int(motion[j, 1] > motion[j, 0])], slip_mm=1e3 * float(motion[j, 2]),
+            joint=j,
+            name=assembly.joint_names[j],
+            opening_mm=1e3 * float(wide[j]),
+            side=sides[j in arched][int(motion[j, 1] > motion[j, 0])],
+            slip_mm=1e3 * float(motion[j, 2]),
         )
         for j in moving[np.argsort(-wide[moving], kind="stable")].tolist()
-    ]  # fmt: skip
+    ]
     force = found.state.force(assembly)
     result.results = out.MovingSupports(
         openings=opened,
         work_J=found.work,
         work_gap_J=found.gap,
         reactions=[
-            out.Reaction(
-                joint=j, name=assembly.joint_names[j], horizontal_N=sign * force[j, 0], vertical_N=sign * force[j, 1]
-            )
+            out.Reaction(joint=j, name=assembly.joint_names[j], horizontal_N=sign * force[j, 0], vertical_N=sign * force[j, 1])
             for j, sign in enumerate(np.where(assembly.b == GROUND, 1.0, -1.0).tolist())
             if GROUND in (assembly.a[j], assembly.b[j])
         ],
@@ -190,11 +195,15 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     }
     result.tables = {
         "openings": TableData(
-            {"joint": [o.name for o in opened], "opening": [o.opening_mm for o in opened],
-             "side": [o.side for o in opened], "slip": [o.slip_mm for o in opened]},
+            {
+                "joint": [o.name for o in opened],
+                "opening": [o.opening_mm for o in opened],
+                "side": [o.side for o in opened],
+                "slip": [o.slip_mm for o in opened],
+            },
             {"opening": "mm", "slip": "mm"},
         )
-    }  # fmt: skip
+    }
     if np.abs(found.pose[:, 2]).max() > LARGE:
         result.warnings.append(
             f"blocks rotate by up to {np.degrees(np.abs(found.pose[:, 2]).max()):.1f} degrees: the motion is of first order, "

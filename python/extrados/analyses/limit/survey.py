@@ -107,12 +107,7 @@ def run(context: Context, options: Survey) -> Result:
     )
     result.results = r
     result.arrays = {
-        "gamma": Array(
-            gamma,
-            ("section",),
-            "g",
-            "collapse acceleration to +x; 0 for a section that cannot stand, NaN without a result",
-        ),
+        "gamma": Array(gamma, ("section",), "g", "collapse acceleration to +x; 0 for a section that cannot stand, NaN without a result"),
         "section_name": Array(np.array(names, dtype=object), ("section",), "", "names of the sections"),
     }
     units = {"collapse_acceleration": "g", "fractured_collapse_acceleration": "g", "tilt_angle": "deg"}

@@ -13,14 +13,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import values_of
 from extrados.analyses.limit.common import packed
 from extrados.analyses.limit.tables import Sweep
-from extrados.analyses.limit.variation import (
-    LOCKED,
-    Outcome,
-    Signature,
-    evaluate,
-    outcomes_of,
-    spoken,
-)
+from extrados.analyses.limit.variation import LOCKED, Outcome, Signature, evaluate, outcomes_of, spoken
 from extrados.limit.errors import CannotStand
 from extrados.limit.finite_motion import finite_motion
 from extrados.model.errors import BadGeometry
@@ -55,18 +48,18 @@ class Range:
         try:
             own = getattr(self.building, self.table)
             if isinstance(own, tuple):
-                table = tuple(
-                    read_table(type(was), one).model_copy(update={"name": was.name})
-                    for was, one in zip(own, data, strict=True)
-                )
+                table = tuple(read_table(type(was), one).model_copy(update={"name": was.name}) for was, one in zip(own, data, strict=True))
             else:
                 table = read_table(type(own), data)
         except BadGeometry as error:
             return Outcome(reason=str(error))
         return evaluate(
-            self.building.apart().having(**{self.table: table}), self.options, fracture=beside and self.options.fracture,
-            alone=beside and self.options.buttress_alone, explain=explain,
-        )  # fmt: skip
+            self.building.apart().having(**{self.table: table}),
+            self.options,
+            fracture=beside and self.options.fracture,
+            alone=beside and self.options.buttress_alone,
+            explain=explain,
+        )
 
 
 @dataclass(frozen=True)
@@ -91,12 +84,8 @@ def run(context: Context, options: Sweep) -> Result:
     outcomes = outcomes_of(swept.whole())
     if not any(o.gamma for o in outcomes):
         if all(o.status == "cannot-stand" for o in outcomes):
-            raise CannotStand(
-                f"no value of {options.vary} gives a structure that stands; at the last {outcomes[-1].reason}"
-            )
-        raise Refused(
-            f"no value of {options.vary} gives a structure with a capacity: {outcomes[-1].reason}", ("analysis", "vary")
-        )
+            raise CannotStand(f"no value of {options.vary} gives a structure that stands; at the last {outcomes[-1].reason}")
+        raise Refused(f"no value of {options.vary} gives a structure with a capacity: {outcomes[-1].reason}", ("analysis", "vary"))
     changes = _changes(context, ask, values, outcomes) if options.locate and not whole else []
     numbers: dict[Signature, int] = {}
     for _, signature in sorted(
@@ -132,11 +121,7 @@ def run(context: Context, options: Sweep) -> Result:
         values=values.tolist(),
         collapse_accelerations_g=[o.gamma for o in outcomes],
         upper_bound_values=[v for v, o in zip(values.tolist(), outcomes, strict=True) if o.dilating],
-        gaps=[
-            out.Gap(value=v, status=o.status, reason=o.reason)
-            for v, o in zip(values, outcomes, strict=True)
-            if o.status != "ok"
-        ],
+        gaps=[out.Gap(value=v, status=o.status, reason=o.reason) for v, o in zip(values, outcomes, strict=True) if o.status != "ok"],
         duality_gap=max(o.gap for o in outcomes),
         **({"fractured_collapse_accelerations_g": fractured} if options.fracture else {}),
         **({"buttress_alone_accelerations_g": [o.alone for o in outcomes]} if options.buttress_alone else {}),
@@ -152,16 +137,9 @@ def run(context: Context, options: Sweep) -> Result:
     }
     result.arrays = {
         "value": Array(values, ("value",), "", f"values of {options.vary}"),
-        "gamma": Array(
-            gamma,
-            ("value",),
-            "g",
-            "collapse acceleration to +x; 0 for a structure that cannot stand, NaN without a result",
-        ),
+        "gamma": Array(gamma, ("value",), "g", "collapse acceleration to +x; 0 for a structure that cannot stand, NaN without a result"),
         "mechanism": Array(number, ("value",), "", "number of the mechanism; 0: none"),
-        "change": Array(
-            np.array([c["value"] for c in changes]), ("change",), "", "values at which the mechanism changes"
-        ),
+        "change": Array(np.array([c["value"] for c in changes]), ("change",), "", "values at which the mechanism changes"),
     }
     if options.fracture:
         cracked = np.array([np.nan if f is None else f for f in fractured])
@@ -277,9 +255,7 @@ class Best:
         return -np.inf if found is None else found
 
 
-def _optimum(
-    context: Context, ask: Range, values: np.ndarray, outcomes: list[Outcome], closely: bool
-) -> tuple[float, float]:
+def _optimum(context: Context, ask: Range, values: np.ndarray, outcomes: list[Outcome], closely: bool) -> tuple[float, float]:
     """The value of greatest capacity, searched between the neighbours of the best one, and the capacity [g]."""
     gamma = np.array([-np.inf if o.gamma is None else o.gamma for o in outcomes])
     k = int(gamma.argmax())
@@ -292,9 +268,7 @@ def _optimum(
     return best[1], best[0]
 
 
-def _examples(
-    ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int]
-) -> dict[str, Array]:
+def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[str, Array]:
     """One section of each mechanism, in the middle of where it governs, with its mechanism carried on."""
     outlines: dict[str, np.ndarray] = {}
     moved: dict[str, np.ndarray] = {}
@@ -313,9 +287,7 @@ def _examples(
             moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
     of = [number for number, count in blocks.items() for _ in range(count)]
     return {
-        "example_mechanism": Array(
-            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism of each block"
-        ),
+        "example_mechanism": Array(np.array(of, dtype=int), ("example_path",), "", "number of the mechanism of each block"),
         **packed("example", outlines, "m", "blocks of one section of each mechanism (number/block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
@@ -324,11 +296,7 @@ def _examples(
 def _words(options: Sweep, r: out.Sweep) -> str:
     unit = f" {r.unit}" if r.unit else ""
     best, most = f"{r.optimum_value:.4g}{unit}", r.optimum_collapse_acceleration_g
-    level = [
-        v
-        for v, g in zip(r.values, r.collapse_accelerations_g, strict=True)
-        if g is not None and abs(g - most) <= LEVEL * abs(most)
-    ]
+    level = [v for v, g in zip(r.values, r.collapse_accelerations_g, strict=True) if g is not None and abs(g - most) <= LEVEL * abs(most)]
     if r.locked_limits:
         where = f"greatest near locking, at {best}"
     elif len(level) == len(r.values):

@@ -22,9 +22,7 @@ class AppliedLoad(Table):
     force: Force = key(0.0, "its weight, downward; of a spread load all of it")
     horizontal: Force = key(0.0, "its part to +x; of a spread load all of it")
     x_end: Length | None = key(None, "end of a spread load, even per length of plan, which starts at x")
-    y: Length | None = key(
-        None, "height at which it acts; default the surface below; in space the other coordinate of the place in plan"
-    )
+    y: Length | None = key(None, "height at which it acts; default the surface below; in space the other coordinate of the place in plan")
     z: Length | None = key(None, "in space: height at which it acts; default the surface below")
     sways: bool = key(False, "whether its weight is accelerated with the ground, as a floor's or a roof's is")
 
@@ -60,23 +58,27 @@ class Tilt(LimitAnalysisTable, Animated):
     solid: ClassVar = True
     fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     direction: Angle | None = key(
-        None, "direction in plan of the horizontal load, from +x to +y, which is across a section; with it, and for structures "
-        "without a plane section, the blocks are analysed as solids", ge=-360, le=360,
-    )  # fmt: skip
-    rose: int | None = key(
-        None, "of solids: directions all around at which the capacity is sought; default 16 up to 300 blocks, beyond the direction alone",
-        ge=4, le=720,
-    )  # fmt: skip
-    face_law: bool | None = key(
-        None, "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 80 contacts "
-        "slide", source="after Orduna and Lourenco 2005",
-    )  # fmt: skip
-    block_size: bool | None = key(
-        None, "of solids: also the capacity with blocks half as long in each direction, and with the other bond"
+        None,
+        "direction in plan of the horizontal load, from +x to +y, which is across a section; with it, and for structures "
+        "without a plane section, the blocks are analysed as solids",
+        ge=-360,
+        le=360,
     )
+    rose: int | None = key(
+        None,
+        "of solids: directions all around at which the capacity is sought; default 16 up to 300 blocks, beyond the direction alone",
+        ge=4,
+        le=720,
+    )
+    face_law: bool | None = key(
+        None,
+        "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 80 contacts slide",
+        source="after Orduna and Lourenco 2005",
+    )
+    block_size: bool | None = key(None, "of solids: also the capacity with blocks half as long in each direction, and with the other bond")
     pyramids: int | None = key(
         None, "of solids: also bound the capacity by pyramids of so many sides, within and around the cones of friction", ge=3, le=64
-    )  # fmt: skip
+    )
 
 
 class Thrust(LimitAnalysisTable):
@@ -99,9 +101,7 @@ class Sweep(LimitAnalysisTable):
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
     stop: float | str | None = key(None, "last value")
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
-    values: list[float | str] | None = key(
-        None, "the values, in place of start and stop", min_length=2, max_length=2000
-    )
+    values: list[float | str] | None = key(None, "the values, in place of start and stop", min_length=2, max_length=2000)
     fracture: bool = key(False, "also with the leeward buttress cracked")
     buttress_alone: bool = key(False, "also the leeward buttress by itself", source="thesis Fig. 3-4b")
     locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
@@ -128,10 +128,7 @@ class Imperfections(LimitAnalysisTable):
     kind: Literal["imperfections"]
     starter: ClassVar = {"deviation": '"5 mm"'}
     deviation: Length | None = key(
-        None,
-        "how far a measured point may lie from its true place; default the contact_tolerance of `blocks`",
-        gt=0,
-        le=1,
+        None, "how far a measured point may lie from its true place; default the contact_tolerance of `blocks`", gt=0, le=1
     )
     count: int = key(200, "number of random surveys", ge=10, le=100000)
     seed: int = key(1, "seed of the random numbers", ge=0)
@@ -149,9 +146,7 @@ class MovingSupports(BuildingAnalysis, Animated):
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     movement: Length | None = key(
-        None,
-        "movement of the right support where collapse is not followed; default a thousandth of the width",
-        gt=0,
+        None, "movement of the right support where collapse is not followed; default a thousandth of the width", gt=0
     )
     steps: int = key(200, "of an arch: steps from rest to collapse", ge=10, le=5000)
 
@@ -165,11 +160,31 @@ class MovingSupports(BuildingAnalysis, Animated):
 
 #: Trains of trains.toml, and LM1, whose loads depend on the width
 TrainName = Literal[
-    "LM1", "LM71", "SW/0", "SW/2", "SV80", "SV100", "SV196", "CS454 single", "CS454 double 1.0", "CS454 double 1.3",
-    "CS454 double 1.8", "CS454 triple 1.0", "CS454 triple 1.3", "CS454 double 1.0 lift", "CS454 double 1.3 lift",
-    "CS454 double 1.8 lift", "CS454 triple 1.3 lift", "MLC30 tracked", "MLC40 tracked", "MLC50 tracked", "MLC60 tracked",
-    "MLC70 tracked", "MLC80 tracked", "MLC100 tracked",
-]  # fmt: skip
+    "LM1",
+    "LM71",
+    "SW/0",
+    "SW/2",
+    "SV80",
+    "SV100",
+    "SV196",
+    "CS454 single",
+    "CS454 double 1.0",
+    "CS454 double 1.3",
+    "CS454 double 1.8",
+    "CS454 triple 1.0",
+    "CS454 triple 1.3",
+    "CS454 double 1.0 lift",
+    "CS454 double 1.3 lift",
+    "CS454 double 1.8 lift",
+    "CS454 triple 1.3 lift",
+    "MLC30 tracked",
+    "MLC40 tracked",
+    "MLC50 tracked",
+    "MLC60 tracked",
+    "MLC70 tracked",
+    "MLC80 tracked",
+    "MLC100 tracked",
+]
 
 
 class UniformLoad(Table):
@@ -196,14 +211,9 @@ class Serviceability(Table):
     """A permissible limit state beside the collapse load: repeated traffic does not damage the structure progressively."""
 
     strength_share: float = key(
-        0.5,
-        "permissible compressive stress over the compressive strength; the default is a choice of this program",
-        gt=0,
-        le=1,
+        0.5, "permissible compressive stress over the compressive strength; the default is a choice of this program", gt=0, le=1
     )
-    passive_share: float = key(
-        0.0, "share of `fill.passive` that acts under service loads, whose movements are small", ge=0, le=1
-    )
+    passive_share: float = key(0.0, "share of `fill.passive` that acts under service loads, whose movements are small", ge=0, le=1)
     live: float = key(1.0, "factor on the moving load, besides `factors.dynamic`", gt=0, le=10)
 
 
@@ -211,28 +221,20 @@ class MovingLoad(LimitAnalysisTable):
     """A load, axles or a train that crosses: what of it brings the structure down, at every place."""
 
     kind: Literal["moving-load"]
-    chain: str | None = key(
-        None, "the arch it crosses; default the first: arch, vault or nave; a bridge is crossed along its whole top"
-    )
+    chain: str | None = key(None, "the arch it crosses; default the first: arch, vault or nave; a bridge is crossed along its whole top")
     train: TrainName | None = key(
         None,
         "load model of EN 1991-2, a special vehicle of its UK annex, an axle or bogie of CS 454, or a tracked vehicle of a military "
         "class, in place of axles and loads",
         source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause); CS 454 7.3.1; STANAG 2021 (verify)",
     )
-    gap: Length | None = key(
-        None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0
-    )
+    gap: Length | None = key(None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0)
     axles: list[Length] = key([0.0], "places of the axles behind the first", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=200)
     force: Force | None = key(None, "the load; adds the safety factor", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle, in place of shares and force", max_length=200)
-    uniform: list[UniformLoad] = key(
-        [], "even loads along the train; they need axle_loads, or axles = []", max_length=50
-    )
-    adverse: bool = key(
-        True, "distributed loads act only over lengths that drive the mechanism; false: over all of their length"
-    )
+    uniform: list[UniformLoad] = key([], "even loads along the train; they need axle_loads, or axles = []", max_length=50)
+    adverse: bool = key(True, "distributed loads act only over lengths that drive the mechanism; false: over all of their length")
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "notional lanes that LM1 loads; default all that the width holds", ge=1, le=20)
     width: Length | None = key(None, "transverse width that carries the load, at most the depth", gt=0)
@@ -245,9 +247,7 @@ class MovingLoad(LimitAnalysisTable):
     )
     both_ways: bool = key(False, "the train also crosses to the left, its first axle ahead")
     count: int = key(81, "number of places along the span", ge=3, le=2000)
-    places: list[Length] | None = key(
-        None, "places of the first axle, in place of count", min_length=1, max_length=2000
-    )
+    places: list[Length] | None = key(None, "places of the first axle, in place of count", min_length=1, max_length=2000)
 
     @model_validator(mode="after")
     def _axles(self) -> "MovingLoad":

@@ -14,7 +14,7 @@ from extrados.analyses.limit.common import (
     state_arrays,
     tie_arrays,
     tie_rows,
-)  # fmt: skip
+)
 from extrados.analyses.limit.tables import Thrust
 from extrados.limit.answer import Answer, assess, safety_factor
 from extrados.limit.graphic import thrust_joint, thrust_of
@@ -43,8 +43,7 @@ def run(context: Context, options: Thrust) -> Result:
         states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
-            f"at {options.gamma:g} g no thrust line is admissible: the structure carries {low:.4f} to {high:.4f} g",
-            ("analysis", "gamma"),
+            f"at {options.gamma:g} g no thrust line is admissible: the structure carries {low:.4f} to {high:.4f} g", ("analysis", "gamma")
         ) from None
     safety = None if part is None else safety_factor(part)
     lines: Keys = {}
@@ -82,9 +81,7 @@ def run(context: Context, options: Thrust) -> Result:
     return result
 
 
-def _with_central(
-    limit: LimitAnalysis, gamma: float, ends: dict[str, State], result: Result
-) -> tuple[dict[str, State], float | None]:
+def _with_central(limit: LimitAnalysis, gamma: float, ends: dict[str, State], result: Result) -> tuple[dict[str, State], float | None]:
     """The states with the most central one, and the part of the joints that holds it; without it, and with a warning, where
     it does not settle though a state is admissible."""
     try:
@@ -129,9 +126,7 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
     else:
         tied = r.least.crown_N is not None
         least, most = (line.told_kN_per_m(r.depth_m) for line in (r.least, r.most))
-        if central is not None and is_stack(
-            assembly, assembly.chains[r.chain]
-        ):  # determinate: all lines are one at its base
+        if central is not None and is_stack(assembly, assembly.chains[r.chain]):  # determinate: all lines are one at its base
             text = (
                 f"At {r.gamma_g:g} g the most central line of the stack ({central.horizontal_kN_per_m:.4g} kN/m horizontally "
                 f"at its base) {needs}."

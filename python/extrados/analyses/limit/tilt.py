@@ -20,7 +20,7 @@ from extrados.analyses.limit.common import (
     state_arrays,
     tie_arrays,
     tie_rows,
-)  # fmt: skip
+)
 from extrados.analyses.limit.paths import doubt, follow_paths
 from extrados.analyses.limit.tables import Tilt
 from extrados.analyses.needs import SPATIAL
@@ -118,12 +118,14 @@ def run(context: Context, options: Tilt) -> Result:
         **graphic_arrays(answer, "collapse", state, "at collapse, load to +x"),
         "velocity": Array(mechanism.velocity, ("block", "component"), "m, m, rad", "mechanism: x, y, rotation"),
         "mechanism_pose": Array(
-            finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad",
+            finite_motion(assembly, mechanism),
+            ("block", "component"),
+            "m, m, rad",
             "the mechanism carried on: places of the centroids, rotations",
         ),
         **tie_arrays(building, answer.loads, {"collapse": state}),
         **load_arrays(assembly, options.load),
-    }  # fmt: skip
+    }
     if answer.least:
         first = next(iter(answer.least))
         for word, state_of in (("least", answer.least[first]), ("most", answer.most[first])):
@@ -169,7 +171,7 @@ def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
             f"film_thrust_{name}": Array(np.array([row[k][1] for row in rows]), ("film",), "N", f"{name} thrust {about}")
             for k, name in enumerate(("min", "max"))
         },
-    }  # fmt: skip
+    }
 
 
 def _thrusts(answer: Answer) -> Keys:
@@ -248,11 +250,19 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
             told[f"collapse_acceleration_non_associated{end}_g"] = direction * state.gamma
             r, starts = found.residuals, [direction * g for g in found.starts]
             told[f"non_dilatant{end}"] = out.NonDilatant(
-                associated_g=upper, frictionless_g=lower, starts_g=starts, spread_g=max(starts) - min(starts),
-                certified=certified, zero_gap_g=proof.zero_gap, equilibrium_residual=proof.equilibrium,
-                friction_residual=proof.friction, tension_residual=proof.tension, overlap_residual=proof.closing,
-                complementarity_residual=r.complementarity, work_residual=r.work,
-            )  # fmt: skip
+                associated_g=upper,
+                frictionless_g=lower,
+                starts_g=starts,
+                spread_g=max(starts) - min(starts),
+                certified=certified,
+                zero_gap_g=proof.zero_gap,
+                equilibrium_residual=proof.equilibrium,
+                friction_residual=proof.friction,
+                tension_residual=proof.tension,
+                overlap_residual=proof.closing,
+                complementarity_residual=r.complementarity,
+                work_residual=r.work,
+            )
         if found.falling is not None:
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
@@ -261,15 +271,11 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
             )
         if not certified:
             told["non_associated_reason"] = f"the state found {way} is not certified (zero gap {proof.zero_gap:.1e} g)"
-            result.warnings.append(
-                f"the state without dilatancy {way} is not certified: its zero gap is {proof.zero_gap:.1e} g"
-            )
+            result.warnings.append(f"the state without dilatancy {way} is not certified: its zero gap is {proof.zero_gap:.1e} g")
     return told
 
 
-def _paths(
-    limit: LimitAnalysis, direction: int, *, patient: bool
-) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
+def _paths(limit: LimitAnalysis, direction: int, *, patient: bool) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
     """The load paths to +x (1) or to -x (-1), and the certified collapses at their ends."""
     ends = []
 
@@ -302,19 +308,19 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
         {
             "crack": Array(found.line, ("crack_end", "axis"), "m", "fracture line: inner face, outer toe"),
             "crack_pose": Array(
-                finite_motion(found.assembly, found.mechanism), ("block", "component"), "m, m, rad",
+                finite_motion(found.assembly, found.mechanism),
+                ("block", "component"),
+                "m, m, rad",
                 "the mechanism with the buttress cracked, carried on",
             ),
             "crack_centroid": Array(found.assembly.centroid, ("block", "axis"), "m", "centroids of the cracked blocks"),
-            "crack_outline": Array(
-                np.concatenate(outlines), ("crack_vertex", "axis"), "m", "outlines of the blocks, the buttress cracked"
-            ),
+            "crack_outline": Array(np.concatenate(outlines), ("crack_vertex", "axis"), "m", "outlines of the blocks, the buttress cracked"),
             "crack_outline_start": Array(
                 np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"
             ),
             "crack_point": Array(found.state.points(found.assembly), ("joint", "axis"), "m", "thrust line, cracked"),
         }
-    )  # fmt: skip
+    )
     told = out.Fracture(
         cracks=True,
         buttress=assembly.block_names[block],
@@ -333,14 +339,23 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
 def _told(found: out.Tilt) -> str:
     """In words: where capacities are upper bounds by dilatant friction, and the least states without dilatancy."""
     ends = (
-        ("to +x", found.dilating_joints, found.non_dilatant, found.collapse_acceleration_non_associated_g,
-         found.collapse_acceleration_load_path_g, found.load_paths),
         (
-            "to -x", found.dilating_joints_opposite, found.non_dilatant_opposite,
-            found.collapse_acceleration_non_associated_opposite_g, found.collapse_acceleration_load_path_opposite_g,
+            "to +x",
+            found.dilating_joints,
+            found.non_dilatant,
+            found.collapse_acceleration_non_associated_g,
+            found.collapse_acceleration_load_path_g,
+            found.load_paths,
+        ),
+        (
+            "to -x",
+            found.dilating_joints_opposite,
+            found.non_dilatant_opposite,
+            found.collapse_acceleration_non_associated_opposite_g,
+            found.collapse_acceleration_load_path_opposite_g,
             found.load_paths_opposite,
         ),
-    )  # fmt: skip
+    )
     bounds = [way for way, dilating, *_ in ends if dilating]
     text = f"Pushed {' and '.join(bounds)} joints slide: {out.DILATANT}. " if bounds else ""
     for way, _, r, least, design, paths in ends:
@@ -376,9 +391,7 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     gamma, back = answer.gamma, -answer.back_state.gamma
     where = _some([h.told() for h in found.hinges], "; ")
     slides = _sliding(assembly, answer.mechanism.sliding)
-    moves = ([f"hinges form at the {where}"] if where else []) + (
-        [f"joints slide or part at {slides}"] if slides else []
-    )
+    moves = ([f"hinges form at the {where}"] if where else []) + ([f"joints slide or part at {slides}"] if slides else [])
     text = (
         f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
         f"tilted by {degrees(gamma):.2f} degrees. In the mechanism to +x {' and '.join(moves)}. "
@@ -388,10 +401,12 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     text += _told(found)
     needed = np.inf if found.required_friction is None else found.required_friction
     text += f"Friction of {needed:.2f} is needed" + (
-        f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety)
+        f"; upright the geometric safety factor is {answer.safety:.2f}."
+        if np.isfinite(answer.safety)
         else "; upright the thrust line runs through the middles of the joints, within 1 % of their length: self-weight makes no horizontal demand."
-        if answer.part < CENTRAL else "."
-    )  # fmt: skip
+        if answer.part < CENTRAL
+        else "."
+    )
     text += spoken_ties(found.ties)
     fracture = found.fracture
     if fracture and fracture.cracks:

@@ -65,9 +65,17 @@ def outcome_of(row: dict[str, np.ndarray]) -> Outcome:
     gamma, fractured, gap, alone = (None if np.isnan(x) else float(x) for x in row["numbers"])
     marks, reason, notes, measures = json.loads(str(row["words"]))
     return Outcome(
-        gamma, fractured, tuple((name, mark) for name, mark in marks), gap or 0.0, reason, notes=notes,
-        locked=bool(row["marks"][0]), dilating=bool(row["marks"][1]), measures=measures, alone=alone,
-    )  # fmt: skip
+        gamma,
+        fractured,
+        tuple((name, mark) for name, mark in marks),
+        gap or 0.0,
+        reason,
+        notes=notes,
+        locked=bool(row["marks"][0]),
+        dilating=bool(row["marks"][1]),
+        measures=measures,
+        alone=alone,
+    )
 
 
 def outcomes_of(swept: Swept) -> list[Outcome]:
@@ -100,12 +108,7 @@ def spoken(found: Signature) -> str:
 
 
 def evaluate(
-    building: Building,
-    options: LimitAnalysisTable,
-    *,
-    fracture: bool = False,
-    alone: bool = False,
-    explain: bool = True,
+    building: Building, options: LimitAnalysisTable, *, fracture: bool = False, alone: bool = False, explain: bool = True
 ) -> Outcome:
     """Build the section and load it to +x."""
     try:
@@ -138,7 +141,7 @@ def _buttress_alone(building: Building, assembly: Assembly) -> float:
 
 def _evaluate(
     building: Building, options: LimitAnalysisTable, assembly: Assembly, limit: LimitAnalysis, fracture: bool, explain: bool
-) -> Outcome:  # fmt: skip
+) -> Outcome:
     """The section under load to +x."""
     try:
         state, mechanism = limit.collapse(1)
@@ -146,9 +149,8 @@ def _evaluate(
             raise NoEquilibrium
     except Immovable as error:
         return Outcome(
-            signature=LOCKED, reason=f"no collapse mechanism: {error}", assembly=assembly, locked=True,
-            measures=measures_of(assembly),
-        )  # fmt: skip
+            signature=LOCKED, reason=f"no collapse mechanism: {error}", assembly=assembly, locked=True, measures=measures_of(assembly)
+        )
     except NoEquilibrium:
         if not explain:
             return Outcome(reason="not proven", assembly=assembly, measures=measures_of(assembly))
@@ -170,9 +172,17 @@ def _evaluate(
             cracked = 0.0 if isinstance(error, NoEquilibrium) else None
             notes.append(f"with the buttress cracked: {error}")
     return Outcome(
-        state.gamma, cracked, signature(assembly, mechanism), abs(state.gamma - mechanism.upper_bound), "",
-        assembly, mechanism, notes, dilating=bool(limit.dilating(mechanism)), measures=measures_of(assembly),
-    )  # fmt: skip
+        state.gamma,
+        cracked,
+        signature(assembly, mechanism),
+        abs(state.gamma - mechanism.upper_bound),
+        "",
+        assembly,
+        mechanism,
+        notes,
+        dilating=bool(limit.dilating(mechanism)),
+        measures=measures_of(assembly),
+    )
 
 
 def measures_of(assembly: Assembly) -> dict[str, float]:

@@ -106,9 +106,13 @@ class Measures:
         stop_if_asked()
         m = core.measures(*series(motion))
         row = {
-            "pga_g": m.pga[0] / GRAVITY, "pgv_m_s": m.pgv[0], "pgd_m": m.pgd[0], "arias_m_s": m.arias[0],
-            "cav_m_s": m.cav[0], "duration_5_95_s": m.duration[0],
-        }  # fmt: skip
+            "pga_g": m.pga[0] / GRAVITY,
+            "pgv_m_s": m.pgv[0],
+            "pgd_m": m.pgd[0],
+            "arias_m_s": m.arias[0],
+            "cav_m_s": m.cav[0],
+            "duration_5_95_s": m.duration[0],
+        }
         if self.components:
             samples = motion.ground.samples
             assert samples is not None  # of a record

@@ -6,17 +6,7 @@ import numpy as np
 
 from extrados.analyses.batches import stop_if_asked, sweep
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.motion.members import (
-    Generated,
-    Held,
-    Matched,
-    Measures,
-    Members,
-    PrimaryImpulses,
-    Spectra,
-    rotd_peaks,
-    series,
-)  # fmt: skip
+from extrados.analyses.motion.members import Generated, Held, Matched, Measures, Members, PrimaryImpulses, Spectra, rotd_peaks, series
 from extrados.analyses.motion.tables import MotionStudy
 from extrados.analyses.motion_source import shortened
 from extrados.core import motion as core
@@ -55,17 +45,14 @@ def _periods(options: MotionStudy, step: float) -> np.ndarray:
     """Of a spectrum [s]; Refused where the time step is too long for those that are asked for or of a measure."""
     shortest = core.POINTS_PER_CYCLE * step / 4096.0
     if shortest > (needed := min(options.longest, HOUSNER_BAND[0])):
-        raise Refused(
-            f"a time step of {step:.3g} s is too long for the spectrum at a period of {needed:g} s", ("motion",)
-        )
+        raise Refused(f"a time step of {step:.3g} s is too long for the spectrum at a period of {needed:g} s", ("motion",))
     return np.geomspace(max(options.shortest, shortest), options.longest, options.periods)
 
 
 def _impulse(i: Impulse) -> out.Impulse:
     return out.Impulse(
-        amplitude_g=i.amplitude / GRAVITY, period_s=i.period, start_s=i.start, goodness_of_fit=i.goodness,
-        explained=i.explained,
-    )  # fmt: skip
+        amplitude_g=i.amplitude / GRAVITY, period_s=i.period, start_s=i.start, goodness_of_fit=i.goodness, explained=i.explained
+    )
 
 
 def _study(motion: Motion, options: MotionStudy) -> dict:
@@ -94,12 +81,17 @@ def _study(motion: Motion, options: MotionStudy) -> dict:
         "primary_impulse": _impulse(impulses[0]) if impulses else None,
         "impulses": [_impulse(i) for i in impulses],
         "wavelet_pulse": out.WaveletPulse(
-            indicator=pulse.indicator, period_s=pulse.period, peak_velocity_m_s=pulse.peak_velocity,
-            pgv_ratio=pulse.pgv_ratio, energy_ratio=pulse.energy_ratio, early=pulse.early, pulse_like=pulse.pulse_like,
+            indicator=pulse.indicator,
+            period_s=pulse.period,
+            peak_velocity_m_s=pulse.peak_velocity,
+            pgv_ratio=pulse.pgv_ratio,
+            energy_ratio=pulse.energy_ratio,
+            early=pulse.early,
+            pulse_like=pulse.pulse_like,
             fails=list(pulse.fails),
         ),
         **{name: said for name in ("title", "station") if (said := getattr(motion, name))},
-    }  # fmt: skip
+    }
 
 
 def _run_one(context: Context, options: MotionStudy) -> Result:
@@ -128,9 +120,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
         **_spectra_arrays(spectra),
     }
     if context.motion.ground.channels > 1:
-        result.arrays["vertical"] = Array(
-            motion.sample(motion.ground.start + time, 1), ("time",), "m/s^2", "vertical acceleration"
-        )
+        result.arrays["vertical"] = Array(motion.sample(motion.ground.start + time, 1), ("time",), "m/s^2", "vertical acceleration")
         r["vertical_pga_g"] = float(np.abs(result["vertical"]).max()) / GRAVITY
     rotd: dict[str, np.ndarray] = {}
     if motion.horizontal is not None:
@@ -144,18 +134,22 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
         "response_spectra": TableData(
             {
                 "period": periods,
-                **{f"{n}_{100 * d:g}": v[k] for k, d in enumerate(options.dampings)
-                   for n, v in (("psa", spectra.psa), ("psv", spectra.psv), ("sd", spectra.sd))},
+                **{
+                    f"{n}_{100 * d:g}": v[k]
+                    for k, d in enumerate(options.dampings)
+                    for n, v in (("psa", spectra.psa), ("psv", spectra.psv), ("sd", spectra.sd))
+                },
                 **rotd,
             },
-            {"period": "s", **{f"{n}_{100 * d:g}": u for d in options.dampings for n, u in (("psa", "m/s^2"), ("psv", "m/s"), ("sd", "m"))},
-             **dict.fromkeys(rotd, "m/s^2")},
+            {
+                "period": "s",
+                **{f"{n}_{100 * d:g}": u for d in options.dampings for n, u in (("psa", "m/s^2"), ("psv", "m/s"), ("sd", "m"))},
+                **dict.fromkeys(rotd, "m/s^2"),
+            },
         ),
-    }  # fmt: skip
-    writers = {"AT2": ("motion.AT2", export.at2), "columns": ("motion_columns.csv", export.columns)}
-    result.files = {
-        name: write(motion.name, a, step) for name, write in (writers[e] for e in dict.fromkeys(options.export))
     }
+    writers = {"AT2": ("motion.AT2", export.at2), "columns": ("motion_columns.csv", export.columns)}
+    result.files = {name: write(motion.name, a, step) for name, write in (writers[e] for e in dict.fromkeys(options.export))}
     result.results = out.OneMotion(**r)
     result.answer = describe(motion.name, result.results)
     return result
@@ -179,18 +173,14 @@ def _damping(options: MotionStudy) -> float:
     return options.dampings[min(1, len(options.dampings) - 1)]
 
 
-def _all_directions(
-    context: Context, options: MotionStudy, periods: np.ndarray, result: Result
-) -> dict[str, np.ndarray]:
+def _all_directions(context: Context, options: MotionStudy, periods: np.ndarray, result: Result) -> dict[str, np.ndarray]:
     """What both horizontal components give over all directions, into `result`; columns for the table of spectra."""
     horizontal, step, damping = context.motion.horizontal, context.motion.ground.step, _damping(options)
     assert horizontal is not None  # of a record with both components
     psa = directions.spectra(horizontal, step, periods, damping, context.threads)
     found = {}
     for name, values in zip(("rotd50", "rotd100"), psa, strict=True):
-        result.arrays[f"psa_{name}"] = Array(
-            values, ("period",), "m/s^2", f"{name.replace('rotd', 'RotD')}, {100 * damping:g} % damping"
-        )
+        result.arrays[f"psa_{name}"] = Array(values, ("period",), "m/s^2", f"{name.replace('rotd', 'RotD')}, {100 * damping:g} % damping")
         found[f"psa_{name}_{100 * damping:g}"] = values
     return found
 
@@ -291,31 +281,24 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         "time_step_s": shown[0][2],
     }
     result.tables["ensemble"] = TableData(
-        {"name": [members.name(k) for k in range(count)]}
-        | {n: v for n, v in measures.items() if n in MEDIANS or np.isfinite(v).any()}
+        {"name": [members.name(k) for k in range(count)]} | {n: v for n, v in measures.items() if n in MEDIANS or np.isfinite(v).any()}
     )
     result.arrays = {
         "period": Array(periods, ("period",), "s"),
-        "psa_percentile": Array(
-            np.percentile(psa, PERCENTILES, axis=0), ("percentile", "period"), "m/s^2", "16, 50 and 84 %"
-        ),
+        "psa_percentile": Array(np.percentile(psa, PERCENTILES, axis=0), ("percentile", "period"), "m/s^2", "16, 50 and 84 %"),
         "psa_mean": Array(psa.mean(axis=0), ("period",), "m/s^2", "mean pseudo-acceleration of the set"),
         "psa_shown": Array(psa[:SHOWN], ("shown", "period"), "m/s^2"),
         "impulse_amplitude": Array(impulses["amplitude_g"], ("studied",), "g", "primary impulses"),
         "impulse_period": Array(impulses["period_s"], ("studied",), "s"),
-        **{
-            f"shown_{k + 1}": Array(a, (f"point_{k + 1}",), "m/s^2", name, "shown")
-            for k, (name, a, _) in enumerate(shown)
-        },
+        **{f"shown_{k + 1}": Array(a, (f"point_{k + 1}",), "m/s^2", name, "shown") for k, (name, a, _) in enumerate(shown)},
         "shown_step": Array(np.array([s for _, _, s in shown]), ("shown",), "s"),
     }
     if not suite:
         _, a, step = shown[0]
         result.arrays["frequency"] = Array(fourier_spectrum(a, step)[0], ("frequency",), "Hz")
         result.arrays["fourier"] = Array(
-            np.sqrt(np.mean(spectra["fourier"] ** 2, axis=0)), ("frequency",), "m/s",
-            "root mean square Fourier amplitude",
-        )  # fmt: skip
+            np.sqrt(np.mean(spectra["fourier"] ** 2, axis=0)), ("frequency",), "m/s", "root mean square Fourier amplitude"
+        )
     if isinstance(model, models.Generated):
         r |= _compare_with_intensity(result, r, model, context)
     elif isinstance(model, models.Compatible):
@@ -337,9 +320,7 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     return result
 
 
-def _compare_with_intensity(
-    result: Result, r: dict[str, Any], model: models.Generated, context: Context
-) -> dict[str, Any]:
+def _compare_with_intensity(result: Result, r: dict[str, Any], model: models.Generated, context: Context) -> dict[str, Any]:
     """PGA, PGV and Arias of the set (r, its results so far) beside the medians of its intensity; further results."""
     made = generated_set(model, context.deck.folder)
     expected = made.expected()
@@ -375,12 +356,7 @@ def _compare_with_intensity(
 
 
 def _compare_with_target(
-    result: Result,
-    r: dict[str, Any],
-    model: models.Compatible,
-    periods: np.ndarray,
-    psa: np.ndarray,
-    target: np.ndarray,
+    result: Result, r: dict[str, Any], model: models.Compatible, periods: np.ndarray, psa: np.ndarray, target: np.ndarray
 ) -> dict[str, Any]:
     """The set's spectra (r, its results so far) against the target over its band; further results."""
     band = (periods >= model.shortest) & (periods <= model.longest)

@@ -34,9 +34,7 @@ def run(context: Context, options: ShakeTable) -> Result:
         "mass": Array(np.array(options.masses), ("mass",), "kg"),
         "stroke_limit": Array(curves[0]["stroke"], ("frequency",), "m", "displacement amplitude by the stroke"),
         "flow_limit": Array(curves[0]["flow"], ("frequency",), "m", "displacement amplitude by the flow"),
-        "force_limit": Array(
-            np.array([c["force"] for c in curves]), ("mass", "frequency"), "m", "displacement amplitude by the force"
-        ),
+        "force_limit": Array(np.array([c["force"] for c in curves]), ("mass", "frequency"), "m", "displacement amplitude by the force"),
         "capacity": Array(capacity, ("mass", "frequency"), "m", "least of the three"),
     }
     result.tables["capacity"] = TableData(
@@ -46,16 +44,12 @@ def run(context: Context, options: ShakeTable) -> Result:
             "flow": curves[0]["flow"],
             **{f"force_{mass:.4g}kg": c["force"] for mass, c in zip(options.masses, curves, strict=True)},
         },
-        {
-            "frequency": "Hz",
-            **{n: "m" for n in ("stroke", "flow", *(f"force_{mass:.4g}kg" for mass in options.masses))},
-        },
+        {"frequency": "Hz", **{n: "m" for n in ("stroke", "flow", *(f"force_{mass:.4g}kg" for mass in options.masses))}},
     )
     result.answer = (
         f"The table reaches {100 * table.stroke:.3g} cm below {corners[0]['stroke_to_flow']:.3g} Hz and {100 * velocity:.3g} cm/s above it; "
         + "; ".join(
-            f"{mass:.4g} kg is limited by force above {c['flow_to_force']:.3g} Hz"
-            for mass, c in zip(options.masses, corners, strict=True)
+            f"{mass:.4g} kg is limited by force above {c['flow_to_force']:.3g} Hz" for mass, c in zip(options.masses, corners, strict=True)
         )
         + "."
     )
@@ -107,9 +101,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         "drive_velocity": Array(played.velocity, ("drive_time",), "m/s"),
         "drive_acceleration": Array(played.acceleration, ("drive_time",), "m/s^2"),
         "motion_time": Array(time * chosen.time_scale, ("motion_time",), "s"),
-        "motion_acceleration": Array(
-            acceleration * chosen.amplitude, ("motion_time",), "m/s^2", "requested motion, scaled alike"
-        ),
+        "motion_acceleration": Array(acceleration * chosen.amplitude, ("motion_time",), "m/s^2", "requested motion, scaled alike"),
     }
     result.tables["drive"] = TableData(
         {
@@ -120,11 +112,11 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         },
         {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"},
     )
-    result.files["table_motion.AT2"] = export.at2(
-        f"{motion.name}, as the table plays it", played.acceleration, played.step
-    )
+    result.files["table_motion.AT2"] = export.at2(f"{motion.name}, as the table plays it", played.acceleration, played.step)
     if r["fits"]:
-        result.answer += f" {motion.name} fits: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} cm/s."
+        result.answer += (
+            f" {motion.name} fits: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} cm/s."
+        )
         return r
     worst = max(fits, key=lambda f: max(f.stroke, f.flow, f.force))
     result.answer += (

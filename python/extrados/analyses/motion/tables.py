@@ -18,9 +18,7 @@ class MotionStudy(Analysis):
     starter: ClassVar = {"count": "10"}
     needs_motion: ClassVar = True
     count: int = key(100, "motions taken of a generated set", ge=1, le=1_000_000)
-    dampings: list[float] = key(
-        [0.02, 0.05, 0.10], "damping ratios of the response spectra", min_length=1, max_length=8
-    )
+    dampings: list[float] = key([0.02, 0.05, 0.10], "damping ratios of the response spectra", min_length=1, max_length=8)
     shortest: Time = key(0.02, "shortest period of the spectra", ge=0.005)
     longest: Time = key(10.0, "longest period of the spectra", le=50)
     periods: int = key(200, "number of periods, in equal ratios", ge=10, le=4000)
@@ -49,20 +47,13 @@ class ShakeTable(Analysis):
     flow: FlowRate = key(0.75 * GALLON / 60.0, "flow of the pump", gt=0, source="thesis C.2")
     piston_area: Area = key(0.40 * INCH**2, "area of the actuator's piston", gt=0, source="thesis C.2")
     max_force: Force = key(1100.0 * POUND * 9.80665, "greatest force of the actuator", gt=0, source="thesis C.2")
-    max_velocity: Velocity | None = key(
-        None, "greatest velocity of a table without a pump; replaces flow and area", gt=0
-    )
+    max_velocity: Velocity | None = key(None, "greatest velocity of a table without a pump; replaces flow and area", gt=0)
     masses: list[Mass] = key(
-        [500.0 * POUND, 1000.0 * POUND],
-        "moving masses, table included",
-        min_length=1,
-        max_length=10,
-        source="thesis Fig. C-1",
+        [500.0 * POUND, 1000.0 * POUND], "moving masses, table included", min_length=1, max_length=10, source="thesis Fig. C-1"
     )
     lowest: Frequency = key(0.1, "lowest frequency of the capacity curves", gt=0)
     highest: Frequency = key(20.0, "highest frequency of the capacity curves", le=200)
     low_cut: Frequency = key(0.1, "corner of the high-pass that takes drift out of the drive", gt=0)
     keep: Literal["amplitude", "time"] = key(
-        "amplitude", "fit a too large motion by squeezing time (amplitude kept) or by scaling it down (time kept)",
-        source="thesis 5.3.2",
-    )  # fmt: skip
+        "amplitude", "fit a too large motion by squeezing time (amplitude kept) or by scaling it down (time kept)", source="thesis 5.3.2"
+    )

@@ -85,9 +85,7 @@ def thrust_line(model: ArchModel, response: Moving) -> core_arch.ThrustLine:
     return core_arch.ThrustLine(normal, shear, position, point, miss)
 
 
-def _snapshots(
-    model: ArchModel, response: core_rocking.Response, thrust: core_arch.ThrustLine, index: np.ndarray
-) -> dict[str, Array]:
+def _snapshots(model: ArchModel, response: core_rocking.Response, thrust: core_arch.ThrustLine, index: np.ndarray) -> dict[str, Array]:
     """Deformed arch and thrust line at some output times."""
     rotation = response.rotation[index]
     arch: ArchAssembly = model.arch
@@ -96,8 +94,6 @@ def _snapshots(
     placed[left] = placed[left, ::-1] * np.array([-1.0, 1.0, -1.0])
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(
-            placed, ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the voussoirs"
-        ),
+        "snapshot_pose": Array(placed, ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the voussoirs"),
         "snapshot_thrust": Array(thrust.point[index], ("snapshot", "joint", "axis"), "m", "dynamic thrust line"),
     }

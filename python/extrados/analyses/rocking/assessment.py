@@ -56,9 +56,7 @@ def run(context: Context, options: Assessment) -> Result:
     run_outcome, conditions = _run_through(context, rocker)
     by_rule = _by_rule(context, rocker, impulses)
     worst = min(rows, key=lambda r: np.inf if r.margin is None else r.margin, default=None)
-    at_margin = (
-        [] if conditions["conditions"].violated else _at_margin(context, rocker, worst.margin if worst else None)
-    )
+    at_margin = [] if conditions["conditions"].violated else _at_margin(context, rocker, worst.margin if worst else None)
     r = out.Assessment(
         uplift_acceleration_g=gamma,
         peak_ground_acceleration_g=context.motion.peak / GRAVITY,
@@ -75,9 +73,7 @@ def run(context: Context, options: Assessment) -> Result:
         **given(margins_by_rule=by_rule or None),
         violated=_undecided(by_rule),
         margin_conditions=at_margin,
-        primary_impulse=out.PrimaryImpulse(**{k: rows[0][k] for k in out.PrimaryImpulse.model_fields})
-        if rows
-        else None,
+        primary_impulse=out.PrimaryImpulse(**{k: rows[0][k] for k in out.PrimaryImpulse.model_fields}) if rows else None,
     )
     result.results = r
     result.warnings += [*told(r.conditions), *at_margin, *_undecided(by_rule)]
@@ -105,8 +101,18 @@ def run(context: Context, options: Assessment) -> Result:
             f"{abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s, which removes {100 * first.goodness_of_fit:.0f} % "
             "of the squared acceleration over its span"
         )
-    columns = ("rank", "amplitude_g", "period_s", "start_s", "explained", "goodness_of_fit", "failing_amplitude_g",
-               "failing_amplitude_own_g", "margin", "verdict")  # fmt: skip
+    columns = (
+        "rank",
+        "amplitude_g",
+        "period_s",
+        "start_s",
+        "explained",
+        "goodness_of_fit",
+        "failing_amplitude_g",
+        "failing_amplitude_own_g",
+        "margin",
+        "verdict",
+    )
     result.tables["assessment"] = TableData(
         {name: [np.nan if row[name] is None else row[name] for row in rows] for name in (columns if rows else ())}
     )
@@ -119,9 +125,7 @@ def run(context: Context, options: Assessment) -> Result:
         "impulse_start": Array(np.array([i.start for i in impulses]), ("impulse",), "s"),
         "period": Array(periods, ("period",), "s"),
         "failing_amplitude": Array(fit.amplitude(periods, scale), ("period",), "g", "Eq. 5.8"),
-        "failing_amplitude_own": Array(
-            own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 fitted to this {rocker.word}"
-        ),
+        "failing_amplitude_own": Array(own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 fitted to this {rocker.word}"),
         "computed_period": Array(own_periods * np.sqrt(scale), ("computed",), "s"),
         "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of its own, computed"),
     }
@@ -132,9 +136,7 @@ def run(context: Context, options: Assessment) -> Result:
 def _run_through(context: Context, rocker: Rocker, factor: float = 1.0) -> tuple[Outcome | None, dict[str, Any]]:
     """Outcome of the whole motion times a factor by the equation of motion, None where the run gave none; the conditions under it."""
     end = context.motion.end + SETTLE * rocker.time_unit
-    found = ensemble(
-        [rocker.body], [context.motion.ground], [0], [0], factor, end, start_rotation=rocker.start_rotation
-    )
+    found = ensemble([rocker.body], [context.motion.ground], [0], [0], factor, end, start_rotation=rocker.start_rotation)
     place = int(found.outcome[0])
     rows = {"outcome": found.outcome, **rows_of(found.joints, found.half_cycles, astray_of(rocker))}
     conditions = of_many(rocker, Counted.of([rows]), "motions")
@@ -206,11 +208,7 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> 
         f"The primary impulse of the motion is {abs(first.amplitude_g):.3f} g over {first.period_s:.3f} s, "
         f"starting at {first.start_s:.2f} s. "
     )
-    which = (
-        "the primary impulse"
-        if worst.rank == 1
-        else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
-    )
+    which = "the primary impulse" if worst.rank == 1 else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
     if worst.margin is None:
         text += f"Predicted for the {what}: no collapse. All impulses are too short to cause collapse. "
     elif r.verdict == "fails":

@@ -22,9 +22,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     assert isinstance(model, BlockModel)
     context.warnings += rocker.warnings
     if structure.kind == "column":
-        context.warnings.append(
-            "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
-        )
+        context.warnings.append("the column is taken as one rigid body; joints that open are left to the analysis `dem`")
     end_time = options.end_time or context.motion.end + rest_time(rocker)
     ran = rock(context, options, rocker, end_time, 12)
     response = ran.response
@@ -124,8 +122,6 @@ def _snapshots(
     line = force_line(model, rotation, tangential[index], normal[index])
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(
-            pose(model, rotation)[:, None, :], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"
-        ),
+        "snapshot_pose": Array(pose(model, rotation)[:, None, :], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"),
         "snapshot_thrust": Array(line, ("snapshot", "end", "axis"), "m", "line of the ground's force"),
     }

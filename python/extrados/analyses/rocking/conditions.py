@@ -115,20 +115,15 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
         if np.isinf(min(watch.capacity)) and np.isinf(counted.friction):
             found.append(f"A joint comes under tension or slides {share}. Use dem.")
         else:
-            reason = (
-                _rests(rocker, watch)
-                if np.isfinite(min(watch.capacity))
-                else f"rocking needs up to {counted.friction:.2f}"
-            )
-            found.append(
-                f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction."
-            )
+            reason = _rests(rocker, watch) if np.isfinite(min(watch.capacity)) else f"rocking needs up to {counted.friction:.2f}"
+            found.append(f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction.")
     if counted.elsewhere:
         share = _share(counted.elsewhere, counted.runs, runs)
         found.append(
-            f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem." if len(watch.joints) > 1
+            f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem."
+            if len(watch.joints) > 1
             else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
-        )  # fmt: skip
+        )
     return found
 
 
@@ -172,11 +167,7 @@ def _share(part: int, whole: int, runs: str) -> str:
     if whole == 1:
         return "under the motion"
     share = 100.0 * part / whole
-    return (
-        f"in {share:.0f} % of the {runs}"
-        if 1.0 <= share <= 99.0 or part == whole
-        else f"in {share:.2g} % of the {runs}"
-    )
+    return f"in {share:.0f} % of the {runs}" if 1.0 <= share <= 99.0 or part == whole else f"in {share:.2g} % of the {runs}"
 
 
 def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditions:
@@ -206,24 +197,25 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         found.append((slides.time_s, text))
     if joints.leaves_at >= 0.0:
         leaves = JointTime(joint=watch.name(int(joints.leaves)), time_s=float(joints.leaves_at))
-        far = (
-            f", at most by {100.0 * outside:.0f} % of the joint"
-            if np.isfinite(outside)
-            else ", and a joint comes under tension"
+        far = f", at most by {100.0 * outside:.0f} % of the joint" if np.isfinite(outside) else ", and a joint comes under tension"
+        found.append(
+            (
+                leaves.time_s,
+                f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"
+                if len(watch.joints) > 1
+                else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed.{use}",
+            )
         )
-        found.append((
-            leaves.time_s,
-            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}" if len(watch.joints) > 1
-            else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed.{use}",
-        ))  # fmt: skip
     astray = astray_of(rocker)
     if response.half_cycles > 1 and astray > LOST:
         impacts = [t for kind, t, _ in response.events if kind == "impact"]
-        found.append((
-            impacts[0] if impacts else response.stop_time,
-            f"Hinges form elsewhere: after an impact {100.0 * astray:.0f} % of the kinetic energy lies outside the assumed "
-            f"mechanism.{use}",
-        ))  # fmt: skip
+        found.append(
+            (
+                impacts[0] if impacts else response.stop_time,
+                f"Hinges form elsewhere: after an impact {100.0 * astray:.0f} % of the kinetic energy lies outside the assumed "
+                f"mechanism.{use}",
+            )
+        )
     return Conditions(
         friction=given if np.isfinite(given) else None,
         required_friction=needed,

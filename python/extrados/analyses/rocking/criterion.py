@@ -51,13 +51,7 @@ class Fit:
 
 
 def mode_i_curve(
-    body: Body,
-    gamma: float,
-    scale: float,
-    periods: np.ndarray,
-    cap: float = CAP,
-    threads: int = 1,
-    context: Context | None = None,
+    body: Body, gamma: float, scale: float, periods: np.ndarray, cap: float = CAP, threads: int = 1, context: Context | None = None
 ) -> np.ndarray:
     """Lowest amplitude [g] of a single sine of each period [s] that brings a structure down; NaN above cap gamma.
 
@@ -147,11 +141,21 @@ def regenerate(rule: str = "thesis", threads: int = 1, say: Callable[[str], None
             model = ArchModel(make_arch(1.0, ratio, embrace, embrace // 5), rule)
             f, _, _ = fit_arch(model, threads)
             rows.append(
-                {"thickness_ratio": ratio, "embrace_deg": embrace, "c1": f.c1, "c2": f.c2, "t_min_s": f.t_min,
-                 "gamma": f.gamma, "rms": f.rms, "restitution": model.restitution}
-            )  # fmt: skip
-            say("t/R {thickness_ratio:.2f} {embrace_deg} deg: C1 {c1:.4f} C2 {c2:.3f} Tmin {t_min_s:.3f} gamma {gamma:.4f} "
-                "(misfit {rms:.3f}, c_v {restitution:.3f})".format(**rows[-1]))  # fmt: skip
+                {
+                    "thickness_ratio": ratio,
+                    "embrace_deg": embrace,
+                    "c1": f.c1,
+                    "c2": f.c2,
+                    "t_min_s": f.t_min,
+                    "gamma": f.gamma,
+                    "rms": f.rms,
+                    "restitution": model.restitution,
+                }
+            )
+            say(
+                "t/R {thickness_ratio:.2f} {embrace_deg} deg: C1 {c1:.4f} C2 {c2:.3f} Tmin {t_min_s:.3f} gamma {gamma:.4f} "
+                "(misfit {rms:.3f}, c_v {restitution:.3f})".format(**rows[-1])
+            )
     return rows
 
 

@@ -79,19 +79,32 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
         return nothing
     probes = [
         history(
-            rocker.body, context.motion.ground, end_time, options.output_step, scale=1.0 + nudge, tolerance=options.tolerance,
-            start_side=1 if rocker.start_rotation >= 0.0 else -1, start_rotation=abs(rocker.start_rotation),
+            rocker.body,
+            context.motion.ground,
+            end_time,
+            options.output_step,
+            scale=1.0 + nudge,
+            tolerance=options.tolerance,
+            start_side=1 if rocker.start_rotation >= 0.0 else -1,
+            start_rotation=abs(rocker.start_rotation),
         )
         for nudge in (-NUDGE, NUDGE)
-    ]  # fmt: skip
+    ]
     if any(probe.interrupted for probe in probes):
         return nothing
     grown = growth([over_critical(one.rotation, rocker.critical) for one in (response, *probes)])
     factors = perturbed()[len(probes) :]
     nudged = ensemble(
-        [rocker.body], [context.motion.ground], np.zeros(len(factors), dtype=int), np.zeros(len(factors), dtype=int), factors,
-        end_time, start_rotation=rocker.start_rotation, tolerance=options.tolerance, threads=context.threads,
-    )  # fmt: skip
+        [rocker.body],
+        [context.motion.ground],
+        np.zeros(len(factors), dtype=int),
+        np.zeros(len(factors), dtype=int),
+        factors,
+        end_time,
+        start_rotation=rocker.start_rotation,
+        tolerance=options.tolerance,
+        threads=context.threads,
+    )
     if nudged.interrupted:
         return nothing
     others = [response.outcome if place == FAILED else OUTCOMES[place] for place in nudged.outcome]
@@ -107,9 +120,16 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
         return Doubts([], grown, chaotic, [], violated)
     which = np.arange(len(bodies))
     found = ensemble(
-        bodies, [context.motion.ground], which, 0 * which, 1.0, end_time,
-        start_rotation=rocker.start_rotation, tolerance=options.tolerance, threads=context.threads,
-    )  # fmt: skip
+        bodies,
+        [context.motion.ground],
+        which,
+        0 * which,
+        1.0,
+        end_time,
+        start_rotation=rocker.start_rotation,
+        tolerance=options.tolerance,
+        threads=context.threads,
+    )
     if found.interrupted:
         return nothing
     outcome = [None if place == FAILED else OUTCOMES[place] for place in found.outcome]
@@ -135,9 +155,7 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     return Doubts(rules, grown, chaotic, warnings, violated)
 
 
-def doubts_on_contacts(
-    context: Context, rocker: Rocker, contacts: Contacts, response: Response, over: HandOver, end_time: float
-) -> Doubts:  # fmt: skip
+def doubts_on_contacts(context: Context, rocker: Rocker, contacts: Contacts, response: Response, over: HandOver, end_time: float) -> Doubts:
     """How sure the outcome is where rigid contacts went on: they were run again under a perturbed motion; where impacts came before,
     under the rival rules of impact too. response: of the mechanism until then."""
     run = over.contacts

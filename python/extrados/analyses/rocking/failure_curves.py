@@ -84,34 +84,34 @@ def run(context: Context, options: FailureCurves) -> Result:
         curves=rows,
         impulses=[
             out.MotionImpulse(
-                name=s.name, amplitude_g=s.impulse.amplitude / GRAVITY, period_s=s.impulse.period, start_s=s.impulse.start,
-                goodness_of_fit=s.impulse.goodness, peak_ground_acceleration_g=s.motion.peak / GRAVITY,
+                name=s.name,
+                amplitude_g=s.impulse.amplitude / GRAVITY,
+                period_s=s.impulse.period,
+                start_s=s.impulse.start,
+                goodness_of_fit=s.impulse.goodness,
+                peak_ground_acceleration_g=s.motion.peak / GRAVITY,
             )
             for s in shaken
         ],
         agreement=float(np.mean(pairs)) if pairs else None,
         scaling_misfit=_misfit(variants, [(d, a) for d, a, _ in curves]),
-    )  # fmt: skip
+    )
     if r.agreement is not None and r.agreement < 1.0:
         result.warnings.append(
             f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs of the whole motion: a curve holds for "
             "single impulses without the motion before and after them; use the outcomes of the runs"
         )
     longest = max(len(d) for d, _, _ in curves)
-    padded = [
-        np.array([np.append(np.asarray(c[k]), np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)
-    ]
+    padded = [np.array([np.append(np.asarray(c[k]), np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]
     result.arrays = {
         "duration": Array(padded[0], ("curve", "point"), "s", "t_p of step and rectangular pulses, else the period T_p"),
         "amplitude": Array(padded[1], ("curve", "point"), "g", "lowest amplitude of collapse"),
         "natural_time": Array(np.array([v.rocker.time_unit if _slender(v) else v.natural for v in variants]), ("curve",), "s"),
         "slender": Array(np.array([_slender(v) for v in variants]), ("curve",), "", "true of a block"),
-    }  # fmt: skip
+    }
     for name, about in (("fit", "Eq. 5.5 fitted to each curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
         if any(name in fit for fit in fits):
-            lines = [
-                fit[name][1](padded[0][k]) if name in fit else np.full(longest, np.nan) for k, fit in enumerate(fits)
-            ]
+            lines = [fit[name][1](padded[0][k]) if name in fit else np.full(longest, np.nan) for k, fit in enumerate(fits)]
             result.arrays[name] = Array(np.array(lines), ("curve", "point"), "g", about)
     result.tables["failure_curves"] = TableData(
         {
@@ -144,7 +144,7 @@ def run(context: Context, options: FailureCurves) -> Result:
 
 def _fits(
     context: Context, variant: Variant, durations: np.ndarray, amplitudes: np.ndarray
-) -> dict[str, tuple[out.CurveFit, Callable[[np.ndarray], np.ndarray]]]:  # fmt: skip
+) -> dict[str, tuple[out.CurveFit, Callable[[np.ndarray], np.ndarray]]]:
     """Eq. 5.5 fitted to the curve of an arch ("fit") and Eq. 5.8 by Table 5.3 ("criterion"), each with its amplitudes [g] over
     periods [s]; a warning states the one that is not possible."""
     model = variant.rocker.model
@@ -170,13 +170,7 @@ def _fits(
         amplitude = partial(f.amplitude, radius=radius)
         misfit = np.abs(amplitude(durations[near]) / amplitudes[near] - 1.0)
         made[name] = (
-            out.CurveFit(
-                c1=f.c1,
-                c2=f.c2,
-                t_min_s=f.t_min,
-                gamma_g=f.gamma,
-                greatest_misfit=float(misfit.max()) if near.any() else None,
-            ),
+            out.CurveFit(c1=f.c1, c2=f.c2, t_min_s=f.t_min, gamma_g=f.gamma, greatest_misfit=float(misfit.max()) if near.any() else None),
             amplitude,
         )
     return made
@@ -234,27 +228,27 @@ def _curve(context: Context, options: FailureCurves, variant: Variant) -> tuple[
 
     def job(body: Body) -> LowestAmplitudes:
         return LowestAmplitudes(
-            body, options.pulse, durations, amplitudes, variant.settle, options.accuracy * GRAVITY, rocker.start_rotation,
-            variant.cycles, astray_of(rocker),
-        )  # fmt: skip
+            body,
+            options.pulse,
+            durations,
+            amplitudes,
+            variant.settle,
+            options.accuracy * GRAVITY,
+            rocker.start_rotation,
+            variant.cycles,
+            astray_of(rocker),
+        )
 
-    found = computed(
-        context,
-        "failure-curves",
-        job(rocker.body),
-        len(durations),
-        f"failure curve of {variant.label}",
-        context.threads,
-    )
+    found = computed(context, "failure-curves", job(rocker.body), len(durations), f"failure curve of {variant.label}", context.threads)
     slides, strays = (found[name] / GRAVITY for name in ("slides_from", "strays_from"))
-    counted = Counted(
-        len(durations), int(np.isfinite(slides).sum()), int(np.isfinite(strays).sum()), float(found["friction"].max())
-    )
+    counted = Counted(len(durations), int(np.isfinite(slides).sum()), int(np.isfinite(strays).sum()), float(found["friction"].max()))
     rivals = {rule: (c_v, job(rocker.held(body))) for rule, (c_v, body) in rocker.rivals(DIFFER).items()}
     holds = {
-        "sliding_from_g": slides, "hinges_elsewhere_from_g": strays, **of_many(rocker, counted, "durations"),
+        "sliding_from_g": slides,
+        "hinges_elsewhere_from_g": strays,
+        **of_many(rocker, counted, "durations"),
         **curves_by_rule(context, rivals, len(durations)),
-    }  # fmt: skip
+    }
     return durations, found["amplitude"] / GRAVITY, holds
 
 
@@ -277,17 +271,13 @@ def _motions(context: Context, options: FailureCurves) -> list[Shaken]:
     return found
 
 
-def _row(
-    variant: Variant, durations: np.ndarray, amplitudes: np.ndarray, holds: dict[str, Any], shaken: list[Shaken]
-) -> out.FailureCurve:  # fmt: skip
+def _row(variant: Variant, durations: np.ndarray, amplitudes: np.ndarray, holds: dict[str, Any], shaken: list[Shaken]) -> out.FailureCurve:
     rocker = variant.rocker
     outcomes: list[Outcome | None] = []
     if shaken:
         each = np.arange(len(shaken))
         ends = np.array([s.motion.end for s in shaken]) + variant.settle
-        e = ensemble(
-            [rocker.body], [s.motion.ground for s in shaken], 0 * each, each, 1.0, ends, start_rotation=rocker.start_rotation
-        )  # fmt: skip
+        e = ensemble([rocker.body], [s.motion.ground for s in shaken], 0 * each, each, 1.0, ends, start_rotation=rocker.start_rotation)
         outcomes = [None if place == FAILED else OUTCOMES[place] for place in e.outcome]
     return out.FailureCurve(
         label=variant.label,
@@ -319,9 +309,7 @@ def _misfit(variants: list[Variant], curves: list[tuple[np.ndarray, np.ndarray]]
     """
     if len(variants) < 2 or len({v.cycles for v in variants}) > 1:
         return None
-    scaled = [
-        (d / v.natural, a / v.rocker.unit_acceleration) for v, (d, a) in zip(variants, curves, strict=True)
-    ]  # fmt: skip
+    scaled = [(d / v.natural, a / v.rocker.unit_acceleration) for v, (d, a) in zip(variants, curves, strict=True)]
     worst = 0.0
     for (d0, a0), (d1, a1) in itertools.combinations(scaled, 2):
         inside = (d0 >= d1[0] * (1 - 1e-9)) & (d0 <= d1[-1] * (1 + 1e-9))
@@ -346,8 +334,6 @@ def _answer(r: out.FailureCurves) -> str:
             falls = sum(o == "collapse" for o in c.run_outcomes)
             above = sum(v == "fails" for v in c.curve_verdicts)
             static = sum(v == "fails" for v in c.static_verdicts)
-            told.append(
-                f"{c.label}: {static} by a static check, {above} by the failure curve, {falls} in a run of the whole motion"
-            )  # fmt: skip
+            told.append(f"{c.label}: {static} by a static check, {above} by the failure curve, {falls} in a run of the whole motion")
         text += f" Of {len(r.impulses)} motions these cause collapse: {'; '.join(told)}."
     return text

@@ -38,8 +38,14 @@ SCAN = 16
 
 
 #: What the deck calls the duration of each pulse, and how many of it span the natural range of the curve
-SPANS = {"step": ("t_p", 1.0), "sine": ("T_p", 2.4), "half-sine": ("T_p", 4.0), "rectangular": ("t_p", 2.0),
-         "cosine": ("T_p", 2.4), "ricker": ("T_p", 2.4)}  # fmt: skip
+SPANS = {
+    "step": ("t_p", 1.0),
+    "sine": ("T_p", 2.4),
+    "half-sine": ("T_p", 4.0),
+    "rectangular": ("t_p", 2.0),
+    "cosine": ("T_p", 2.4),
+    "ricker": ("T_p", 2.4),
+}
 
 
 def unit_pulse(pulse: str, duration: float, cycles: int = 1) -> Motion:
@@ -104,9 +110,8 @@ class Mapper:
         """Pulses `index` of the given amplitudes [m/s^2]."""
         ends = np.array([m.end for m in self.motions]) + self.settle
         return runs_job(
-            [self.body], [m.ground for m in self.motions], 0, index, amplitude, ends[index], self.start_rotation,
-            astray=self.astray,
-        )  # fmt: skip
+            [self.body], [m.ground for m in self.motions], 0, index, amplitude, ends[index], self.start_rotation, astray=self.astray
+        )
 
     def rows(self, index: np.ndarray, amplitude: np.ndarray) -> dict[str, np.ndarray]:
         """Outcome codes, `code`, and what was demanded of the joints (rocking.conditions) for pulses `index` of the given
@@ -127,9 +132,12 @@ class Mapper:
 
 
 def failure_curves(
-    mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, accuracy: float,
+    mapper: Mapper,
+    durations: np.ndarray,
+    amplitudes: np.ndarray,
+    accuracy: float,
     decided: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
-) -> Curves:  # fmt: skip
+) -> Curves:
     """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map. decided: outcomes by rigid
     contacts of pulses (numbers of durations, amplitudes [m/s^2]) whose mechanism a condition leaves."""
     nd, na = len(durations), len(amplitudes)
@@ -144,9 +152,7 @@ def failure_curves(
         found = decided(place, grid[handed])
         known = found >= 0
         # contacts have no half cycles: a collapse keeps the mode of fixed hinges, and is of Mode I where these stand
-        codes[handed] = np.where(
-            known, np.where(found == COLLAPSE, np.maximum(codes[handed], MODE_I), found), codes[handed]
-        )
+        codes[handed] = np.where(known, np.where(found == COLLAPSE, np.maximum(codes[handed], MODE_I), found), codes[handed])
         handed[handed] = known
     within = np.where(handed.any(axis=1), np.inf, accuracy)
     mode_i, mode_ii = (_refine(mapper.codes, codes, grid, wanted, within) for wanted in (MODE_I, MODE_II))
@@ -156,9 +162,7 @@ def failure_curves(
     def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
 
-    return Curves(
-        durations, amplitudes, codes, mode_i, mode_ii, _refine(safe, risen, grid, MODE_I, within), rows, handed
-    )
+    return Curves(durations, amplitudes, codes, mode_i, mode_ii, _refine(safe, risen, grid, MODE_I, within), rows, handed)
 
 
 @dataclass(frozen=True)
@@ -180,9 +184,7 @@ class LowestAmplitudes:
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         lengths = self.durations[first : first + count].tolist()
-        mapper = Mapper(
-            self.body, self.pulse, lengths, self.settle, threads, self.start_rotation, cycles=self.cycles, astray=self.astray
-        )  # fmt: skip
+        mapper = Mapper(self.body, self.pulse, lengths, self.settle, threads, self.start_rotation, cycles=self.cycles, astray=self.astray)
         scanned = np.zeros((count, len(self.amplitudes)), dtype=int)
         kept = {name: np.zeros(scanned.shape) for name in ROWS}
         rows = np.arange(count)
@@ -317,9 +319,8 @@ def run(context: Context, options: FailureDomain) -> Result:
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     mapper = Mapper(
-        model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation, context,
-        astray=astray_of(model),
-    )  # fmt: skip
+        model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation, context, astray=astray_of(model)
+    )
     with interruptible():  # Ctrl-C between two rounds stops the next one
         decided = _by_contacts(context, options, model, mapper)
         curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY, decided)
@@ -353,15 +354,9 @@ def run(context: Context, options: FailureDomain) -> Result:
         **(_over_uplift(durations, curves.pocket / GRAVITY, model) if slender else {}),
     )
     result.results = r
-    columns = {
-        "duration": durations,
-        **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
-        "pocket_begins": curves.pocket / GRAVITY,
-    }
+    columns = {"duration": durations, **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()}, "pocket_begins": curves.pocket / GRAVITY}
     if slender:
-        columns |= {
-            "frequency_ratio": np.array(r.frequency_ratio), **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()},
-        }  # fmt: skip
+        columns |= {"frequency_ratio": np.array(r.frequency_ratio), **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()}}
     result.tables["failure_domain"] = TableData(
         columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"}
     )
@@ -369,18 +364,9 @@ def run(context: Context, options: FailureDomain) -> Result:
         "duration": Array(durations, ("duration",), "s", "t_p of step and rectangular pulses, else the period T_p"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
-        "mode_I": Array(
-            curves.mode_i / GRAVITY,
-            ("duration",),
-            "g",
-            "lowest amplitude that causes collapse, with or without an impact",
-        ),
-        "pocket": Array(
-            curves.pocket / GRAVITY, ("duration",), "g", "lowest amplitude of the first safe region above the curve"
-        ),
-        "mode_II": Array(
-            curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"
-        ),
+        "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude that causes collapse, with or without an impact"),
+        "pocket": Array(curves.pocket / GRAVITY, ("duration",), "g", "lowest amplitude of the first safe region above the curve"),
+        "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"),
     }
     result.answer = _answer(model, options, durations, curves, r.safe_pockets)
     result.warnings += warned(r)
@@ -391,9 +377,7 @@ def run(context: Context, options: FailureDomain) -> Result:
             f"form elsewhere in {conditions.hinges_elsewhere}. The curves at these durations are known to a cell of the map."
         )
         if options.at_amplitudes:
-            result.warnings.append(
-                "The shortest failing durations (at_amplitudes) are those of fixed hinges without sliding."
-            )
+            result.warnings.append("The shortest failing durations (at_amplitudes) are those of fixed hinges without sliding.")
     return result
 
 
@@ -444,22 +428,21 @@ def rule_band(curves: list[out.RuleCurve] | None, ratio: float | None) -> str:
 
 
 def _by_rule(
-    context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, amplitudes: np.ndarray, settle: float,
+    context: Context,
+    options: FailureDomain,
+    model: Rocker,
+    durations: np.ndarray,
+    amplitudes: np.ndarray,
+    settle: float,
     handed: np.ndarray,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """The curve by each impact rule, where their c_v differ by more than DIFFER; nothing where they agree. handed (durations): where
     rigid contacts decided, which have one rule."""
     jobs = {
         rule: (
             c_v,
             LowestAmplitudes(
-                model.held(body),
-                options.pulse,
-                durations,
-                amplitudes,
-                settle,
-                options.accuracy * GRAVITY,
-                model.start_rotation,
+                model.held(body), options.pulse, durations, amplitudes, settle, options.accuracy * GRAVITY, model.start_rotation
             ),
         )
         for rule, (c_v, body) in model.rivals(DIFFER).items()
@@ -469,15 +452,13 @@ def _by_rule(
 
 def curves_by_rule(
     context: Context, jobs: dict[str, tuple[float, LowestAmplitudes]], count: int, without: np.ndarray | None = None
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Lowest failing amplitudes by each impact rule, and the greatest ratio between two of them at a duration. without (durations):
     those that are left out."""
     if not jobs:
         return {}
     found = {
-        rule: computed(
-            context, "failure-curves", job, count, f"failure curve by the impact rule {rule}", context.threads
-        )["amplitude"]
+        rule: computed(context, "failure-curves", job, count, f"failure curve by the impact rule {rule}", context.threads)["amplitude"]
         for rule, (_, job) in jobs.items()
     }
     if without is not None:
@@ -486,16 +467,13 @@ def curves_by_rule(
     fail = every[:, np.isfinite(every).sum(axis=0) > 1]
     return {
         "amplitudes_by_rule": [
-            out.RuleCurve(rule=rule, restitution=jobs[rule][0], amplitudes_g=curve / GRAVITY)
-            for rule, curve in found.items()
+            out.RuleCurve(rule=rule, restitution=jobs[rule][0], amplitudes_g=curve / GRAVITY) for rule, curve in found.items()
         ],
         "rule_ratio": float((np.nanmax(fail, axis=0) / np.nanmin(fail, axis=0)).max()) if fail.size else None,
     }
 
 
-def _at_amplitudes(
-    context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, settle: float
-) -> Keys:
+def _at_amplitudes(context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, settle: float) -> Keys:
     """The key of the shortest failing durations at the amplitudes that the deck asks for; none where it asks none."""
     if not options.at_amplitudes:
         return {}
@@ -505,9 +483,7 @@ def _at_amplitudes(
         model.body, options.pulse, at, tried, settle, options.accuracy, context.threads, context, model.start_rotation
     )
     rows = out.AtAmplitudes(
-        amplitudes_g=(at / GRAVITY).tolist(),
-        mode_I_durations_s=found[0].tolist(),
-        mode_II_durations_s=found[1].tolist(),
+        amplitudes_g=(at / GRAVITY).tolist(), mode_I_durations_s=found[0].tolist(), mode_II_durations_s=found[1].tolist()
     )
     return {"at_amplitudes": rows}
 

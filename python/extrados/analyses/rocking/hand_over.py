@@ -43,9 +43,7 @@ COARSE = 0.02
 #: Heights of joints on the ground that differ by no more than this share of the size are one level
 LEVEL = 1e-6
 #: Outcome of `rocking` for one of contacts; of many runs sliding counts as recovery
-WORDS: dict[str, WholeOutcome] = {
-    "at-rest": "no-hinging", "slid": "slid", "rocked": "recovery", "collapse": "collapse",
-}  # fmt: skip
+WORDS: dict[str, WholeOutcome] = {"at-rest": "no-hinging", "slid": "slid", "rocked": "recovery", "collapse": "collapse"}
 CODES = {"no-hinging": NO_HINGING, "slid": RECOVERY, "recovery": RECOVERY, "collapse": COLLAPSE}
 
 
@@ -76,9 +74,15 @@ class Leaving:
     def respond(self, ground: Ground, end_time: float, step: float, scale: float = 1.0) -> Response:
         """The response of the mechanism."""
         return history(
-            self.body, ground, end_time, step, scale=scale, tolerance=self.tolerance,
-            start_side=1 if self.start >= 0.0 else -1, start_rotation=abs(self.start),
-        )  # fmt: skip
+            self.body,
+            ground,
+            end_time,
+            step,
+            scale=scale,
+            tolerance=self.tolerance,
+            start_side=1 if self.start >= 0.0 else -1,
+            start_rotation=abs(self.start),
+        )
 
     def state(self, ground: Ground, time: float, scale: float, bodies: int) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and velocities (bodies, 3) of blocks and supports at a time [s] under the motion times a factor."""
@@ -137,9 +141,7 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
     values = joint_values(building, rigid=True)
     nothing = np.zeros_like(values.cohesion)  # a mechanism has no mortar either
     model = Model(blocks, rigid, replace(values, cohesion=nothing, tension=nothing))
-    leaving = Leaving(
-        rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, tolerance
-    )
+    leaving = Leaving(rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, tolerance)
     return Contacts(leaving, model, floor)
 
 
@@ -152,7 +154,7 @@ def level_of(blocks: Assembly) -> float | None:
 
 def follow_contacts(
     context: Context, contacts: Contacts, begin: Begin, end_time: float | None, output_step: float
-) -> tuple[DemRun, Result]:  # fmt: skip
+) -> tuple[DemRun, Result]:
     """The run of contacts from a state, and what is stored of it. Refused where it has no result."""
     options = Dem(kind="dem", solver="nonsmooth", end_time=end_time, output_step=output_step, floor=contacts.floor)
     context.warnings += dem_model.adjusted(contacts.model)
@@ -175,7 +177,7 @@ def stored(result: Result) -> dict[str, Array]:
     return {
         f"contacts_{name}": Array(get[name].data, tuple(axes.get(d, d) for d in get[name].dims), get[name].unit, get[name].about)
         for name in kept
-    }  # fmt: skip
+    }
 
 
 @dataclass(frozen=True)
@@ -227,7 +229,7 @@ UNKNOWN = -2
 
 def decide(
     context: Context, name: str, contacts: Contacts, grounds: list[Ground], motion: np.ndarray, scale: np.ndarray, end: np.ndarray
-) -> np.ndarray:  # fmt: skip
+) -> np.ndarray:
     """Outcomes (runs) on contacts of runs whose mechanism a condition leaves, UNKNOWN where contacts gave no result; see
     ContactRuns."""
     options, model = Dem(kind="dem", solver="nonsmooth", floor=contacts.floor), contacts.model

@@ -57,20 +57,14 @@ def rock(context: Context, options: Rocking, rocker: Rocker, end_time: float, wi
         return run_history(context, options, rocker.body, time, width, rocker.start_rotation)
 
     fixed = until(end_time)
-    time = (
-        leaving_time(fixed, astray_of(rocker), rocker.time_unit)
-        if options.hand_over and not fixed.interrupted
-        else None
-    )
+    time = leaving_time(fixed, astray_of(rocker), rocker.time_unit) if options.hand_over and not fixed.interrupted else None
     contacts = None
     if time is not None:
         contacts = contacts_of(rocker, context.building, options.form == "linear", options.tolerance)
     if contacts is not None and time is not None:
         ground = context.motion.ground
         try:
-            run, result = follow_contacts(
-                context, contacts, contacts.begin(ground, time), options.end_time, options.output_step
-            )
+            run, result = follow_contacts(context, contacts, contacts.begin(ground, time), options.end_time, options.output_step)
         except (Refused, Unfinished) as error:
             context.warnings.append(f"Rigid contacts gave no result from {time:.3f} s: {error}")
         else:
@@ -79,15 +73,13 @@ def rock(context: Context, options: Rocking, rocker: Rocker, end_time: float, wi
             outcome = outcome_of(response.half_cycles > 0, run.outcome)
             over = out.HandOver(
                 time_s=time, reason=conditions.violated[0], outcome=outcome, fixed_hinges_outcome=fixed.outcome, contacts=run
-            )  # fmt: skip
+            )
             doubt = doubts_on_contacts(context, rocker, contacts, response, over, end_time)
             return Ran(response, fixed, conditions, doubt, over, result)
     return Ran(fixed, fixed, of_one(rocker, fixed), doubts(context, options, rocker, fixed, end_time))
 
 
-def run_history(
-    context: Context, options: Rocking, body: Body, end_time: float, width: int, start_rotation: float = 0.0
-) -> Response:
+def run_history(context: Context, options: Rocking, body: Body, end_time: float, width: int, start_rotation: float = 0.0) -> Response:
     """The response with its history; `width` is the number of values stored at each output time.
 
     start_rotation > 0 to +x [rad]. Refused where the history would not fit into memory.
@@ -112,14 +104,7 @@ def run_history(
         room = response.events_found
 
 
-def rocking_result(
-    context: Context,
-    ran: Ran,
-    rocker: Rocker,
-    of: str,
-    friction: np.ndarray,
-    **further: Any,
-) -> Result:
+def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction: np.ndarray, **further: Any) -> Result:
     """Results, tables and arrays that every rocking structure has; `of` says whose rotation it is.
 
     friction (times, joints): coefficient of friction needed. further: the results that only this structure has.
@@ -172,18 +157,27 @@ def rocking_result(
         result.warnings += [text for text in ran.run.warnings if text not in result.warnings]
     result.tables["rocking"] = TableData(
         {
-            "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,
-            "ground_acceleration": response.ground, "vertical_acceleration": response.vertical,
-            "kinetic_energy": response.kinetic, "potential_energy": response.potential,
+            "time": response.time,
+            "rotation": response.rotation,
+            "rotation_rate": response.rate,
+            "ground_acceleration": response.ground,
+            "vertical_acceleration": response.vertical,
+            "kinetic_energy": response.kinetic,
+            "potential_energy": response.potential,
             "energy_supplied_less_lost": response.ledger,
             "required_friction": friction.max(axis=1) if len(friction) else np.zeros(0),
         },
         {
-            "time": "s", "rotation": "rad", "rotation_rate": "rad/s", "ground_acceleration": "m/s^2",
-            "vertical_acceleration": "m/s^2", "kinetic_energy": "J", "potential_energy": "J",
+            "time": "s",
+            "rotation": "rad",
+            "rotation_rate": "rad/s",
+            "ground_acceleration": "m/s^2",
+            "vertical_acceleration": "m/s^2",
+            "kinetic_energy": "J",
+            "potential_energy": "J",
             "energy_supplied_less_lost": "J",
         },
-    )  # fmt: skip
+    )
     result.tables["rocking_events"] = TableData(
         {
             "event": [kind for kind, _, _ in response.events],
@@ -229,9 +223,7 @@ def _held(rocker: Rocker, response: Response) -> dict[str, Any]:
         found["restraints"] = [
             out.RestraintForces(name=m.name, least_force_N=low, greatest_force_N=high, permanent_elongation_m=stays)
             if m.sort == LENGTH
-            else out.RestraintForces(
-                name=m.name, least_moment_Nm=low, greatest_moment_Nm=high, permanent_turn_rad=stays
-            )
+            else out.RestraintForces(name=m.name, least_moment_Nm=low, greatest_moment_Nm=high, permanent_turn_rad=stays)
             for m, low, high, stays in rows
         ]
     return found
@@ -272,9 +264,7 @@ def drawn_times(time: np.ndarray, rotations: np.ndarray, options: Rocking) -> np
         return np.zeros(0, dtype=int)
     if options.thrust_line_times:
         return np.unique(np.clip(np.searchsorted(time, options.thrust_line_times), 0, len(time) - 1))
-    crests: list[int] = [
-        k for q in np.abs(rotations) for k in (np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1).tolist()
-    ]
+    crests: list[int] = [k for q in np.abs(rotations) for k in (np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1).tolist()]
     size = np.abs(rotations).max(axis=0)
     chosen = sorted(dict.fromkeys([*crests, int(size.argmax())]), key=lambda k: -size[k])[:6]
     return np.array(sorted(chosen))

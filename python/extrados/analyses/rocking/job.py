@@ -35,9 +35,16 @@ class RunsJob:
         used, motion = np.unique(self.motion[part], return_inverse=True)
         bodies, body = np.unique(self.body[part], return_inverse=True)
         e = core_rocking.ensemble(
-            [self.bodies[b] for b in bodies], [self.grounds[m] for m in used], body, motion, self.scale[part], self.end[part],
-            start_rotation=self.start[part], tolerance=self.tolerance, threads=threads,
-        )  # fmt: skip
+            [self.bodies[b] for b in bodies],
+            [self.grounds[m] for m in used],
+            body,
+            motion,
+            self.scale[part],
+            self.end[part],
+            start_rotation=self.start[part],
+            tolerance=self.tolerance,
+            threads=threads,
+        )
         if e.interrupted:
             raise Cancelled(status_code("cancelled"), "interrupted")
         if e.failed and self.strict:
@@ -45,9 +52,14 @@ class RunsJob:
         reason = np.full(count, "", dtype=object)
         reason[list(e.failed)] = list(e.failed.values())
         return {
-            "outcome": e.outcome.astype(np.int8), "half_cycles": e.half_cycles, "peak": e.peak, "peak_ratio": e.peak_ratio,
-            "stop_time": e.stop_time, "reason": reason.astype(str), **rows_of(e.joints, e.half_cycles, self.astray),
-        }  # fmt: skip
+            "outcome": e.outcome.astype(np.int8),
+            "half_cycles": e.half_cycles,
+            "peak": e.peak,
+            "peak_ratio": e.peak_ratio,
+            "stop_time": e.stop_time,
+            "reason": reason.astype(str),
+            **rows_of(e.joints, e.half_cycles, self.astray),
+        }
 
 
 def runs_job(
@@ -70,6 +82,14 @@ def runs_job(
         return np.ascontiguousarray(np.broadcast_to(np.asarray(value, dtype=kind), n))
 
     return RunsJob(
-        bodies, grounds, spread(body, int), spread(motion, int), spread(scale, float), spread(end, float), spread(start, float),
-        tolerance, strict, astray,
-    )  # fmt: skip
+        bodies,
+        grounds,
+        spread(body, int),
+        spread(motion, int),
+        spread(scale, float),
+        spread(end, float),
+        spread(start, float),
+        tolerance,
+        strict,
+        astray,
+    )

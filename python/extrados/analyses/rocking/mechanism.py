@@ -24,15 +24,23 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     response = ran.response
 
     forces = model.hinge_forces(
-        response.rotation, response.rate, response.acceleration, response.ground, response.vertical,
+        response.rotation,
+        response.rate,
+        response.acceleration,
+        response.ground,
+        response.vertical,
         None if rocker.restraints is None else (rocker.restraints, response.forces),
-    )  # fmt: skip
+    )
     friction = np.where(np.isnan(forces.normal), 0.0, forces.friction)
     needed = float(friction.max(initial=0.0)) if response.joints is None else float(response.joints.friction)
     known = any(one.determinate for one in model.linkages)
     side = 0 if response.peak >= 0.0 else 1
     result = rocking_result(
-        context, ran, rocker, model.driver(side), friction,
+        context,
+        ran,
+        rocker,
+        model.driver(side),
+        friction,
         restitution=model.restitution[0],
         restitution_to_left=model.restitution[1],
         critical_rotation_rad=rocker.critical[0],
@@ -42,16 +50,15 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         hinges=_hinges(model, 0),
         hinges_opposite=_hinges(model, 1),
         **({"frequency_parameter_rad_s": model.frequency} if isinstance(model, FrameModel) else {}),
-    )  # fmt: skip
+    )
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {
         **geometry_arrays(model.assembly),
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
         "snapshot_pose": Array(
-            model.pose(response.rotation[index]), ("snapshot", "block", "component"), "m, m, rad",
-            "x, y, rotation of the stones",
+            model.pose(response.rotation[index]), ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the stones"
         ),
-    }  # fmt: skip
+    }
     result.answer = answer_of(context, ran, f"The {rocker.word}", "collapses", rocker.uplift)
     return result
 
@@ -59,7 +66,4 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
 def _hinges(model: MechanismModel, side: int) -> list[RockingHinge]:
     """Where the mechanism of one side turns."""
     one = model.linkages[side]
-    return [
-        RockingHinge(joint=j, name=model.assembly.joint_names[j], x_m=x, y_m=y)
-        for j, (x, y) in zip(one.joint, one.point, strict=True)
-    ]
+    return [RockingHinge(joint=j, name=model.assembly.joint_names[j], x_m=x, y_m=y) for j, (x, y) in zip(one.joint, one.point, strict=True)]

@@ -68,15 +68,11 @@ def _refuse_stack(building: Building, options: tables.Rocking) -> None:
         raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
     if building.supports.stiffness is not None:
         raise Refused(
-            "two stacked blocks rock on rigid ground here: remove it, or use `dem`, which follows a compliant base under any "
-            "blocks",
+            "two stacked blocks rock on rigid ground here: remove it, or use `dem`, which follows a compliant base under any blocks",
             ("supports", "stiffness"),
         )
     if options.form == "linear":
         raise Refused('form = "linear" is known of blocks and columns only', ("analysis", "form"))
     if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):
         name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
-        raise Refused(
-            "two stacked blocks take plastic impacts at all edges: remove restitution and energy_ratio",
-            ("joints", name),
-        )
+        raise Refused("two stacked blocks take plastic impacts at all edges: remove restitution and energy_ratio", ("joints", name))

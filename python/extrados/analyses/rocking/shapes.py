@@ -80,9 +80,7 @@ def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
     made = shapes(rocker, States(*(get[k][index] for k in ("rotation", "rate", "acceleration", "ground", "vertical"))))
     arrays = film(time[index], made.pose)
     if made.line is not None:
-        arrays["film_line"] = Array(
-            made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force"
-        )
+        arrays["film_line"] = Array(made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force")
     return arrays
 
 
@@ -97,9 +95,7 @@ def on_contacts(assembly: Assembly, result: Result) -> dict[str, Array]:
     found = {
         **geometry_arrays(assembly),
         "snapshot_time": Array(time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(
-            place[index], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the blocks"
-        ),
+        "snapshot_pose": Array(place[index], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the blocks"),
     }
     if "film_pose" in result.arrays:
         shown = pictures(time)

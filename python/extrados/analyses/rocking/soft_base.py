@@ -26,17 +26,14 @@ def run(context: Context, options: Rocking) -> Result:
     building = context.building
     model = soft_base_model(building, options.form == "linear")
     if building.structure is not None and building.structure.kind == "column":
-        context.warnings.append(
-            "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
-        )
+        context.warnings.append("the column is taken as one rigid body; joints that open are left to the analysis `dem`")
     if not model.core.damping:
         context.warnings.append(UNDAMPED)
     p = float(model.rigid.frequency.min())
     end_time = options.end_time or context.motion.end + SETTLE / p
     if end_time / options.output_step * 20 > LARGEST:
         raise Refused(
-            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store",
-            ("analysis", "output_step"),
+            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store", ("analysis", "output_step")
         )
     ratio = building.initial.rotation_ratio
     start = soft_base_start(model.core, model.turned(ratio))
@@ -44,9 +41,15 @@ def run(context: Context, options: Rocking) -> Result:
 
     def rock(scale: float = 1.0) -> SoftBaseResponse:
         return soft_base_history(
-            model.core, context.motion.ground, end_time, options.output_step, scale=scale, tolerance=options.tolerance,
-            start=start, room=room,
-        )  # fmt: skip
+            model.core,
+            context.motion.ground,
+            end_time,
+            options.output_step,
+            scale=scale,
+            tolerance=options.tolerance,
+            start=start,
+            room=room,
+        )
 
     r = rock()
     if r.events_found > room and not r.interrupted:
@@ -62,18 +65,29 @@ def run(context: Context, options: Rocking) -> Result:
     if not r.interrupted:
         side = 0 if ratio >= 0.0 else 1
         same = ensemble(
-            [model.rigid.body], [context.motion.ground], np.array([0]), np.array([0]), np.array([1.0]), end_time,
-            start_rotation=ratio * float(model.rigid.alpha[side]), tolerance=options.tolerance, threads=context.threads,
-        )  # fmt: skip
+            [model.rigid.body],
+            [context.motion.ground],
+            np.array([0]),
+            np.array([0]),
+            np.array([1.0]),
+            end_time,
+            start_rotation=ratio * float(model.rigid.alpha[side]),
+            tolerance=options.tolerance,
+            threads=context.threads,
+        )
         if not same.interrupted and same.outcome[0] != FAILED:
             rigid = OUTCOMES[same.outcome[0]], float(same.peak[0])
     return _result(context, options, model, r, (grown, turns), rigid)
 
 
 def _result(
-    context: Context, options: Rocking, model: SoftBaseModel, r: SoftBaseResponse, chaos: tuple[float, float],
+    context: Context,
+    options: Rocking,
+    model: SoftBaseModel,
+    r: SoftBaseResponse,
+    chaos: tuple[float, float],
     rigid: tuple[Outcome, float] | None,
-) -> Result:  # fmt: skip
+) -> Result:
     potential = r.potential - model.potential(model.rest)
     energy = r.kinetic + potential
     scale = max(float(np.ptp(energy)) if len(energy) else 0.0, abs(r.work), 1e-300)
@@ -88,9 +102,7 @@ def _result(
     friction[flies] = 0.0
     lifted = r.range[:, 1] - r.range[:, 0] < (1.0 - 1e-9) * (model.core.toe_left + model.core.toe_right)
     if model.core.edges:
-        far = np.stack(
-            [-model.core.toe_left * np.ones_like(r.rotation), model.core.toe_right * np.ones_like(r.rotation)]
-        )
+        far = np.stack([-model.core.toe_left * np.ones_like(r.rotation), model.core.toe_right * np.ones_like(r.rotation)])
         sine = r.rotation if model.core.linear else np.sin(r.rotation)
         lifted = (r.sinking + far * sine < 0.0).any(axis=0)
     impacts = [t for kind, t, _ in r.events if kind == "impact"]
@@ -98,9 +110,11 @@ def _result(
     uplift = min(model.uplift(1), model.uplift(-1))
     result = Result("rocking", status="interrupted" if r.interrupted else "ok")
     result.reason = f"interrupted at {r.stop_time:.3f} s" if r.interrupted else ""
-    base = {"greatest_edge_force_N": float(r.most.max(initial=0.0))} if model.core.edges else {
-        "greatest_pressure_Pa": float(r.most.max(initial=0.0)) / model.block.depth
-    }  # fmt: skip
+    base = (
+        {"greatest_edge_force_N": float(r.most.max(initial=0.0))}
+        if model.core.edges
+        else {"greatest_pressure_Pa": float(r.most.max(initial=0.0)) / model.block.depth}
+    )
     vertical = model.periods
     chaotic = chaos[0] > CHAOTIC or chaos[1] > 0.0
     violated = [chaos_told(*chaos)] if chaotic else []
@@ -110,25 +124,47 @@ def _result(
             "slide. Use dem."
         )
     result.results = out.Rocking(
-        rotation_of="the block", outcome=r.outcome, settled=settled,
-        collapse_half_cycle=r.half_cycles if fell else None, collapse_time_s=r.stop_time if fell else None,
-        half_cycles=r.half_cycles, impacts=sum(r.landings), impact_times_s=impacts, peak_rotation_rad=r.peak[0],
-        peak_rotation_ratio=float(abs(r.peak[0] / end)), peak_ground_acceleration_g=context.motion.peak / GRAVITY,
-        energy_supplied_J=r.work, energy_lost_at_impacts_J=0.0,
-        energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale, steps=r.steps,
-        rejected_steps=0, restitution=None, critical_rotation_rad=critical[0], critical_rotation_left_rad=-critical[1],
-        frequency_parameter_rad_s=float(model.rigid.frequency[0]), uplift_acceleration_g=uplift,
-        required_friction=float(friction.max(initial=0.0)), decided_by_last_digits=chaotic,
-        perturbation_growth=chaos[0], violated=violated,
+        rotation_of="the block",
+        outcome=r.outcome,
+        settled=settled,
+        collapse_half_cycle=r.half_cycles if fell else None,
+        collapse_time_s=r.stop_time if fell else None,
+        half_cycles=r.half_cycles,
+        impacts=sum(r.landings),
+        impact_times_s=impacts,
+        peak_rotation_rad=r.peak[0],
+        peak_rotation_ratio=float(abs(r.peak[0] / end)),
+        peak_ground_acceleration_g=context.motion.peak / GRAVITY,
+        energy_supplied_J=r.work,
+        energy_lost_at_impacts_J=0.0,
+        energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale,
+        steps=r.steps,
+        rejected_steps=0,
+        restitution=None,
+        critical_rotation_rad=critical[0],
+        critical_rotation_left_rad=-critical[1],
+        frequency_parameter_rad_s=float(model.rigid.frequency[0]),
+        uplift_acceleration_g=uplift,
+        required_friction=float(friction.max(initial=0.0)),
+        decided_by_last_digits=chaotic,
+        perturbation_growth=chaos[0],
+        violated=violated,
         soft_base=out.SoftBaseRocking(
-            foundation="two-spring" if model.core.edges else "winkler", rocking_period_s=vertical[0],
-            vertical_period_s=vertical[1], sinking_at_rest_m=model.sinking(model.rest),
-            lift_rotation_rad=min(model.lifted(1), -model.lifted(-1)), capacity_g=min(model.capacity(1), model.capacity(-1)),
-            peak_sinking_m=r.peak[1], lifted_share=float(lifted.mean()) if len(lifted) else 0.0,
-            free_share=float(flies.mean()) if len(flies) else 0.0, energy_taken_up_J=r.spent,
-            rigid_outcome=rigid[0] if rigid else None, rigid_peak_rotation_rad=rigid[1] if rigid else None, **base,
+            foundation="two-spring" if model.core.edges else "winkler",
+            rocking_period_s=vertical[0],
+            vertical_period_s=vertical[1],
+            sinking_at_rest_m=model.sinking(model.rest),
+            lift_rotation_rad=min(model.lifted(1), -model.lifted(-1)),
+            capacity_g=min(model.capacity(1), model.capacity(-1)),
+            peak_sinking_m=r.peak[1],
+            lifted_share=float(lifted.mean()) if len(lifted) else 0.0,
+            free_share=float(flies.mean()) if len(flies) else 0.0,
+            energy_taken_up_J=r.spent,
+            rigid_outcome=rigid[0] if rigid else None,
+            rigid_peak_rotation_rad=rigid[1] if rigid else None,
+            **base,
         ),
-    )  # fmt: skip
+    )
     result.warnings += violated
     if not settled and not r.interrupted:
         result.warnings.append(
@@ -139,24 +175,39 @@ def _result(
     index = drawn_times(r.time, r.rotation[None], options)
     result.tables["rocking"] = TableData(
         {
-            "time": r.time, "rotation": r.rotation, "rotation_rate": r.rate, "sinking": r.sinking,
-            "ground_acceleration": r.ground, "vertical_acceleration": r.vertical, "kinetic_energy": r.kinetic,
-            "potential_energy": potential, "energy_supplied_less_lost": r.ledger, "force_up": r.force[:, 1],
+            "time": r.time,
+            "rotation": r.rotation,
+            "rotation_rate": r.rate,
+            "sinking": r.sinking,
+            "ground_acceleration": r.ground,
+            "vertical_acceleration": r.vertical,
+            "kinetic_energy": r.kinetic,
+            "potential_energy": potential,
+            "energy_supplied_less_lost": r.ledger,
+            "force_up": r.force[:, 1],
             "required_friction": friction,
         },
         {
-            "time": "s", "rotation": "rad", "rotation_rate": "rad/s", "sinking": "m", "ground_acceleration": "m/s^2",
-            "vertical_acceleration": "m/s^2", "kinetic_energy": "J", "potential_energy": "J",
-            "energy_supplied_less_lost": "J", "force_up": "N",
+            "time": "s",
+            "rotation": "rad",
+            "rotation_rate": "rad/s",
+            "sinking": "m",
+            "ground_acceleration": "m/s^2",
+            "vertical_acceleration": "m/s^2",
+            "kinetic_energy": "J",
+            "potential_energy": "J",
+            "energy_supplied_less_lost": "J",
+            "force_up": "N",
         },
-    )  # fmt: skip
+    )
     result.tables["rocking_events"] = TableData(
         {
-            "event": [kind for kind, _, _ in r.events], "time": np.array([t for _, t, _ in r.events]),
+            "event": [kind for kind, _, _ in r.events],
+            "time": np.array([t for _, t, _ in r.events]),
             "value": np.array([e for _, _, e in r.events]),
         },
         {"time": "s", "value": "edge that lifts or lands: -1 left, 1 right"},
-    )  # fmt: skip
+    )
     pressed = np.where(flies[:, None], np.nan, r.range)
     result.arrays = {
         "time": Array(r.time, ("time",), "s", "output times"),
@@ -176,7 +227,7 @@ def _result(
         "snapshot_pose": Array(
             model.pose(r.rotation[index], r.sinking[index]), ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"
         ),
-    }  # fmt: skip
+    }
     if options.animation != "none" and len(r.time):
         shown = pictures(r.time)
         result.arrays |= film(r.time[shown], model.pose(r.rotation[shown], r.sinking[shown]))
@@ -184,9 +235,7 @@ def _result(
     return result
 
 
-def _answer(
-    context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: out.Rocking, rigid: tuple[Outcome, float] | None
-) -> str:
+def _answer(context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: out.Rocking, rigid: tuple[Outcome, float] | None) -> str:
     """The outcome in words."""
     way = "+x" if r.peak[0] > 0 else "-x"
     greatest = (

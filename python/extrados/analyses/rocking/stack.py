@@ -28,17 +28,15 @@ def run(context: Context, options: Rocking) -> Result:
     end_time = options.end_time or context.motion.end + SETTLE * max(unit, model.alone[1])
     if end_time / options.output_step * 20 > LARGEST:
         raise Refused(
-            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store",
-            ("analysis", "output_step"),
+            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store", ("analysis", "output_step")
         )
     turned = building.initial.rotation_ratio * alpha
     start = (turned, turned, 0.0, 0.0)
 
     def rock(scale: float = 1.0) -> StackResponse:
         return stack_history(
-            model.core, context.motion.ground, end_time, options.output_step, scale=scale, tolerance=options.tolerance,
-            start=start,
-        )  # fmt: skip
+            model.core, context.motion.ground, end_time, options.output_step, scale=scale, tolerance=options.tolerance, start=start
+        )
 
     r = rock()
     if r.interrupted:
@@ -53,14 +51,10 @@ def run(context: Context, options: Rocking) -> Result:
 def modes(state: np.ndarray) -> np.ndarray:
     """Number of the mode in MODES of states of the contacts (n, 2)."""
     low, high = state.T
-    return np.select(
-        [(low == 0) & (high == 0), (low != 0) & (high == low), (low != 0) & (high != 0), low == 0], [0, 1, 2, 3], 4
-    )
+    return np.select([(low == 0) & (high == 0), (low != 0) & (high == low), (low != 0) & (high != 0), low == 0], [0, 1, 2, 3], 4)
 
 
-def _result(
-    context: Context, options: Rocking, model: StackModel, r: StackResponse, grown: float, turns: float
-) -> Result:  # fmt: skip
+def _result(context: Context, options: Rocking, model: StackModel, r: StackResponse, grown: float, turns: float) -> Result:
     energy = r.kinetic + r.potential
     scale = max(float(np.abs(energy).max(initial=0.0)), abs(r.work), 1e-300)
     normal, shear = _normal_and_shear(r)
@@ -79,45 +73,72 @@ def _result(
     chaotic = grown > CHAOTIC or turns > 0.0
     violated = [chaos_told(grown, turns)] if chaotic else []
     if flies.any():
-        violated.append(
-            f"A joint parts as a whole from {r.time[flies.argmax()]:.3f} s on: rocking without flight is assumed. Use dem."
-        )
+        violated.append(f"A joint parts as a whole from {r.time[flies.argmax()]:.3f} s on: rocking without flight is assumed. Use dem.")
     result.results = out.Rocking(
-        rotation_of="the lower block", outcome=r.outcome, settled=r.settled,
-        collapse_half_cycle=len(uplifts) + len(impacts) if fell else None, collapse_time_s=r.stop_time if fell else None,
-        half_cycles=len(uplifts) + len(impacts), impacts=sum(r.impacts), impact_times_s=impacts,
-        peak_rotation_rad=r.peak[0], peak_rotation_ratio=_greatest(model, r),
-        peak_ground_acceleration_g=context.motion.peak / GRAVITY, energy_supplied_J=r.work, energy_lost_at_impacts_J=r.loss,
-        energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale, steps=r.steps, rejected_steps=0,
-        restitution=_as_one(model), critical_rotation_rad=alpha, frequency_parameter_rad_s=1.0 / unit,
-        uplift_acceleration_g=min(model.uplift), required_friction=float(needed.max(initial=0.0)), decided_by_last_digits=chaotic,
-        perturbation_growth=grown, violated=violated,
+        rotation_of="the lower block",
+        outcome=r.outcome,
+        settled=r.settled,
+        collapse_half_cycle=len(uplifts) + len(impacts) if fell else None,
+        collapse_time_s=r.stop_time if fell else None,
+        half_cycles=len(uplifts) + len(impacts),
+        impacts=sum(r.impacts),
+        impact_times_s=impacts,
+        peak_rotation_rad=r.peak[0],
+        peak_rotation_ratio=_greatest(model, r),
+        peak_ground_acceleration_g=context.motion.peak / GRAVITY,
+        energy_supplied_J=r.work,
+        energy_lost_at_impacts_J=r.loss,
+        energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale,
+        steps=r.steps,
+        rejected_steps=0,
+        restitution=_as_one(model),
+        critical_rotation_rad=alpha,
+        frequency_parameter_rad_s=1.0 / unit,
+        uplift_acceleration_g=min(model.uplift),
+        required_friction=float(needed.max(initial=0.0)),
+        decided_by_last_digits=chaotic,
+        perturbation_growth=grown,
+        violated=violated,
         stack=out.StackRocking(
-            peak_rotation_upper_rad=r.peak[1], critical_rotation_upper_rad=model.alone[0], uplift_as_one_g=model.uplift[0],
-            uplift_upper_g=model.uplift[1], impacts_on_ground=r.impacts[0], impacts_between=r.impacts[1],
+            peak_rotation_upper_rad=r.peak[1],
+            critical_rotation_upper_rad=model.alone[0],
+            uplift_as_one_g=model.uplift[0],
+            uplift_upper_g=model.uplift[1],
+            impacts_on_ground=r.impacts[0],
+            impacts_between=r.impacts[1],
             modes=[
                 out.ModeShare(mode=name, share=float((found[moving] == k).mean())) for k, name in enumerate(MODES) if k and moving.any()
             ],
         ),
-    )  # fmt: skip
+    )
     result.warnings += violated
     if not r.settled and not r.interrupted:
-        result.warnings.append(
-            f"the blocks still rock at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time"
-        )
+        result.warnings.append(f"the blocks still rock at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time")
     index = drawn_times(r.time, r.rotation.T, options)
     result.tables["rocking"] = TableData(
         {
-            "time": r.time, "rotation": r.rotation[:, 0], "rotation_upper": r.rotation[:, 1], "ground_acceleration": r.ground,
-            "vertical_acceleration": r.vertical, "kinetic_energy": r.kinetic, "potential_energy": r.potential,
-            "energy_supplied_less_lost": r.ledger, "mode": np.array(MODES)[found],
+            "time": r.time,
+            "rotation": r.rotation[:, 0],
+            "rotation_upper": r.rotation[:, 1],
+            "ground_acceleration": r.ground,
+            "vertical_acceleration": r.vertical,
+            "kinetic_energy": r.kinetic,
+            "potential_energy": r.potential,
+            "energy_supplied_less_lost": r.ledger,
+            "mode": np.array(MODES)[found],
             "required_friction": needed.max(axis=1) if len(needed) else np.zeros(0),
         },
         {
-            "time": "s", "rotation": "rad", "rotation_upper": "rad", "ground_acceleration": "m/s^2",
-            "vertical_acceleration": "m/s^2", "kinetic_energy": "J", "potential_energy": "J", "energy_supplied_less_lost": "J",
+            "time": "s",
+            "rotation": "rad",
+            "rotation_upper": "rad",
+            "ground_acceleration": "m/s^2",
+            "vertical_acceleration": "m/s^2",
+            "kinetic_energy": "J",
+            "potential_energy": "J",
+            "energy_supplied_less_lost": "J",
         },
-    )  # fmt: skip
+    )
     result.arrays = {
         "time": Array(r.time, ("time",), "s", "output times"),
         "rotation": Array(r.rotation[:, 0], ("time",), "rad", "rotation of the lower block, positive to +x"),
@@ -135,21 +156,22 @@ def _result(
         "snapshot_pose": Array(
             model.pose(r.rotation[index], r.state[index]), ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"
         ),
-    }  # fmt: skip
+    }
     if options.animation != "none" and len(r.time):
         shown = pictures(r.time)
         result.arrays |= film(r.time[shown], model.pose(r.rotation[shown], r.state[shown]))
     how = {"collapse": "collapses", "recovery": "rocks and recovers", "no-hinging": "does not rock"}[r.outcome]
-    shares = (
-        sorted(((float((found[moving] == k).mean()), name) for k, name in enumerate(MODES) if k), reverse=True)
-        if moving.any()
-        else []
+    shares = sorted(((float((found[moving] == k).mean()), name) for k, name in enumerate(MODES) if k), reverse=True) if moving.any() else []
+    result.answer = (
+        f"The stack {how}"
+        + (
+            f": lower block {1e3 * abs(r.peak[0]):.3g} mrad, upper {1e3 * abs(r.peak[1]):.3g} mrad at most, {count(r.impacts[0], 'impact')} on "
+            f"the ground and {r.impacts[1]} between, {100 * shares[0][0]:.0f} % of the rocking time {shares[0][1]}."
+            if shares
+            else "."
+        )
+        + f" Both as one begin to rock at {model.uplift[0]:.3f} g, the upper alone at {model.uplift[1]:.3f} g."
     )
-    result.answer = f"The stack {how}" + (
-        f": lower block {1e3 * abs(r.peak[0]):.3g} mrad, upper {1e3 * abs(r.peak[1]):.3g} mrad at most, {count(r.impacts[0], 'impact')} on "
-        f"the ground and {r.impacts[1]} between, {100 * shares[0][0]:.0f} % of the rocking time {shares[0][1]}."
-        if shares else "."
-    ) + f" Both as one begin to rock at {model.uplift[0]:.3f} g, the upper alone at {model.uplift[1]:.3f} g."  # fmt: skip
     return result
 
 

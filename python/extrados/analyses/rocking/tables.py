@@ -24,24 +24,23 @@ class RockingTable(BuildingAnalysis):
     view: ClassVar = "rocker"
     uses: ClassVar = ("material.density", "joints.restitution", "joints.friction", "initial.rotation_ratio")
     beside: ClassVar = (
-        "joints.energy_ratio", "initial.movements", "supports.abutting_wall", "supports.rebound", "supports.stiffness",
-        "supports.foundation", "supports.damping_ratio",
-    )  # fmt: skip
+        "joints.energy_ratio",
+        "initial.movements",
+        "supports.abutting_wall",
+        "supports.rebound",
+        "supports.stiffness",
+        "supports.foundation",
+        "supports.damping_ratio",
+    )
     bears: ClassVar[tuple[str, ...]] = HOLDS
     soft_base: ClassVar = False
-    form: Literal["nonlinear", "linear"] = key(
-        "nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963"
-    )
+    form: Literal["nonlinear", "linear"] = key("nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963")
 
     def rests_on(self, building: Building) -> dict[str, str | None]:
         """An energy ratio stands in place of the restitution; on a base that gives way the impact follows from it; a wall
         throws back what falls against it."""
         found = super().rests_on(building)
-        if (
-            building.restraints
-            or building.supports.abutting_wall is not None
-            or building.supports.stiffness is not None
-        ):
+        if building.restraints or building.supports.abutting_wall is not None or building.supports.stiffness is not None:
             found["joints.friction"] = NO_SLIDING  # what else acts on the joints is not followed
         if building.supports.abutting_wall is not None:
             found.pop("joints.restitution", None)
@@ -72,12 +71,11 @@ class Rocking(RockingTable, Animated):
     output_step: Time = key(0.005, "spacing of the history", gt=0)
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
     hand_over: bool = key(
-        True, "where joints slide or hinges form elsewhere, rigid contacts follow the blocks from that state; false leaves the outcome open",
+        True,
+        "where joints slide or hinges form elsewhere, rigid contacts follow the blocks from that state; false leaves the outcome open",
         source="Moreau 1988",
-    )  # fmt: skip
-    thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key(
-        [], "draw the structure and its thrust line at these times", max_length=24
     )
+    thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key([], "draw the structure and its thrust line at these times", max_length=24)
 
 
 class FailureDomain(RockingTable):
@@ -96,9 +94,12 @@ class FailureDomain(RockingTable):
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the curves, in g (and of durations in s)", ge=1e-9, le=0.1)
     hand_over_cells: int = key(
-        100, "rigid contacts decide pulses of the map in which joints slide or hinges form elsewhere, where these are not more; 0: never",
-        ge=0, le=1_000_000, source="Moreau 1988",
-    )  # fmt: skip
+        100,
+        "rigid contacts decide pulses of the map in which joints slide or hinges form elsewhere, where these are not more; 0: never",
+        ge=0,
+        le=1_000_000,
+        source="Moreau 1988",
+    )
     at_amplitudes: list[Annotated[Acceleration, Field(gt=0)]] = key(
         [], "also find the shortest failing durations at these amplitudes", max_length=200
     )
@@ -111,9 +112,7 @@ class FailureCurves(RockingTable):
     bears: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     variants: list[dict[str, int | float | str]] = key(
-        [],
-        "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure of the deck",
-        max_length=24,
+        [], "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure of the deck", max_length=24
     )
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
         "sine", "shape of the pulses", source="thesis Figs 5-4, 5-5, 5-15"
@@ -131,9 +130,7 @@ class FailureCurves(RockingTable):
     motions: int = key(12, "of a suite or a generated set at most so many are put into the picture", ge=1, le=200)
     max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
     fits: bool = key(
-        False,
-        "of arches: also Eq. 5.5 fitted to each curve, and the criterion of Eq. 5.8 with Table 5.3",
-        source="thesis Fig. 5-14",
+        False, "of arches: also Eq. 5.5 fitted to each curve, and the criterion of Eq. 5.8 with Table 5.3", source="thesis Fig. 5-14"
     )
 
     @model_validator(mode="after")
@@ -141,9 +138,7 @@ class FailureCurves(RockingTable):
         if self.pulse != "sine" and self.cycles != [1]:
             raise ValueError(f"cycles make trains of sines; a pulse of shape '{self.pulse}' comes once")
         if self.fits and (self.pulse != "sine" or self.cycles != [1]):
-            raise ValueError(
-                'fits requires curves of single sines: set pulse = "sine" and cycles = [1], or remove fits'
-            )
+            raise ValueError('fits requires curves of single sines: set pulse = "sine" and cycles = [1], or remove fits')
         if len(set(self.cycles)) < len(self.cycles):
             raise ValueError("cycles holds a number twice")
         if max(1, len(self.variants)) * len(self.cycles) > 24:

@@ -60,13 +60,7 @@ def _shares(model: ShellModel, plan: Plan) -> np.ndarray:
 
 
 def _piers(
-    model: ShellModel,
-    plan: Plan,
-    w: int,
-    wall: PlanWall,
-    rules: FrameRules,
-    strength: float,
-    under: dict[str, np.ndarray],
+    model: ShellModel, plan: Plan, w: int, wall: PlanWall, rules: FrameRules, strength: float, under: dict[str, np.ndarray]
 ) -> list[dict[str, Any]]:
     rows = []
     first, last = plan.reach(wall)
@@ -90,15 +84,15 @@ def _piers(
             lines = [
                 *formulas_of_piers(width, height, thickness, load, strength, rules.cohesion, rules.friction, double),
                 *ntc_piers(
-                    Pier(
-                        width, height, thickness, load, 0.0, double, strength, rules.cohesion, rules.friction, rules.diagonal_strength
-                    ), 1.0, 1.0, None, "SLV",
+                    Pier(width, height, thickness, load, 0.0, double, strength, rules.cohesion, rules.friction, rules.diagonal_strength),
+                    1.0,
+                    1.0,
+                    None,
+                    "SLV",
                 ),
-            ]  # fmt: skip
+            ]
             value = {line.rule: line.capacity for line in lines if line.capacity is not None}
-            row: dict[str, Any] = {
-                "wall": wall.name, "storey": storey, "from": pier.start, "to": pier.end, "height": height, "load": load
-            }  # fmt: skip
+            row: dict[str, Any] = {"wall": wall.name, "storey": storey, "from": pier.start, "to": pier.end, "height": height, "load": load}
             for code, names in CODES.items():
                 least = min(names, key=lambda name: value[name])
                 row[code], row[f"{code} by"] = value[least], least

@@ -98,9 +98,7 @@ class ShellModel(EventModel):
         points = sum(len(g.connect) * g.points_each for g in self.groups if isinstance(g, core.Shells))
         threads = max(1, min(threads, points // POINTS_PER_THREAD))
         try:
-            return core.Model(
-                self.mesh.xyz, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads
-            )
+            return core.Model(self.mesh.xyz, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads)
         except core.FreeNode as error:
             x, y, z = self.mesh.xyz[error.node]
             raise Refused(
@@ -186,14 +184,9 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     if mesh.springs:
         nodes, ways, stiffness = (np.array(column) for column in zip(*mesh.springs, strict=True))
         groups.append(
-            core.Springs(
-                np.column_stack([nodes, np.full(len(nodes), -1)]), np.column_stack([ways, ways]),
-                stiffness.astype(float),
-            )
-        )  # fmt: skip
-    if options.without_equilibrium not in ("load-unload", "continue") and any(
-        np.isfinite(j.strength["friction"]) for j in mesh.joints
-    ):
+            core.Springs(np.column_stack([nodes, np.full(len(nodes), -1)]), np.column_stack([ways, ways]), stiffness.astype(float))
+        )
+    if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
             'joints that slide keep forces that only "continue" and "load-unload" can follow: give them friction = "no-sliding", or leave '
             "without_equilibrium out",
@@ -214,9 +207,8 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     if not weight > 0.0:
         raise BadGeometry("a building without weight: give the material a density")
     behaviour = core.Behaviour(
-        options.cracking, options.shear_retention, options.closes,
-        MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes,
-    )  # fmt: skip
+        options.cracking, options.shear_retention, options.closes, MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes
+    )
     control = _control(mesh, options, along, held)
     model = ShellModel(
         mesh,
@@ -317,14 +309,10 @@ def _feet_of(mesh: ShellMesh, settlement: Settlement, what: str) -> list[int]:
     return [names.index(settlement.place)]
 
 
-def _grounds(
-    mesh: ShellMesh, options: Pushover, held: set
-) -> tuple[list[list[tuple[int, int, float]]], dict[Ground, int]]:
+def _grounds(mesh: ShellMesh, options: Pushover, held: set) -> tuple[list[list[tuple[int, int, float]]], dict[Ground, int]]:
     """Freedoms of the supports that may move, by ground; they are held no longer. Of a vault all may: what they bear is asked
     for."""
-    asked: dict[Ground, str] = (
-        {} if mesh.walls else {Ground(f, way): "" for f in range(len(mesh.feet)) for way in ("out", "down")}
-    )
+    asked: dict[Ground, str] = {} if mesh.walls else {Ground(f, way): "" for f in range(len(mesh.feet)) for way in ("out", "down")}
     every = [(f"settlements[{k}]", part) for k, part in enumerate(options.settlements)]
     for number, stage in enumerate(options.stages):
         every += [(f"stages[{number}].settlements[{k}]", part) for k, part in enumerate(stage.settlements)]
@@ -387,12 +375,8 @@ def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -
         mass = mesh.mass()  # a propped top: what the forces of the push go
         nodes = np.flatnonzero(mass)
         share = mass[nodes] / mass.sum()
-        return core.Monitor(
-            np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.outer(share, along[axis]).ravel()
-        )
-    return core.Monitor(
-        np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.tile(along[axis] / len(nodes), len(nodes))
-    )
+        return core.Monitor(np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.outer(share, along[axis]).ravel())
+    return core.Monitor(np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.tile(along[axis] / len(nodes), len(nodes)))
 
 
 def _pattern(model: ShellModel, options: Pushover, mass: np.ndarray) -> np.ndarray:
@@ -435,9 +419,7 @@ def first_mode(model: ShellModel, options: Pushover, mass: np.ndarray) -> tuple[
     return shape * np.sign(mass @ shape), float(np.sqrt(values[best]) / (2.0 * np.pi)), float(part[best])
 
 
-def _shells(
-    mesh: ShellMesh, part: ShellPart, axes: np.ndarray, frames: np.ndarray, flat: np.ndarray, options: Pushover
-) -> core.Shells:
+def _shells(mesh: ShellMesh, part: ShellPart, axes: np.ndarray, frames: np.ndarray, flat: np.ndarray, options: Pushover) -> core.Shells:
     materials = [mesh.materials[m] for m in part.material]
     corners = mesh.xyz[part.connect]
     local = np.einsum("eax,ecx->eca", axes[:, :2], corners - corners.mean(axis=1, keepdims=True)).reshape(-1, 2)
@@ -447,18 +429,26 @@ def _shells(
     band, reach = np.round(band, 9), None if reach is None else np.round(reach, 9)
     tension, crushing, beds = laws_of(materials, part.linear, part.strength, band, reach, options)
     return core.Shells(
-        part.kind, part.connect, part.thickness, np.array([m.young for m in materials]),
-        np.array([m.poisson for m in materials]), band,
+        part.kind,
+        part.connect,
+        part.thickness,
+        np.array([m.young for m in materials]),
+        np.array([m.poisson for m in materials]),
+        band,
         tension if any(t is not None for t in tension) else None,
         crushing if any(c is not None for c in crushing) else None,
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
-        selective=options.mesh.selective and part.kind == "Q4", reach=reach,
+        selective=options.mesh.selective and part.kind == "Q4",
+        reach=reach,
         confinement=np.array([m.confinement for m in materials]),
-        bedding=beds if any(bed is not None for bed in beds) else None, hill=hills_of(materials, part.linear, options),
-        frames=frames, flat=flat,
-        layers=options.mesh.layers if part.bends else 1, through=options.mesh.through if part.bends else "gauss",
+        bedding=beds if any(bed is not None for bed in beds) else None,
+        hill=hills_of(materials, part.linear, options),
+        frames=frames,
+        flat=flat,
+        layers=options.mesh.layers if part.bends else 1,
+        through=options.mesh.through if part.bends else "gauss",
         bends=part.bends,
-    )  # fmt: skip
+    )
 
 
 def _twisted(mesh: ShellMesh, frames: np.ndarray) -> np.ndarray:
@@ -489,22 +479,36 @@ def _joint(joint: ShellJoint, frames: np.ndarray, options: Pushover) -> core.She
     normal, along, out = (each(axis) for axis in (joint.normal, joint.along, joint.out))
     upright = np.abs(joint.normal[:, 2]) > 0.5
     law = JointLaw(
-        normal=each(np.column_stack([~upright, upright]).astype(float)), area=each(area) * np.tile(share, len(connect))[:, None],
-        **{name: np.full(count, value) for name, value in joint.strength.items()}, small=1.0, softening=joint.softening,
-    )  # fmt: skip
-    row = core.ShellJoints.rows(
-        normal, along, out, np.tile(height, len(connect)) * each(joint.thickness), frames[each(connect)]
+        normal=each(np.column_stack([~upright, upright]).astype(float)),
+        area=each(area) * np.tile(share, len(connect))[:, None],
+        **{name: np.full(count, value) for name, value in joint.strength.items()},
+        small=1.0,
+        softening=joint.softening,
     )
+    row = core.ShellJoints.rows(normal, along, out, np.tile(height, len(connect)) * each(joint.thickness), frames[each(connect)])
     tension, crushing, cohesion = teeth_of_joints(law, np.ones(count), options)
     return core.ShellJoints(
-        each(connect), law.normal, law.area, law.normal_stiffness, law.shear_stiffness, law.friction,
-        tension, crushing, cohesion, small=law.small, row=row,
-    )  # fmt: skip
+        each(connect),
+        law.normal,
+        law.area,
+        law.normal_stiffness,
+        law.shear_stiffness,
+        law.friction,
+        tension,
+        crushing,
+        cohesion,
+        small=law.small,
+        row=row,
+    )
 
 
 def _bar(mesh: ShellMesh, bar: ShellBar, options: Pushover) -> core.Bars:
     length = float(np.linalg.norm(mesh.xyz[bar.nodes[1]] - mesh.xyz[bar.nodes[0]]))
     return core.Bars(
-        np.array([bar.nodes]), bar.area, bar.material.young, options.crack_band or length,
-        softening_of(bar.material, options), crushing_of(bar.material, options),
-    )  # fmt: skip
+        np.array([bar.nodes]),
+        bar.area,
+        bar.material.young,
+        options.crack_band or length,
+        softening_of(bar.material, options),
+        crushing_of(bar.material, options),
+    )

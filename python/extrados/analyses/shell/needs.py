@@ -33,9 +33,7 @@ def _verified(context: Context, options: Pushover) -> None:
     """The action of the verification belongs to the code of the deck, and the building has walls on a plan."""
     refuse_mixed(context, options.verification)
     if options.verification.model_fields_set and not isinstance(context.building.structure, Plan):
-        raise Refused(
-            "verification: displacements are verified of buildings of walls on a plan", ("analysis", "verification")
-        )
+        raise Refused("verification: displacements are verified of buildings of walls on a plan", ("analysis", "verification"))
     demands(context, options.verification)
 
 
@@ -43,9 +41,7 @@ def _refuse_floors(building: Building, options: Pushover) -> None:
     for k, variant in enumerate(options.variants):
         for name, what in (("floors", "floors"), ("prestress", "forces on walls")):
             if getattr(variant, name) != 1.0 and building.structure is not None:
-                raise Refused(
-                    f"a structure of kind '{building.structure.kind}' has no {what}", ("analysis", "variants", k, name)
-                )
+                raise Refused(f"a structure of kind '{building.structure.kind}' has no {what}", ("analysis", "variants", k, name))
 
 
 def pier_strength(building: Building, options: Pushover) -> float:

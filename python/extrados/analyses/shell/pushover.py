@@ -10,14 +10,7 @@ import numpy as np
 from extrados.analyses.batches import Chain
 from extrados.analyses.codes.actions import code_of
 from extrados.analyses.codes.capacity_curve import CapacityCurve
-from extrados.analyses.codes.verification import (
-    DRIFTS,
-    Push,
-    displaced_shape,
-    unverified,
-    verify,
-    with_design_strengths,
-)
+from extrados.analyses.codes.verification import DRIFTS, Push, displaced_shape, unverified, verify, with_design_strengths
 from extrados.analyses.context import Context
 from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
@@ -72,9 +65,7 @@ def _run(context: Context, options: Pushover) -> Result:
         why = "the shear force at these heights is not known if imposed displacements load the walls"
         if context.building.joints.coefficient is None:
             why = "[joints] friction excludes it"
-        context.warnings.append(
-            f"Sliding of the whole building on a bed joint or on the base of a storey is not checked: {why}."
-        )
+        context.warnings.append(f"Sliding of the whole building on a bed joint or on the base of a storey is not checked: {why}.")
     numbers: dict[str, Any] = {}
     if options.stages:
         curves, numbers = _stages(context, result, model, options, elastic)
@@ -90,21 +81,24 @@ def _run(context: Context, options: Pushover) -> Result:
     _mesh_arrays(result, model)
     first = curves[0]
     numbers |= {
-        "weight_N": model.weight, "reference_load_N": model.unit, "direction_deg": float(options.direction),
-        "pattern": "drives" if options.drives else options.pattern, "cracking": options.cracking,
-        "layers": options.mesh.layers, "nodes": len(model.mesh.xyz), "elements": model.mesh.elements(),
-        "equations": first.equations, "points": first.points, "factor_bytes": elastic["bytes"],
-    }  # fmt: skip
+        "weight_N": model.weight,
+        "reference_load_N": model.unit,
+        "direction_deg": float(options.direction),
+        "pattern": "drives" if options.drives else options.pattern,
+        "cracking": options.cracking,
+        "layers": options.mesh.layers,
+        "nodes": len(model.mesh.xyz),
+        "elements": model.mesh.elements(),
+        "equations": first.equations,
+        "points": first.points,
+        "factor_bytes": elastic["bytes"],
+    }
     if options.pattern == "modal" and not options.drives:
         _, numbers["frequency_Hz"], numbers["modal_mass_ratio"] = first_mode(model, options, model.mesh.mass())
     interrupted = any(c.events.interrupted for c in curves)
     if options.variants and not interrupted:
         numbers |= _variants(context, options, result, numbers)
-    if (
-        verified
-        and not interrupted
-        and (found := _verify(context, result, model, options, curves, numbers)) is not None
-    ):
+    if verified and not interrupted and (found := _verify(context, result, model, options, curves, numbers)) is not None:
         numbers["verification"] = found
     if options.frame is not None:
         numbers["frame"] = _frame(context, result, model, options, elastic)
@@ -128,9 +122,7 @@ def _stages(
     context: Context, result: Result, model: ShellModel, options: Pushover, elastic: dict[str, Any]
 ) -> tuple[list[Curve], dict[str, Any]]:
     """The curves of all stages, the main one first; the numbers of that one, those of each in `stages`."""
-    staged = run_stages(
-        model, options, context.threads, _progress(context, model, options), _chains(context, model, options)
-    )
+    staged = run_stages(model, options, context.threads, _progress(context, model, options), _chains(context, model, options))
     main = min(options.main, len(staged) - 1)
     if main != options.main:
         result.warnings.append(f"the numbers are those of stage {options.stage_names[main]}, the last that began")
@@ -142,18 +134,19 @@ def _stages(
     rows, numbers = [], {}
     for k, (own, curve) in enumerate(staged):
         prefix = "" if k == main else f"stage_{k + 1}_"
-        found = _numbers(
-            context, own, options.model_copy(update={"probes": [] if prefix else options.probes}), curve, elastic
-        )
+        found = _numbers(context, own, options.model_copy(update={"probes": [] if prefix else options.probes}), curve, elastic)
         _describe(result, own, curve, prefix)
         held = curve.force(own.unit)[curve.held]
         rows.append(
             found
             | {
-                "name": options.stage_names[k], "prefix": prefix, "of": "settlement" if own.driven else "push",
-                "start_load_N": curve.already, "end_load_N": float(held[-1]) if len(held) else None,
+                "name": options.stage_names[k],
+                "prefix": prefix,
+                "of": "settlement" if own.driven else "push",
+                "start_load_N": curve.already,
+                "end_load_N": float(held[-1]) if len(held) else None,
             }
-        )  # fmt: skip
+        )
         if not prefix:
             numbers = dict(found)
     numbers["stages"] = rows
@@ -162,16 +155,12 @@ def _stages(
 
 
 def _curves(context: Context, model: ShellModel, options: Pushover) -> list[Curve]:
-    return run_curves(
-        model, options, context.threads, _progress(context, model, options), None, _chains(context, model, options)
-    )
+    return run_curves(model, options, context.threads, _progress(context, model, options), None, _chains(context, model, options))
 
 
 def _chains(context: Context, model: ShellModel, options: Pushover) -> Callable[[Any], Chain]:
     """Where the states of a curve are kept on its way."""
-    made = [
-        np.concatenate([p.connect.ravel() for p in model.mesh.parts]), model.mesh.xyz, model.constant, model.reference,
-    ]  # fmt: skip
+    made = [np.concatenate([p.connect.ravel() for p in model.mesh.parts]), model.mesh.xyz, model.constant, model.reference]
     materials = [m.model_dump_json() for m in model.mesh.materials]
     thickness = [p.thickness for p in model.mesh.parts]
 
@@ -189,9 +178,7 @@ def _progress(context: Context, model: ShellModel, options: Pushover) -> Callabl
         now = time.perf_counter()
         if not begun or done <= begun[0][1]:
             begun[:] = [(now, done)]
-            context.progress(
-                done, total, f"{text}; {model.weight / 1e3:.4g} kN weight, {model.mesh.elements()} elements"
-            )
+            context.progress(done, total, f"{text}; {model.weight / 1e3:.4g} kN weight, {model.mesh.elements()} elements")
             return
         left = (now - begun[0][0]) / (done - begun[0][1]) * max(total - done, 0.0)
         hours = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
@@ -225,9 +212,7 @@ def _by_wall(model: ShellModel, found: list[Section]) -> tuple[np.ndarray, np.nd
     return shear, normal
 
 
-def _numbers(
-    context: Context, model: ShellModel, options: Pushover, curve: Curve, elastic: dict[str, Any]
-) -> dict[str, Any]:
+def _numbers(context: Context, model: ShellModel, options: Pushover, curve: Curve, elastic: dict[str, Any]) -> dict[str, Any]:
     """Results of one curve."""
     numbers = numbers_of(model, options, curve)
     state = shown_state(model, curve)
@@ -239,14 +224,18 @@ def _numbers(
     if least is not None:
         capacity = None if greatest is None else min(greatest, least.base_shear_N)
         numbers |= {
-            "sliding_capacity_N": least.base_shear_N, "sliding_level": least.level,
+            "sliding_capacity_N": least.base_shear_N,
+            "sliding_level": least.level,
             "sliding": [asdict(row) | {"base_shear_N": row.base_shear_N} for row in limits],
-        }  # fmt: skip
+        }
     numbers |= {
         "capacity_N": None if model.driven else capacity,
-        "base_shear_coefficient": None if capacity is None or model.driven else capacity / model.weight, "roof_drift": None,
-        "storey_drifts": [], "walls": [], "cracked_points_by_storey": [],
-    }  # fmt: skip
+        "base_shear_coefficient": None if capacity is None or model.driven else capacity / model.weight,
+        "roof_drift": None,
+        "storey_drifts": [],
+        "walls": [],
+        "cracked_points_by_storey": [],
+    }
     crack = _first_crack(model, curve)
     if crack is not None:
         numbers["first_crack"] = crack
@@ -274,20 +263,26 @@ def _numbers(
     carried = curve.sign * shear * facing
     numbers["walls"] = [
         {
-            "wall": wall.name, "shear_N": float(carried[w]), "share": float(carried[w] / base) if base else 0.0,
-            "normal_N": float(normal[w]), "normal_change_N": float(normal[w] - normal0[w]),
-            "elastic_share": float((shear1[w] - shear0[w]) * facing[w] / elastic["unit"]), "drifts": walls[w].tolist(),
+            "wall": wall.name,
+            "shear_N": float(carried[w]),
+            "share": float(carried[w] / base) if base else 0.0,
+            "normal_N": float(normal[w]),
+            "normal_change_N": float(normal[w] - normal0[w]),
+            "elastic_share": float((shear1[w] - shear0[w]) * facing[w] / elastic["unit"]),
+            "drifts": walls[w].tolist(),
         }
         for w, wall in enumerate(model.mesh.walls)
-    ]  # fmt: skip
+    ]
     across = np.abs(facing) < ACROSS
     if across.any() and not across.all() and base:
         change = (normal - normal0)[across]
         up, down = float(change[change > 0].sum()), float(-change[change < 0].sum())
         numbers["flanges"] = {
-            "share": float(1.0 - carried[~across].sum() / base), "uplift_N": up, "pressure_N": down,
+            "share": float(1.0 - carried[~across].sum() / base),
+            "uplift_N": up,
+            "pressure_N": down,
             "working": max(up, down) > WORKING * model.weight,
-        }  # fmt: skip
+        }
     return numbers
 
 
@@ -335,9 +330,7 @@ def _feet(context: Context, model: ShellModel, options: Pushover, curve: Curve, 
 
 def _first_crack(model: ShellModel, curve: Curve) -> dict[str, Any] | None:
     """Where the first tooth of the push passes, or of the weight before it."""
-    for events, loads in (
-        (curve.stage_a, lambda e: np.zeros(len(e))), (curve.events, lambda _: curve.force(model.unit)),
-    ):  # fmt: skip
+    for events, loads in ((curve.stage_a, lambda e: np.zeros(len(e))), (curve.events, lambda _: curve.force(model.unit))):
         if events is None or not len(events):
             continue
         hits = np.flatnonzero(np.isin(events.code, [EVENT["tension"], EVENT["tension_s"]]) & (events.point >= 0))
@@ -388,9 +381,7 @@ def _remarks(model: ShellModel, curve: Curve) -> list[str]:
     return said
 
 
-def _frame(
-    context: Context, result: Result, model: ShellModel, options: Pushover, elastic: dict[str, Any]
-) -> list[dict[str, Any]]:
+def _frame(context: Context, result: Result, model: ShellModel, options: Pushover, elastic: dict[str, Any]) -> list[dict[str, Any]]:
     """What the formulas of codes say of the piers; all of them as a table."""
     plan, rules = context.building.structure, options.frame
     strength = pier_strength(context.building, options)
@@ -409,9 +400,7 @@ def _verify(
     """Displacement demand and capacity of all senses; conditions that its curves do not know."""
     mass = model.mesh.mass()
     with model.open(options, 1) as core_model:
-        shape, through = displaced_shape(
-            core_model, model.reference, model.control, model.along, model.freedoms.equation >= 0
-        )
+        shape, through = displaced_shape(core_model, model.reference, model.control, model.along, model.freedoms.equation >= 0)
     if options.verification.shape == "mode":
         shape, *_ = first_mode(model, options, mass)
         c = model.control
@@ -472,17 +461,17 @@ def _variants(context: Context, options: Pushover, result: Result, numbers: dict
         result.arrays[f"variant_{k}_displacement"] = Array(
             d, (f"variant_{k}",), "m", f"control displacement, {variant.name}", "variant_displacement"
         )
-        result.arrays[f"variant_{k}_load"] = Array(
-            p, (f"variant_{k}",), "N", f"base shear, {variant.name}", "variant_load"
-        )
+        result.arrays[f"variant_{k}_load"] = Array(p, (f"variant_{k}",), "N", f"base shear, {variant.name}", "variant_load")
         factors = {name: value for name, value in variant.model_dump().items() if name != "name" and value != 1.0}
         rows.append(
             {
-                "name": variant.name, "factors": factors, "greatest_base_shear_N": found,
+                "name": variant.name,
+                "factors": factors,
+                "greatest_base_shear_N": found,
                 "passed": curve.passed(model.unit),
                 "base_shear_coefficient": None if found is None else found / model.weight,
             }
-        )  # fmt: skip
+        )
         greatest.append(found)
         if curve.events.interrupted:
             break
@@ -499,18 +488,18 @@ def _varied(building: Building, variant: Variant) -> Building:
             for names, factor in (
                 (("tensile_strength", "tensile_strength_parallel", "shear_strength"), variant.strength),
                 (("fracture_energy", "fracture_energy_parallel"), variant.energy),
-                (("young",), variant.young), (("density",), variant.density),
+                (("young",), variant.young),
+                (("density",), variant.density),
             )
             for name in names
             if getattr(of, name) is not None
-        }  # fmt: skip
+        }
         return of.model_copy(update=scaled)
 
     plan = building.structure
     changed = replace(
-        building, material=material(building.material),
-        materials={name: material(of) for name, of in building.materials.items()}, views={},
-    )  # fmt: skip
+        building, material=material(building.material), materials={name: material(of) for name, of in building.materials.items()}, views={}
+    )
     if not isinstance(plan, Plan):
         return changed
     walls = [
@@ -523,9 +512,7 @@ def _varied(building: Building, variant: Variant) -> Building:
         for wall in plan.walls
     ]
     floors = [f if f.young is None else f.model_copy(update={"young": f.young * variant.floors}) for f in plan.floors]
-    prestress = [
-        p.model_copy(update={"force": p.force * variant.prestress}) for p in plan.prestress if variant.prestress > 0.0
-    ]
+    prestress = [p.model_copy(update={"force": p.force * variant.prestress}) for p in plan.prestress if variant.prestress > 0.0]
     return changed.having(structure=plan.model_copy(update={"walls": walls, "floors": floors, "prestress": prestress}))
 
 
@@ -550,9 +537,7 @@ def _mesh_arrays(result: Result, model: ShellModel) -> None:
     if not mesh.walls:
         for name, values in place_axes(model).items():
             unit = "m" if name == "xyz" else ""
-            result.arrays[f"place_{name}"] = Array(
-                values, ("places", "axis"), unit, f"of the places in the shells: {name}"
-            )
+            result.arrays[f"place_{name}"] = Array(values, ("places", "axis"), unit, f"of the places in the shells: {name}")
     for name, values in point_places(model).items():
         unit = "m" if name in "sz" else ""
         result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"of the places in the walls: {name}")
@@ -572,17 +557,18 @@ def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) 
     if model.mesh.walls:
         result.arrays[f"{prefix}state_wall_shear"] = Array(
             np.stack([curve.sign * _facing(model) * _by_wall(model, sections(model, s.report))[0] for s in states]),
-            (*dims, "walls"), "N", "shear that each wall carries along the push at its foot",
-        )  # fmt: skip
+            (*dims, "walls"),
+            "N",
+            "shear that each wall carries along the push at its foot",
+        )
     seen = [cracks(model, s.report) for s in states]
     for name, unit, about in (
-        ("width", "m", "greatest width of a crack through the thickness"), ("angle", "rad", "of its normal to the wall"),
+        ("width", "m", "greatest width of a crack through the thickness"),
+        ("angle", "rad", "of its normal to the wall"),
         ("part", "", "part of the thickness that has cracked"),
         ("side", "", "where through the thickness it is widest, from -1 to 1 on the side of the normal"),
-    ):  # fmt: skip
-        result.arrays[f"{prefix}state_{name}"] = Array(
-            np.stack([s[name] for s in seen]), (*dims, "places"), unit, about
-        )
+    ):
+        result.arrays[f"{prefix}state_{name}"] = Array(np.stack([s[name] for s in seen]), (*dims, "places"), unit, about)
     _pier_table(result, model, curve, states, prefix)
     _fields(result, model, states, seen, prefix)
 
@@ -594,17 +580,19 @@ def _pier_table(result: Result, model: ShellModel, curve: Curve, states: list[St
     rows = sections(model, state.report)
     result.tables[f"piers_{prefix}".rstrip("_")] = TableData(
         {
-            "wall": [model.mesh.walls[r.wall].name for r in rows], "storey": [r.storey for r in rows],
-            "from": [r.start for r in rows], "to": [r.end for r in rows], "normal": [r.normal for r in rows],
-            "shear": [r.shear for r in rows], "moment": [r.moment for r in rows],
+            "wall": [model.mesh.walls[r.wall].name for r in rows],
+            "storey": [r.storey for r in rows],
+            "from": [r.start for r in rows],
+            "to": [r.end for r in rows],
+            "normal": [r.normal for r in rows],
+            "shear": [r.shear for r in rows],
+            "moment": [r.moment for r in rows],
         },
         {"from": "m", "to": "m", "normal": "N", "shear": "N", "moment": "N m"},
-    )  # fmt: skip
+    )
 
 
-def _fields(
-    result: Result, model: ShellModel, states: list[State], seen: list[dict[str, np.ndarray]], prefix: str
-) -> None:
+def _fields(result: Result, model: ShellModel, states: list[State], seen: list[dict[str, np.ndarray]], prefix: str) -> None:
     """The states for ParaView; floors have no cracks."""
     name, series = f"fields_{prefix}".rstrip("_"), []
     walls = [part for part in model.mesh.parts if part.bends]
@@ -617,9 +605,8 @@ def _fields(
         np.maximum.at(part, element, crack["part"])
         file = f"{name}/event_{state.event + 1:06d}.vtu"
         result.files[file] = vtu(
-            model.mesh.xyz, cells, {"displacement": state.displacement[:, :3]},
-            {"crack_width": width, "cracked_part": part},
-        )  # fmt: skip
+            model.mesh.xyz, cells, {"displacement": state.displacement[:, :3]}, {"crack_width": width, "cracked_part": part}
+        )
         series.append((state.event + 1, file))
     result.files[f"{name}.pvd"] = pvd(series)
 
@@ -635,13 +622,9 @@ def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> s
         parts.append(_curve_told(options, numbers, curve, word, grouped))
     if numbers.get("band_N"):
         low, high = numbers["band_N"]
-        parts.append(
-            f"Under the other assumptions of {len(numbers['variants'])} variants it is {low / 1e3:.4g} to {high / 1e3:.4g} kN."
-        )
+        parts.append(f"Under the other assumptions of {len(numbers['variants'])} variants it is {low / 1e3:.4g} to {high / 1e3:.4g} kN.")
     if "frame" in numbers:
-        words = [
-            f"{row['base_shear_N'] / 1e3:.4g} kN by {row['code']} (storey {row['storey']})" for row in numbers["frame"]
-        ]
+        words = [f"{row['base_shear_N'] / 1e3:.4g} kN by {row['code']} (storey {row['storey']})" for row in numbers["frame"]]
         parts.append(f"Capacity of its piers by the formulas of codes {' and '.join(words)}.")
     assumed = getattr(building.structure, "assumed", [])
     if assumed:
@@ -675,11 +658,7 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
     if main is not None and main["of"] == "settlement":
         return f"After stage {main['name']} {feet}." if feet else ""
     load = curve["greatest_load_N"]
-    sense = (
-        f"Pushed to {curve['sense']} ({options.direction:g} degrees on the plan)"
-        if main is None
-        else f"In stage {main['name']}"
-    )
+    sense = f"Pushed to {curve['sense']} ({options.direction:g} degrees on the plan)" if main is None else f"In stage {main['name']}"
     if load is None:
         return f"{sense}: no state in equilibrium was found."
     bears = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
@@ -705,15 +684,10 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
             x, y, z = crack["place_m"]
             part = crack["wall"]
             where = f"group {part}" if grouped and part != NO_GROUP else f"the {part}"
-            text += (
-                f"; it cracks first in {where} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under "
-                f"{crack['base_shear_N'] / 1e3:.3g} kN"
-            )
+            text += f"; it cracks first in {where} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under {crack['base_shear_N'] / 1e3:.3g} kN"
     if any(r["share"] > 0.02 for r in curve["walls"]):
         most = sorted(curve["walls"], key=lambda row: -row["share"])[:4]
-        text += "; " + ", ".join(
-            f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02
-        )
+        text += "; " + ", ".join(f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02)
     if "flanges" in curve:
         flanges = curve["flanges"]
         text += (

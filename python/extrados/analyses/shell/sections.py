@@ -26,9 +26,7 @@ def plane_stresses(report: dict[str, np.ndarray]) -> np.ndarray:
     """Stresses x, y, xy (3, ...) in the axes of the elements [Pa]."""
     c, s = report["cos"], report["sin"]
     n, t, g = report["stress_n"], report["stress_s"], report["stress_ns"]
-    return np.stack(
-        [c**2 * n + s**2 * t - 2 * c * s * g, s**2 * n + c**2 * t + 2 * c * s * g, c * s * (n - t) + (c**2 - s**2) * g]
-    )
+    return np.stack([c**2 * n + s**2 * t - 2 * c * s * g, s**2 * n + c**2 * t + 2 * c * s * g, c * s * (n - t) + (c**2 - s**2) * g])
 
 
 def sections(model: ShellModel, report: dict[str, np.ndarray]) -> list[Section]:
@@ -45,9 +43,7 @@ def sections(model: ShellModel, report: dict[str, np.ndarray]) -> list[Section]:
     ]
 
 
-def sections_at(
-    model: ShellModel, report: dict[str, np.ndarray], wall: int, storey: int, height: float
-) -> list[Section]:
+def sections_at(model: ShellModel, report: dict[str, np.ndarray], wall: int, storey: int, height: float) -> list[Section]:
     """Forces in the piers of a wall that a height cuts, from the row of elements there."""
     return _sections(model, report, wall, storey, lambda low, high: (low <= height) & (high > height))
 
@@ -58,11 +54,7 @@ def _begins_at(level: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _sections(
-    model: ShellModel,
-    report: dict[str, np.ndarray],
-    wall: int,
-    storey: int,
-    of_row: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    model: ShellModel, report: dict[str, np.ndarray], wall: int, storey: int, of_row: Callable[[np.ndarray, np.ndarray], np.ndarray]
 ) -> list[Section]:
     """Of the row of elements of a wall that their lower and upper ends say."""
     found = []
@@ -85,10 +77,15 @@ def _sections(
             up = stress[1, pier] * volume[pier] / tall[pier]
             found.append(
                 Section(
-                    wall, storey, start, end, float(up.sum()), float((stress[2, pier] * volume[pier] / tall[pier]).sum()),
+                    wall,
+                    storey,
+                    start,
+                    end,
+                    float(up.sum()),
+                    float((stress[2, pier] * volume[pier] / tall[pier]).sum()),
                     float((up * (0.5 * (start + end) - at[pier])).sum()),
                 )
-            )  # fmt: skip
+            )
     return found
 
 

@@ -36,9 +36,7 @@ class SlidingLimit:
         return self.resistance_N / self.shear_share
 
 
-def sliding_limits(
-    model: ShellModel, building: Building, options: Pushover, under: dict[str, np.ndarray]
-) -> list[SlidingLimit]:
+def sliding_limits(model: ShellModel, building: Building, options: Pushover, under: dict[str, np.ndarray]) -> list[SlidingLimit]:
     """The bases of all storeys, and all heights at which bed joints cut all walls; none of a vault without walls, and none
     of a level whose friction excludes sliding. At the base of a storey walls without a bed joint resist by the friction and
     cohesion of [joints]. under: report of all points under the constant loads (core.sla.REPORT)."""

@@ -17,11 +17,7 @@ NOWHERE = np.empty(0)
 
 
 def run_stages(
-    model: ShellModel,
-    options: Pushover,
-    threads: int,
-    progress: Callable[[float, float, str], None],
-    chain: Callable[[Any], Chain],
+    model: ShellModel, options: Pushover, threads: int, progress: Callable[[float, float, str], None], chain: Callable[[Any], Chain]
 ) -> list[tuple[ShellModel, Curve]]:
     """The curves of all stages with the model of each, up to the first that leaves no state to go on from.
 
@@ -60,20 +56,20 @@ def run_stages(
             before = float(watch.share @ start[watch.node, watch.direction])
             own = options.model_copy(
                 update={
-                    "events": stage.events or options.events, "stop_fraction": stage.stop_fraction,
-                    "target_displacement": None, "without_equilibrium": options.rule,
+                    "events": stage.events or options.events,
+                    "stop_fraction": stage.stop_fraction,
+                    "target_displacement": None,
+                    "without_equilibrium": options.rule,
                     **({} if k == options.main else {"states": [], "probes": []}),
                 }
-            )  # fmt: skip
+            )
             told = lambda done, total, text, name=name: progress(done, total, f"stage {name}, {text}")  # noqa: E731
             stop = _stop(model, staged, stage, before, k)
             if not staged.driven and path is None:
                 # A mechanism by the compliance of the building as it was: a stage may begin with little of it left
                 softer = _softness(core_model, staged.reference, start) / sound[_direction(options, stage)]
                 stop = replace(stop, compliance=max(model.mechanism_ratio / softer, 1.0))
-            curve = run_reference_loads(
-                core_model, staged, own, 1, before, told, False, chain([k, damage, moved]), stop
-            )
+            curve = run_reference_loads(core_model, staged, own, 1, before, told, False, chain([k, damage, moved]), stop)
             curve.name, curve.damage_start = name, damage
             curve.acceleration = staged.acceleration
             curve.sign = -1 if stage.sense == "-" else 1  # its displacements have it already
@@ -98,20 +94,14 @@ def run_stages(
 
 
 def _staged(
-    model: ShellModel,
-    options: Pushover,
-    stage: PushStage,
-    applied: np.ndarray,
-    moved: np.ndarray,
-    pushed: list[tuple[np.ndarray, float]],
+    model: ShellModel, options: Pushover, stage: PushStage, applied: np.ndarray, moved: np.ndarray, pushed: list[tuple[np.ndarray, float]]
 ) -> ShellModel:
     """The model of a stage; the supports stand where the core was told."""
     if stage.settlements:
         rate = how_far(model.mesh, model.grounds, stage.settlements)
         return replace(
-            model, constant=applied, reference=np.zeros_like(applied), unit=1.0, acceleration=None, rate=rate, settled=NOWHERE,
-            stands=moved,
-        )  # fmt: skip
+            model, constant=applied, reference=np.zeros_like(applied), unit=1.0, acceleration=None, rate=rate, settled=NOWHERE, stands=moved
+        )
     force, along = mass_push(model, options, _direction(options, stage))
     sign = 1.0 if stage.sense == "+" else -1.0
     axis, control = np.flatnonzero(along), model.control
@@ -119,9 +109,7 @@ def _staged(
         nodes = np.unique(control.node)
         share = np.array([np.abs(control.share[control.node == n]).max() for n in nodes])
         share /= share.sum()
-        control = core.Monitor(
-            np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.outer(share, along[axis]).ravel()
-        )
+        control = core.Monitor(np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.outer(share, along[axis]).ravel())
     unit = float(np.abs(force[:, :3] @ along).sum())
     reference = sign * force
     size = float((reference * reference).sum())
@@ -131,9 +119,16 @@ def _staged(
         if np.abs(np.abs(other) - np.abs(reference)).max() <= 1e-9 * np.abs(reference).max()
     )
     return replace(
-        model, constant=applied, reference=reference, unit=unit, already=unit * already, along=along, settled=NOWHERE,
-        stands=moved, control=core.Monitor(control.node, control.direction, sign * control.share),
-    )  # fmt: skip
+        model,
+        constant=applied,
+        reference=reference,
+        unit=unit,
+        already=unit * already,
+        along=along,
+        settled=NOWHERE,
+        stands=moved,
+        control=core.Monitor(control.node, control.direction, sign * control.share),
+    )
 
 
 def _direction(options: Pushover, stage: PushStage) -> float:
@@ -161,9 +156,7 @@ def _of_ground(staged: ShellModel) -> core.Monitor:
     which = int(np.abs(staged.rate).argmax())
     equation = int(staged.freedoms.equation.max()) + 1 - len(staged.rate) + which
     node, direction = np.argwhere(staged.freedoms.equation == equation)[0]
-    return core.Monitor(
-        np.array([node]), np.array([direction]), np.array([1.0 / staged.freedoms.factor[node, direction]])
-    )
+    return core.Monitor(np.array([node]), np.array([direction]), np.array([1.0 / staged.freedoms.factor[node, direction]]))
 
 
 def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, number: int) -> core.Stop:
@@ -189,6 +182,10 @@ def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, n
                 ("analysis", "stages", number, "target_displacement"),
             )
     return core.Stop(
-        load=load, fraction=stage.stop_fraction or -1.0, compliance=model.mechanism_ratio, target=target, side=side,
+        load=load,
+        fraction=stage.stop_fraction or -1.0,
+        compliance=model.mechanism_ratio,
+        target=target,
+        side=side,
         already=staged.already / staged.unit,
-    )  # fmt: skip
+    )

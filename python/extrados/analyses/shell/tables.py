@@ -38,9 +38,7 @@ class Settlement(Table):
     )
     x: Range | None = key(None, "[from, to] along the wall; default all of it")
     down: Length = key(0.0, "how far it goes down; negative is a heave")
-    out: Length = key(
-        0.0, "how far it goes outward: across a wall, away from the middle of the plan; of a dome all around"
-    )
+    out: Length = key(0.0, "how far it goes outward: across a wall, away from the middle of the plan; of a dome all around")
 
     @model_validator(mode="after")
     def _somewhere(self) -> "Settlement":
@@ -61,9 +59,7 @@ class PushStage(Table):
     displacements and its damage."""
 
     name: str | None = key(None, "of the stage; default its number", min_length=1, max_length=40)
-    settlements: list[Settlement] = key(
-        [], "settlements of the ground in this stage; without them the stage is a push", max_length=100
-    )
+    settlements: list[Settlement] = key([], "settlements of the ground in this stage; without them the stage is a push", max_length=100)
     direction: Angle | None = key(None, "of the push on the plan; default the analysis'", ge=-360, le=360)
     sense: Literal["+", "-"] = key("+", "of the push")
     base_shear: Force | None = key(
@@ -81,9 +77,7 @@ class PushStage(Table):
     def _one_cause(self) -> "PushStage":
         own = {"direction", "sense", "base_shear", "target_displacement", "stop_fraction"} & self.model_fields_set
         if self.settlements and own:
-            raise ValueError(
-                f"{', '.join(sorted(own))}: of a push; a stage of settlements ends at their values: take two stages"
-            )
+            raise ValueError(f"{', '.join(sorted(own))}: of a push; a stage of settlements ends at their values: take two stages")
         return self
 
 
@@ -105,9 +99,7 @@ class FrameRules(Table):
 
     cohesion: Stress = key(0.0, "shear strength of bed joints without pressure", ge=0)
     friction: float = key(0.4, "coefficient of friction of bed joints", ge=0, le=1.5)
-    diagonal_strength: Stress = key(
-        about="tau_0 of diagonal cracking, without pressure", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I"
-    )
+    diagonal_strength: Stress = key(about="tau_0 of diagonal cracking, without pressure", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I")
     compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
         "double", "ends of the piers without rotation: both, between stiff spandrels, or the lower one alone"
@@ -122,35 +114,34 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     view: ClassVar = "shell"
     structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.shell, str))
     uses: ClassVar = (
-        "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
-        "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength",
-    )  # fmt: skip
+        "material.density",
+        "material.young",
+        "material.poisson",
+        "material.tensile_strength",
+        "material.fracture_energy",
+        "material.compressive_strength",
+        "material.tensile_strength_parallel",
+        "material.shear_strength",
+    )
     beside: ClassVar = MATERIAL
     starter_structure: ClassVar = "building"
     starter: ClassVar = {"mesh": '{ size = "0.6 m", layers = 3 }', "ripple": "0.2", "events": "1500"}
 
     direction: Angle = key(0.0, "of the push on the plan, counter-clockwise from x", ge=-360, le=360)
-    directions: list[Literal["+", "-"]] = key(
-        ["+"], "senses of the push, each from the same start", min_length=1, max_length=2
-    )
+    directions: list[Literal["+", "-"]] = key(["+"], "senses of the push, each from the same start", min_length=1, max_length=2)
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
-        "forces in proportion to the masses, to the masses times their height, or to the masses times the first mode in "
-        "that direction",
+        "forces in proportion to the masses, to the masses times their height, or to the masses times the first mode in that direction",
     )
     drives: list[Drive] = key(
-        [],
-        "in place of the pattern: walls whose tops of storeys move by given parts of one displacement",
-        max_length=100,
+        [], "in place of the pattern: walls whose tops of storeys move by given parts of one displacement", max_length=100
     )
     control: Drive | None = key(
         None,
         "place whose mean displacement in the direction is followed; default all walls on the highest level, or all masses if "
         "that level is propped",
     )
-    settlements: list[Settlement] = key(
-        [], "settlements that grow with the weight, [[analysis.settlements]]", max_length=100
-    )
+    settlements: list[Settlement] = key([], "settlements that grow with the weight, [[analysis.settlements]]", max_length=100)
     stages: list[PushStage] = key(
         [],
         "stages one after the other, [[analysis.stages]], in place of one push: pushes to either sense, settlements; "
@@ -172,12 +163,9 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
     stop_fraction: float = key(0.0, "stop when the load drops below this part of its peak", ge=0, lt=1)
-    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(
-        1e4, "stop where the compliance has grown by this factor"
-    )
+    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "stop where the compliance has grown by this factor")
     crack_closure: bool | None = key(
-        None,
-        "cracks that close regain their stiffness; default true of rotating cracks that equilibrium iterations follow, else false",
+        None, "cracks that close regain their stiffness; default true of rotating cracks that equilibrium iterations follow, else false"
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
@@ -187,9 +175,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         source="thesis 4.3.1",
     )
     continuation: Literal["newton", "implicit-explicit"] = key("newton", "equilibrium iterations, see sla")
-    states: list[Annotated[int, Field(ge=1)]] = key(
-        [], "events whose state is kept (the peak and the last are anyway)", max_length=200
-    )
+    states: list[Annotated[int, Field(ge=1)]] = key([], "events whose state is kept (the peak and the last are anyway)", max_length=200)
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
     frame: FrameRules | None = key(None, "strengths of its piers by formulas of codes, [analysis.frame]")
     verification: Verification = key(
@@ -232,12 +218,15 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
             raise ValueError(f"directions: each sense may stand once, not {self.directions}")
         self.check_stages(
             {
-                "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
-                "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
+                "directions": self.directions != ["+"],
+                "drives": bool(self.drives),
+                "variants": bool(self.variants),
+                "target_displacement": self.target_displacement is not None,
+                "stop_fraction": self.stop_fraction > 0.0,
                 'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
                 "constant_damage = false": not self.constant_damage,
             }
-        )  # fmt: skip
+        )
         if self.settlements and not self.constant_damage:
             raise ValueError("settlements come with the weight: they need constant_damage = true")
         if self.drives and self.pattern != "mass":

@@ -77,11 +77,14 @@ def bar_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> No
     if follow:
         result.tables[f"bar_forces{of}"] = TableData(
             {
-                "event": np.arange(1, len(events) + 1), "load": curve.force(model.unit),
-                "displacement": events.monitors[:, 0], "equilibrium": events.equilibrium.astype(int), **follow,
+                "event": np.arange(1, len(events) + 1),
+                "load": curve.force(model.unit),
+                "displacement": events.monitors[:, 0],
+                "equilibrium": events.equilibrium.astype(int),
+                **follow,
             },
             {"load": "N", "displacement": "m"} | dict.fromkeys(follow, "N"),
-        )  # fmt: skip
+        )
     embedded = [(k, bar) for k, bar in enumerate(model.bars) if bar.name not in follow]
     if not embedded or not curve.states:
         return

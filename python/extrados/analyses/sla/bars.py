@@ -52,10 +52,7 @@ class NamedBar:
         for k in np.flatnonzero(np.isin(code, [EVENT["open"], EVENT["close"]])).tolist():
             taut[k + 1 :] = code[k] == EVENT["close"]
         found = np.full(len(code), young)
-        for law, row, kind in (
-            (self.group.tension, TENSION, "tension"),
-            (self.group.compression, PRESSURE, "compression"),
-        ):
+        for law, row, kind in ((self.group.tension, TENSION, "tension"), (self.group.compression, PRESSURE, "compression")):
             if isinstance(law, core.Softening):
                 passed = int(start[row]) - 1 + np.cumsum(code == EVENT[kind]) - (code == EVENT[kind])
                 each = np.append(core.teeth(law, young, float(np.max(self.group.band)))[0], floor * young)
@@ -76,9 +73,7 @@ def bar_group(
     material: Material = mesh.named[bar.material]
     what = f"a bar from {bar.start} to {bar.end}"
     if material.tensile_strength_parallel is not None:
-        raise BadGeometry(
-            f"a bar of {bar.material!r}: tensile_strength_parallel is for masonry, a bar has one strength"
-        )
+        raise BadGeometry(f"a bar of {bar.material!r}: tensile_strength_parallel is for masonry, a bar has one strength")
     rod = None
     if bar.bonded:
         rod = bonded(Corners.of(mesh), np.array([bar.start, bar.end], dtype=float), what)
@@ -97,18 +92,14 @@ def bar_group(
             )
         band = 1.0
         tension = crushing = yielding(bar.yield_strength, material.young, bar.ultimate_strain, options)
-    group = core.Bars(
-        connect, bar.area, material.young, band, tension, crushing, *((None, None) if rod is None else _shape(rod))
-    )
+    group = core.Bars(connect, bar.area, material.young, band, tension, crushing, *((None, None) if rod is None else _shape(rod)))
     return group, 0.5 * length if rod is None else rod.place
 
 
 def tie_group(mesh: Mesh, tie: Tie, rod: Rod, options: Sla) -> core.Bars:
     """One of [[ties]]: a bar of 1 m^2, so that its stress is its force."""
     if tie.prestress:
-        raise BadGeometry(
-            f"{tie.name}: prestress is not taken into account here; put the pair of its forces among the constant loads"
-        )
+        raise BadGeometry(f"{tie.name}: prestress is not taken into account here; put the pair of its forces among the constant loads")
     length = float(rod.length[0])
     thickness = max(float(group.thickness.max()) for group in mesh.groups if group.joint is None)
     young = (tie.stiffness or RIGID * mesh.materials[0].young * thickness) * length
@@ -116,9 +107,8 @@ def tie_group(mesh: Mesh, tie: Tie, rod: Rod, options: Sla) -> core.Bars:
     if tie.yield_force is not None:
         law = yielding(tie.yield_force, young, max(LONG, LONGER * tie.yield_force / young), options)
     return core.Bars(
-        rod.connect, 1.0, young, 1.0, law if tie.most > 0.0 else None, law if tie.least < 0.0 else None, *_shape(rod),
-        tie.works_in,
-    )  # fmt: skip
+        rod.connect, 1.0, young, 1.0, law if tie.most > 0.0 else None, law if tie.least < 0.0 else None, *_shape(rod), tie.works_in
+    )
 
 
 def _shape(rod: Rod) -> tuple[np.ndarray, np.ndarray]:

@@ -48,15 +48,11 @@ def dry_points(core_model: core.Model, model: SlaModel) -> DryPoints:
             continue
         at = np.flatnonzero(np.repeat(group.dry, per))
         each = np.ones(len(group.dry))
-        values = (
-            (made.friction, made.shear_stiffness, made.small) if isinstance(made, core.Joints) else (np.nan, 1.0, 1.0)
-        )
+        values = (made.friction, made.shear_stiffness, made.small) if isinstance(made, core.Joints) else (np.nan, 1.0, 1.0)
         found.append((first + at, *(np.repeat(value * each, per)[at] for value in (*values, 1.0))))
     if any(len(number) for number, *_ in found):
         bars = [group for group in model.groups if isinstance(group, core.Bars)]
-        begins = np.cumsum(
-            [core_model.points - sum(len(bar.connect) for bar in bars), *(len(bar.connect) for bar in bars)]
-        )
+        begins = np.cumsum([core_model.points - sum(len(bar.connect) for bar in bars), *(len(bar.connect) for bar in bars)])
         for bar, start in zip(bars, begins[:-1].tolist(), strict=True):
             each = np.ones(len(bar.connect))
             if bar.bears != "both":
@@ -97,18 +93,14 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     if not len(at):
         return False
     damage = core_model.damage()
-    joints = at[
-        at < core_model.damage().shape[1] - sum(len(g.connect) for g in model.groups if isinstance(g, core.Bars))
-    ]
+    joints = at[at < core_model.damage().shape[1] - sum(len(g.connect) for g in model.groups if isinstance(g, core.Bars))]
     damage[CRACKED, joints] = 1.0
     damage[TOOTH, joints] = core.MOST_TEETH + 1.0  # beyond the last tooth, whatever their number
     start = Contact(np.ones(len(at), dtype=bool), np.full(len(at), STICKS), np.zeros(len(at)))
     slides = bool(np.isfinite(dry.friction).any())
     if not slides:
         if _rounds(core_model, model, dry, damage, start, MOST_ROUNDS) is None:
-            raise NotCarried(
-                "the constant loads are not carried: dry joints that only press cannot balance them", WHOLE
-            )
+            raise NotCarried("the constant loads are not carried: dry joints that only press cannot balance them", WHOLE)
         return False
     # What touches without sliding is a sound beginning
     still = _with_friction(model, np.nan)
@@ -133,8 +125,7 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
 def _with_friction(model: SlaModel, times: float) -> SlaModel:
     """The model with so many times the friction of its joints; NaN: none of them slides."""
     groups = [
-        replace(group, friction=np.asarray(group.friction) * times) if isinstance(group, core.Joints) else group
-        for group in model.groups
+        replace(group, friction=np.asarray(group.friction) * times) if isinstance(group, core.Joints) else group for group in model.groups
     ]
     return replace(model, groups=groups)
 
@@ -166,9 +157,7 @@ def _at(model: SlaModel, options: Sla, damage: np.ndarray, start: Contact, times
         return _rounds(core_model, other, dry_points(core_model, other), damage.copy(), start, most)
 
 
-def _rounds(
-    core_model: core.Model, model: SlaModel, dry: DryPoints, damage: np.ndarray, start: Contact, most: int
-) -> Contact | None:
+def _rounds(core_model: core.Model, model: SlaModel, dry: DryPoints, damage: np.ndarray, start: Contact, most: int) -> Contact | None:
     """Unilateral contact and friction under A by their active sets; None where the rounds end without a state.
 
     Points in tension open, points that overlap close, all at once, until none changes; a round that brings back an earlier

@@ -43,12 +43,7 @@ class Bilinear:
 
 
 def states(
-    equilibrium: np.ndarray,
-    load: np.ndarray,
-    way: np.ndarray,
-    compliance: np.ndarray,
-    most_way: float,
-    most_compliance: float,
+    equilibrium: np.ndarray, load: np.ndarray, way: np.ndarray, compliance: np.ndarray, most_way: float, most_compliance: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Which events are states of the structure, and which lie out of reach (both (events), bool).
 
@@ -77,9 +72,7 @@ def has_fallen(displacement: np.ndarray, load: np.ndarray, start: float, fractio
     return bool(len(below) and way[-1] >= way[below[0]] + FURTHER * abs(way[peak]))
 
 
-def envelope(
-    displacement: np.ndarray, load: np.ndarray, start: float = 0.0, bins: int = BINS
-) -> tuple[np.ndarray, np.ndarray]:
+def envelope(displacement: np.ndarray, load: np.ndarray, start: float = 0.0, bins: int = BINS) -> tuple[np.ndarray, np.ndarray]:
     """Monotone envelope of the polyline through (start, 0) and states: at each of `bins` displacements the greatest load on
     it. What comes back after the peak, by more than FURTHER of the way to the peak, has no part in it.
 

@@ -153,16 +153,16 @@ def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], 
         found.append(
             numbers_of(own, options.model_copy(update={"probes": []}), curve)
             | {
-                "name": curve.name, "prefix": prefix, "start_load_N": curve.already,
+                "name": curve.name,
+                "prefix": prefix,
+                "start_load_N": curve.already,
                 "end_load_N": float(curve.force(own.unit)[last]) if last >= 0 else None,
             }
-        )  # fmt: skip
+        )
     if options.stages[options.main :] and main.name != options.stage_names[options.main]:
         result.warnings.append(f"the numbers are those of stage {main.name}, the last that began")
     ends = "; ".join(
-        f"{stage['name']} at {stage['end_load_N'] / 1e3:.4g} kN by: {stage['stop']}"
-        for stage in found
-        if stage["end_load_N"] is not None
+        f"{stage['name']} at {stage['end_load_N'] / 1e3:.4g} kN by: {stage['stop']}" for stage in found if stage["end_load_N"] is not None
     )
     if ends:
         result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"

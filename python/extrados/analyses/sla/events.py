@@ -41,9 +41,7 @@ DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
 #: Part of the work of the loads by which the energies of steps may differ without a warning
 UNBALANCED = 0.06
 #: How a run ends in which the load can grow for ever, and one that has reached a displacement
-UNBOUNDED, MECHANISM_REACHED, REACHED = (
-    core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement")
-)
+UNBOUNDED, MECHANISM_REACHED, REACHED = (core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement"))
 DRIFTED = f"a drift of {100 * DRIFT:g} %"
 
 
@@ -74,9 +72,7 @@ class Curve:
     driven: bool = False  # the multiplier is a displacement of supports, the load their force
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
     histories: np.ndarray | None = None  # (2, points) at the end, of a run that ended with equilibrium iterations
-    last_line: tuple[float, float] | None = (
-        None  # control displacement [m] after the last event: constant, per multiplier
-    )
+    last_line: tuple[float, float] | None = None  # control displacement [m] after the last event: constant, per multiplier
 
     @property
     def sense(self) -> str:
@@ -203,9 +199,7 @@ def run_curves(
     chain: where the states of the curve of a sense, +1 or -1, are kept on its way, and of 0, of the constant loads;
     none are without it.
     """
-    if model.slides and (
-        options.solution == "incremental" or options.without_equilibrium not in ("continue", "load-unload")
-    ):
+    if model.slides and (options.solution == "incremental" or options.without_equilibrium not in ("continue", "load-unload")):
         raise Refused(
             "joints that slide keep forces that neither an incremental solution nor other variants can "
             'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload',
@@ -231,22 +225,27 @@ def run_curves(
             if number or stage_a is not None:  # a new factor: a run that is resumed here has one too
                 core_model.set_damage(start)
             _settled(core_model, model)
-            core_model.loads(
-                model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger
-            )
+            core_model.loads(model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger)
             watch = model.control
             before = sign * float(watch.share @ core_model.displacement(0.0)[watch.node, watch.direction])
             if options.solution == "incremental":
                 curve = _incremental_stage(core_model, model, options, sign, progress, before)
             else:
                 curve = run_reference_loads(
-                    core_model, model, options, sign, before, progress,
-                    bool(stage_a is None and damage is None and not rubs), chain and chain(sign),
+                    core_model,
+                    model,
+                    options,
+                    sign,
+                    before,
+                    progress,
+                    bool(stage_a is None and damage is None and not rubs),
+                    chain and chain(sign),
                     core.Stop(
                         displacement=np.inf if options.target_displacement is None else options.target_displacement,
-                        fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
+                        fraction=options.stop_fraction or -1.0,
+                        compliance=model.mechanism_ratio,
                     ),
-                )  # fmt: skip
+                )
             curve.stage_a = stage_a
             curve.damage_start = start
             curve.warnings += warnings if not number else []
@@ -359,10 +358,7 @@ def _constant_stage(
     if events.reason != "target load" and not events.interrupted:
         most = float(events.load.max()) if len(events) else 0.0
         why = events.reason or f"{way.done} events were not enough"
-        raise NotCarried(
-            f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})",
-            WHOLE,
-        )
+        raise NotCarried(f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})", WHOLE)
     return events
 
 
@@ -468,20 +464,14 @@ def run_reference_loads(
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, kept_states = core.Events.join(way.parts), way.states
     events.monitors[:, 0] *= sign  # positive in the sense of the load
-    collapsed = (
-        events.reason == "mechanism"
-        and len(events) > 0
-        and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
-    )
+    collapsed = events.reason == "mechanism" and len(events) > 0 and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
     if events.reason == "mechanism" and len(events) and model.driven:
         events.equilibrium[-1] = False  # the constant loads carry it away
     if collapsed and model.mesh.has_joints:
         # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
         events.equilibrium[-1] = False
     damage_end = core_model.damage()
-    curve = Curve(
-        events, None, kept_states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points
-    )
+    curve = Curve(events, None, kept_states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
     if core_model.iterates and len(events):
         curve.histories = core_model.histories()
     curve.already, curve.driven, curve.releases = model.already, model.driven, release
@@ -551,12 +541,7 @@ def follow(core_model: core.Model, model: EventModel, how: str | None) -> None:
 
 
 def _incremental_stage(
-    core_model: core.Model,
-    model: EventModel,
-    options: Staged,
-    sign: int,
-    progress: Callable[[float, float, str], None],
-    before: float,
+    core_model: core.Model, model: EventModel, options: Staged, sign: int, progress: Callable[[float, float, str], None], before: float
 ) -> Curve:
     """The same loads by the incremental peer; its last state is kept."""
     begin = time.perf_counter()
@@ -564,14 +549,24 @@ def _incremental_stage(
     events.monitors *= sign
     kept_states = [_state(core_model, len(events) - 1, events)] if len(events) else []
     curve = Curve(
-        events, None, kept_states, NOTHING, core_model.damage(), time.perf_counter() - begin, sign, [],
-        core_model.equations, core_model.points, before=before, unit=model.unit, extent=model.extent, control=model.control,
-    )  # fmt: skip
+        events,
+        None,
+        kept_states,
+        NOTHING,
+        core_model.damage(),
+        time.perf_counter() - begin,
+        sign,
+        [],
+        core_model.equations,
+        core_model.points,
+        before=before,
+        unit=model.unit,
+        extent=model.extent,
+        control=model.control,
+    )
     if len(events):
         curve.residual = core_model.residual()
-        curve.most_compliance = (MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM) * float(
-            events.compliance[0]
-        )
+        curve.most_compliance = (MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM) * float(events.compliance[0])
     return curve
 
 
@@ -585,13 +580,7 @@ def _state(core_model: core.Model, event: int, events: core.Events) -> State:
 
 
 def _replay(
-    core_model: core.Model,
-    model: EventModel,
-    sign: int,
-    events: core.Events,
-    event: int,
-    before: tuple[np.ndarray, int],
-    variant: str,
+    core_model: core.Model, model: EventModel, sign: int, events: core.Events, event: int, before: tuple[np.ndarray, int], variant: str
 ) -> State | None:
     """The state of an event that has passed, run again from the damage kept before it."""
     damage, first = before

@@ -63,11 +63,7 @@ def _has_fallen(rows: list[tuple[float, ...]], start: float, fraction: float) ->
 
 
 def run_incremental(
-    core_model: core.Model,
-    model: EventModel,
-    options: Staged,
-    sign: int,
-    progress: Callable[[float, float, str], None],
+    core_model: core.Model, model: EventModel, options: Staged, sign: int, progress: Callable[[float, float, str], None]
 ) -> core.Events:
     """Steps under A + lambda B from the state the model is in; one row for each, its code 0."""
     watch = model.control
@@ -110,9 +106,7 @@ def run_incremental(
     return _events(rows, reason, cancel_requested())
 
 
-def _step(
-    core_model: core.Model, fa: np.ndarray, fb: np.ndarray, last: Step, way: np.ndarray, length: float
-) -> Step | None:
+def _step(core_model: core.Model, fa: np.ndarray, fb: np.ndarray, last: Step, way: np.ndarray, length: float) -> Step | None:
     """The state `length` on from the last one; None where the iteration fails, which leaves the model in the last state."""
     ua, ub, cracked = last.ua, last.ub, last.cracked
     try:
@@ -138,7 +132,23 @@ def _events(rows: list[tuple[float, ...]], reason: str, interrupted: bool) -> co
     n = len(load)
     none = np.full(n, np.finfo(float).max)
     return core.Events(
-        load, none, -none, stored, external, lost, crack, soft, np.zeros(n), np.ones(n), np.zeros(n),
-        point=np.full(n, -1), code=np.zeros(n, dtype=int), number=np.arange(1, n + 1), equilibrium=np.ones(n, dtype=bool),
-        monitors=moved[:, None], reason=reason, interrupted=interrupted, crack_total=float(crack[-1]) if n else 0.0,
-    )  # fmt: skip
+        load,
+        none,
+        -none,
+        stored,
+        external,
+        lost,
+        crack,
+        soft,
+        np.zeros(n),
+        np.ones(n),
+        np.zeros(n),
+        point=np.full(n, -1),
+        code=np.zeros(n, dtype=int),
+        number=np.arange(1, n + 1),
+        equilibrium=np.ones(n, dtype=bool),
+        monitors=moved[:, None],
+        reason=reason,
+        interrupted=interrupted,
+        crack_total=float(crack[-1]) if n else 0.0,
+    )

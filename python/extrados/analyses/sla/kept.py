@@ -44,10 +44,15 @@ class UnderWay:
         events = core.Events.join(self.parts)
         found = {
             **{f"event_{name}": getattr(events, name) for name in ONE_PER_EVENT},
-            "guard": np.array(events.guard), "crack_total": np.array(events.crack_total), "best": np.array(self.best),
-            "best_damage": self.before_best[0], "best_first": np.array(self.before_best[1]),
-            "seconds": np.array(self.seconds), "damage": damage, "standing": standing,
-        }  # fmt: skip
+            "guard": np.array(events.guard),
+            "crack_total": np.array(events.crack_total),
+            "best": np.array(self.best),
+            "best_damage": self.before_best[0],
+            "best_first": np.array(self.before_best[1]),
+            "seconds": np.array(self.seconds),
+            "damage": damage,
+            "standing": standing,
+        }
         for k, state in enumerate(self.states):
             found[f"state_{k}"] = np.array([state.event, state.load])
             found[f"state_{k}_displacement"] = state.displacement
@@ -60,9 +65,7 @@ class UnderWay:
         """From its arrays."""
         columns: dict[str, Any] = {name: found[f"event_{name}"] for name in ONE_PER_EVENT}
         checks, solutions, factors = (int(n) for n in found["guard"])
-        events = core.Events(
-            **columns, guard=(checks, solutions, factors), crack_total=float(found["crack_total"]),
-        )  # fmt: skip
+        events = core.Events(**columns, guard=(checks, solutions, factors), crack_total=float(found["crack_total"]))
         states, k = [], 0
         while f"state_{k}" in found:
             event, load = found[f"state_{k}"]

@@ -49,18 +49,13 @@ def read_measured(context: Context, file: str) -> Measured:
     names, scales = zip(*(_column(file, title) for title in rows[0]), strict=True)
     wanted = ("displacement", "load") if "load" in names else ("displacement", "least", "greatest")
     if sorted(names) != sorted(wanted):
-        raise Refused(
-            f"{file}: has the columns {', '.join(names)}; expected displacement with load, or with least and greatest",
-            KEY,
-        )
+        raise Refused(f"{file}: has the columns {', '.join(names)}; expected displacement with load, or with least and greatest", KEY)
     values = np.empty((len(rows) - 1, len(names)))
     for k, row in enumerate(rows[1:]):
         try:
             values[k] = [float(cell) for cell in row]
         except ValueError:
-            raise Refused(
-                f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {','.join(row)[:60]!r}", KEY
-            ) from None
+            raise Refused(f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {','.join(row)[:60]!r}", KEY) from None
     if not np.isfinite(values).all():
         raise Refused(f"{file}: holds a number that is not finite", KEY)
     columns = dict(zip(names, (values * scales).T, strict=True))
@@ -89,22 +84,26 @@ def compare(measured: Measured, displacement: np.ndarray, load: np.ndarray) -> o
     fall = slice(top, None)
     at = [
         float(np.interp(-part * mean[top], -np.minimum.accumulate(mean[fall]), measured.displacement[fall]))
-        if mean[fall].min() <= part * mean[top] else None
+        if mean[fall].min() <= part * mean[top]
+        else None
         for part in TAIL
-    ]  # fmt: skip
+    ]
     ratios = [
         float(np.interp(d, displacement, load) / np.interp(d, measured.displacement, mean))
-        if d is not None and d <= displacement[-1] else None
+        if d is not None and d <= displacement[-1]
+        else None
         for d in at
-    ]  # fmt: skip
+    ]
     known = (measured.displacement <= displacement[-1]) & (measured.displacement >= displacement[0])
     there = np.interp(measured.displacement[known], displacement, load)
     inside = (there >= measured.least[known]) & (there <= measured.greatest[known])
     spread = float(np.mean((measured.greatest - measured.least)[known] / (2.0 * mean[known]))) if known.any() else 0.0
     return out.Comparison(
-        peak_ratio=float(load.max() / mean[top]), tail_ratios=ratios,
-        inside_ratio=float(inside.mean()) if known.any() else None, half_band_ratio=spread,
-    )  # fmt: skip
+        peak_ratio=float(load.max() / mean[top]),
+        tail_ratios=ratios,
+        inside_ratio=float(inside.mean()) if known.any() else None,
+        half_band_ratio=spread,
+    )
 
 
 def arrays(measured: Measured) -> dict[str, Array]:

@@ -79,10 +79,12 @@ def numbers_of(model: EventModel, options: Staged, curve: Curve) -> dict[str, An
     idea = bilinear(d - d[0], p) if peak >= 0 and p[0] == 0.0 else None  # from the state under the constant loads
     if idea is not None:
         numbers["bilinear"] = {
-            "stiffness_N_m": idea.stiffness, "yield_load_N": idea.yield_load,
-            "yield_displacement_m": idea.yield_displacement, "ultimate_displacement_m": idea.ultimate_displacement,
+            "stiffness_N_m": idea.stiffness,
+            "yield_load_N": idea.yield_load,
+            "yield_displacement_m": idea.yield_displacement,
+            "ultimate_displacement_m": idea.ultimate_displacement,
             "ductility": idea.ductility,
-        }  # fmt: skip
+        }
     return numbers
 
 
@@ -178,11 +180,7 @@ def joint_openings(result: Result, model: SlaModel, curve: Curve) -> list[str]:
     share = np.bincount(joint, np.where(width > 0.0, area, 0.0), count) / np.bincount(joint, area, count)
     most = np.zeros(count)
     np.maximum.at(most, joint, width)
-    columns: dict[str, np.ndarray | list[str]] = {
-        "joint": model.mesh.joint_names,
-        "greatest_opening": most,
-        "open_part": share,
-    }
+    columns: dict[str, np.ndarray | list[str]] = {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}
     units = {"greatest_opening": "m"}
     if model.slides:
         slip = np.zeros(count)

@@ -87,9 +87,7 @@ class SlaModel(EventModel):
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
     moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
     already: float = 0.0  # reference load that stages before have left on [N]
-    settled: np.ndarray = field(
-        default_factory=lambda: np.empty(0)
-    )  # supports that go down with A, as of a building [m]
+    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # supports that go down with A, as of a building [m]
     bars: list[NamedBar] = field(default_factory=list)
 
     dimensions = 2
@@ -141,9 +139,7 @@ class SlaModel(EventModel):
         # Below this many points a thread costs more than it saves; results are the same for any number
         threads = max(1, min(threads, len(self.point_xy) // POINTS_PER_THREAD))
         try:
-            return core.Model(
-                self.mesh.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads
-            )
+            return core.Model(self.mesh.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads)
         except core.FreeNode as error:
             x, y = self.mesh.xy[error.node]
             raise Refused(
@@ -201,10 +197,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     if mesh.has_joints and options.cracking == "isotropic":
         raise BadGeometry("joints open along their own direction: isotropic cracking is for walls without stones")
     constant_loads, reference_loads = loads_of(mesh, options)
-    ties = [
-        [(int(n), AXES[tie.direction], 1.0) for n in mesh.nodes_at(tie, f"ties[{i}]")]
-        for i, tie in enumerate(mesh.ties)
-    ]
+    ties = [[(int(n), AXES[tie.direction], 1.0) for n in mesh.nodes_at(tie, f"ties[{i}]")] for i, tie in enumerate(mesh.ties)]
     moved = next((load for load in reference_loads if load.kind == "displacement"), None)
     if moved is not None:
         tie = []
@@ -218,10 +211,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     tied = {(n, d) for tie in ties for n, d, _ in tie}
     if clash := held & tied:
         node, direction = min(clash)
-        raise BadGeometry(
-            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is held and tied in "
-            f"{'xy'[direction]}"
-        )
+        raise BadGeometry(f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is held and tied in {'xy'[direction]}")
     try:
         freedoms = core.Freedoms.make(len(mesh.xy), sorted(held), ties)
     except ValueError as error:
@@ -238,9 +228,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         start += count
         band, reach = crack_bands(mesh, group, options)
         groups.append(
-            _plane(mesh, group, band, reach, factors, options)
-            if group.law is None
-            else _joints(group, group.law, factors, options)
+            _plane(mesh, group, band, reach, factors, options) if group.law is None else _joints(group, group.law, factors, options)
         )
         bands.append(band)
         points.append(point_positions(mesh.xy, group))
@@ -253,9 +241,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     if springs:
         nodes, ways, stiffness = (np.array(column) for column in zip(*springs, strict=True))
         ground = np.full(len(nodes), -1)
-        groups.append(
-            core.Springs(np.column_stack([nodes, ground]), np.column_stack([ways, ways]), stiffness.astype(float))
-        )
+        groups.append(core.Springs(np.column_stack([nodes, ground]), np.column_stack([ways, ways]), stiffness.astype(float)))
     for i, x in enumerate(options.section_x):
         if not mesh.low[0] <= x <= mesh.high[0]:
             raise BadGeometry(f"section_x[{i}] is {x:g} m, the wall reaches from {mesh.low[0]:g} to {mesh.high[0]:g} m")
@@ -284,19 +270,28 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         )
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant
-    control = (
-        control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
-    )
+    control = control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
     return SlaModel(
-        mesh, freedoms, groups,
+        mesh,
+        freedoms,
+        groups,
         core.Behaviour(
-            options.cracking, options.shear_retention, closure,
+            options.cracking,
+            options.shear_retention,
+            closure,
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
             floor,
         ),
-        constant, reference, unit, control, bands, np.concatenate(points),
-        ratio, acceleration_of(reference_loads), bars=named,
-    )  # fmt: skip
+        constant,
+        reference,
+        unit,
+        control,
+        bands,
+        np.concatenate(points),
+        ratio,
+        acceleration_of(reference_loads),
+        bars=named,
+    )
 
 
 def resultant(reference: np.ndarray) -> float:
@@ -338,9 +333,7 @@ def crack_bands(mesh: Mesh, group: ElementGroup, options: Sla) -> tuple[np.ndarr
     return bands_of(mesh.xy, group.kind, group.connect, options)
 
 
-def bands_of(
-    xy: np.ndarray, kind: str, connect: np.ndarray, options: CrackOptions
-) -> tuple[np.ndarray, np.ndarray | None]:
+def bands_of(xy: np.ndarray, kind: str, connect: np.ndarray, options: CrackOptions) -> tuple[np.ndarray, np.ndarray | None]:
     """As crack_bands, of elements of a kind in a plane: nodes xy (nodes, 2) [m], connect (elements, nodes)."""
     if options.crack_band is not None:
         return np.full(len(connect), options.crack_band), None
@@ -363,9 +356,13 @@ def softening_of(material: Material, options: CrackOptions, factor: float = 1.0)
     if material.tensile_strength is None or material.fracture_energy is None:
         return None
     return core.Softening(
-        material.tensile_strength * factor, material.fracture_energy, material.softening, options.ripple,
-        options.teeth == "exact", options.overshoot,
-    )  # fmt: skip
+        material.tensile_strength * factor,
+        material.fracture_energy,
+        material.softening,
+        options.ripple,
+        options.teeth == "exact",
+        options.overshoot,
+    )
 
 
 def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOptions) -> list[core.Hill | None] | None:
@@ -391,9 +388,7 @@ def bedding_of(material: Material) -> core.Bedding | None:
     if along is None or across is None or material.fracture_energy is None:
         return None
     energy = material.fracture_energy_parallel or material.fracture_energy
-    shear = (
-        1.0 if material.shear_strength is None else max(1.0, float(np.sqrt(along * across)) / material.shear_strength)
-    )
+    shear = 1.0 if material.shear_strength is None else max(1.0, float(np.sqrt(along * across)) / material.shear_strength)
     return core.Bedding(np.radians(material.bed_angle), along / across, energy / material.fracture_energy, shear)
 
 
@@ -402,20 +397,26 @@ def crushing_of(material: Material, options: CrackOptions) -> core.Softening | N
     if material.crushing_energy is None or material.compressive_strength is None:
         return None
     return core.Softening(
-        material.compressive_strength, material.crushing_energy, material.crushing, options.ripple,
-        options.teeth == "exact", options.overshoot,
-    )  # fmt: skip
+        material.compressive_strength,
+        material.crushing_energy,
+        material.crushing,
+        options.ripple,
+        options.teeth == "exact",
+        options.overshoot,
+    )
 
 
 def laws_of(
-    materials: Sequence[Material], linear: np.ndarray, factors: np.ndarray, band: np.ndarray, reach: np.ndarray | None,
+    materials: Sequence[Material],
+    linear: np.ndarray,
+    factors: np.ndarray,
+    band: np.ndarray,
+    reach: np.ndarray | None,
     options: CrackOptions,
-) -> tuple[list[core.Softening | None], list[core.Softening | None], list[core.Bedding | None]]:  # fmt: skip
+) -> tuple[list[core.Softening | None], list[core.Softening | None], list[core.Bedding | None]]:
     """Tension and compression softening and bed joints of elements; BadGeometry where a crack band snaps back."""
     crushing = [None if s else crushing_of(m, options) for m, s in zip(materials, linear, strict=True)]
-    tension = [
-        None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)
-    ]
+    tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
         raise BadGeometry("tensile_strength_parallel needs cracks with a direction: isotropic cracking has none")
@@ -433,21 +434,28 @@ def laws_of(
     return tension, crushing, beds
 
 
-def _plane(
-    mesh: Mesh, group: ElementGroup, band: np.ndarray, reach: np.ndarray | None, factors: np.ndarray, options: Sla
-) -> core.Plane:
+def _plane(mesh: Mesh, group: ElementGroup, band: np.ndarray, reach: np.ndarray | None, factors: np.ndarray, options: Sla) -> core.Plane:
     materials = [mesh.materials[m] for m in group.material]
     tension, crushing, beds = laws_of(materials, group.linear, factors, band, reach, options)
     return core.Plane(
-        group.kind, group.connect, group.thickness,
-        np.array([m.young for m in materials]), np.array([m.poisson for m in materials]), band,
+        group.kind,
+        group.connect,
+        group.thickness,
+        np.array([m.young for m in materials]),
+        np.array([m.poisson for m in materials]),
+        band,
         tension if any(t is not None for t in tension) else None,
         crushing if any(c is not None for c in crushing) else None,
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
-        group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None, reach,
-        np.array([m.confinement for m in materials]), beds if any(bed is not None for bed in beds) else None,
+        group.axis,
+        group.gauss,
+        mesh.selective and group.kind == "Q4",
+        group.joint is not None,
+        reach,
+        np.array([m.confinement for m in materials]),
+        beds if any(bed is not None for bed in beds) else None,
         hills_of(materials, group.linear, options),
-    )  # fmt: skip
+    )
 
 
 def _joints(group: ElementGroup, law: JointLaw, factors: np.ndarray, options: Sla) -> core.Joints:
@@ -473,9 +481,7 @@ def _joints(group: ElementGroup, law: JointLaw, factors: np.ndarray, options: Sl
 Softenings = list[core.Softening | None] | None
 
 
-def teeth_of_joints(
-    law: JointLaw, factors: np.ndarray, options: CrackOptions
-) -> tuple[Softenings, Softenings, Softenings]:
+def teeth_of_joints(law: JointLaw, factors: np.ndarray, options: CrackOptions) -> tuple[Softenings, Softenings, Softenings]:
     """How tension, compression and cohesion of joints soften, by element."""
 
     def softenings(strength: np.ndarray, energy: np.ndarray) -> Softenings:
@@ -483,9 +489,7 @@ def teeth_of_joints(
         rows = []
         for pair in zip(strength.tolist(), energy.tolist(), strict=True):
             if pair[0] > 0.0 and pair not in made:
-                made[pair] = core.Softening(
-                    *pair, law.softening, options.ripple, options.teeth == "exact", options.overshoot
-                )
+                made[pair] = core.Softening(*pair, law.softening, options.ripple, options.teeth == "exact", options.overshoot)
             rows.append(made.get(pair))
         return rows if made else None
 
@@ -493,9 +497,10 @@ def teeth_of_joints(
     crushing = softenings(law.compressive_strength, law.crushing_energy)
     cohesion = softenings(law.cohesion * factors, law.shear_energy)
     for name, rows, stiffness in (
-        ("fracture_energy", tension, law.normal_stiffness), ("crushing_energy", crushing, law.normal_stiffness),
+        ("fracture_energy", tension, law.normal_stiffness),
+        ("crushing_energy", crushing, law.normal_stiffness),
         ("shear_energy", cohesion, law.shear_stiffness),
-    ):  # fmt: skip
+    ):
         for row, k in zip(rows or [], stiffness.tolist(), strict=False):
             if row is not None and core.largest_band(row, k) <= 1.0:
                 raise BadGeometry(
@@ -565,9 +570,7 @@ def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
             )
     mine = end > begin
     if not mine.any():
-        raise BadGeometry(
-            f"{what}: no boundary edge lies on edge {load.edge}, x {load.x}, y {load.y}; a mesh line is missing"
-        )
+        raise BadGeometry(f"{what}: no boundary edge lies on edge {load.edge}, x {load.x}, y {load.y}; a mesh line is missing")
     edges, thickness, begin, end = edges[mine], thickness[mine], begin[mine], end[mine]
     along = mesh.xy[edges[:, 1]] - mesh.xy[edges[:, 0]]
     length = np.hypot(*along.T)

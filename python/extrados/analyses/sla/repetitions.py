@@ -35,10 +35,7 @@ class Repetitions:
         if curve.events.interrupted:
             raise Cancelled(status_code("cancelled"), "repetition interrupted")
         d, p = curve.envelope(model.unit)
-        rows = {
-            name: np.pad(values, (0, MOST_ENVELOPE - len(d)), constant_values=np.nan)
-            for name, values in (("d", d), ("p", p))
-        }
+        rows = {name: np.pad(values, (0, MOST_ENVELOPE - len(d)), constant_values=np.nan) for name, values in (("d", d), ("p", p))}
         return {
             **rows,
             "points": np.array(len(d)),
@@ -52,10 +49,7 @@ def refuse_alike(building: Building, options: Sla) -> bool:
     """Whether seeds change the mesh; Refused where they change neither mesh nor strength."""
     random_mesh = options.mesh.pattern == "random" or bool(getattr(building.structure, "outline", None))
     if not random_mesh and options.strength_variation == 0.0:
-        raise Refused(
-            'seeds need a random mesh (mesh.pattern = "random") or a strength_variation above 0',
-            ("analysis", "seeds"),
-        )
+        raise Refused('seeds need a random mesh (mesh.pattern = "random") or a strength_variation above 0', ("analysis", "seeds"))
     return random_mesh
 
 
@@ -63,9 +57,14 @@ def repeat(context: Context, options: Sla, result: Result) -> dict[str, out.Scat
     """The curve again with other seeds of mesh and strength: its key, the band into `result`."""
     random_mesh = refuse_alike(context.building, options)
     swept = sweep(
-        context, "sla-seeds", Repetitions(context.building, options, random_mesh), len(options.seeds), "repetitions",
-        slow=True, parallel=True,
-    )  # fmt: skip
+        context,
+        "sla-seeds",
+        Repetitions(context.building, options, random_mesh),
+        len(options.seeds),
+        "repetitions",
+        slow=True,
+        parallel=True,
+    )
     if not swept.complete:
         result.status = "interrupted" if swept.interrupted else "failed"
         result.reason = f"among the repetitions: {swept.stopped}"
@@ -80,21 +79,21 @@ def repeat(context: Context, options: Sla, result: Result) -> dict[str, out.Scat
     done = [options.seeds[k] for k in swept.members[passed]]
     if len(passed) < len(swept.members):
         left = ", ".join(str(options.seeds[k]) for k in np.delete(swept.members, passed))
-        result.warnings.append(
-            f"repetitions that did not pass a peak are not in the scatter of the peaks: seeds {left}"
-        )
+        result.warnings.append(f"repetitions that did not pass a peak are not in the scatter of the peaks: seeds {left}")
     if not done:
         return {}
     loads = swept["peak_load"][passed]
     scatter = out.Scatter(
-        seeds=done, peak_loads_N=loads.tolist(), mean_N=loads.mean(), lowest_N=loads.min(), highest_N=loads.max(),
+        seeds=done,
+        peak_loads_N=loads.tolist(),
+        mean_N=loads.mean(),
+        lowest_N=loads.min(),
+        highest_N=loads.max(),
         coefficient_of_variation=loads.std(ddof=1) / loads.mean() if len(loads) > 1 else None,
-    )  # fmt: skip
+    )
     result.tables["scatter"] = TableData(
         {"seed": done, "peak_load": loads, "peak_displacement": swept["peak_displacement"][passed]},
         {"peak_load": "N", "peak_displacement": "m"},
     )
-    result.answer += (
-        f" Over {len(loads)} repetitions the peak lies between {loads.min() / 1e3:.4g} and {loads.max() / 1e3:.4g} kN."
-    )
+    result.answer += f" Over {len(loads)} repetitions the peak lies between {loads.min() / 1e3:.4g} and {loads.max() / 1e3:.4g} kN."
     return {"scatter": scatter}

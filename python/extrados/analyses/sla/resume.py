@@ -62,9 +62,11 @@ def makeup(model: SlaModel) -> Makeup:
             laws["compression"] += [group.confinement, group.hill]
             fixed.append([group.axis, group.joint, group.lateral, group.selective])
     return Makeup(
-        stiffness=fingerprint(stiffness)[:16], tension=fingerprint(laws["tension"])[:16],
-        compression=fingerprint(laws["compression"])[:16], cracking=fingerprint([model.behaviour, fixed])[:16],
-    )  # fmt: skip
+        stiffness=fingerprint(stiffness)[:16],
+        tension=fingerprint(laws["tension"])[:16],
+        compression=fingerprint(laws["compression"])[:16],
+        cracking=fingerprint([model.behaviour, fixed])[:16],
+    )
 
 
 def _law(law: core.Softening | Sequence[core.Softening | None] | None) -> list:
@@ -77,9 +79,7 @@ def _law(law: core.Softening | Sequence[core.Softening | None] | None) -> list:
 
 def _refuse_other(there: Makeup | None, here: Makeup) -> None:
     if there is None:
-        raise Refused(
-            "resume_from: that run does not say of which materials it was; run it again with this version", RESUME
-        )
+        raise Refused("resume_from: that run does not say of which materials it was; run it again with this version", RESUME)
     words = {
         "stiffness": "stiffness or thickness",
         "tension": "tensile laws, teeth or crack bands",
@@ -88,9 +88,7 @@ def _refuse_other(there: Makeup | None, here: Makeup) -> None:
     }
     other = [words[name] for name in words if getattr(there, name) != getattr(here, name)]
     if other:
-        raise Refused(
-            f"resume_from: that wall has other {' and other '.join(other)}; its damage says nothing of this one", RESUME
-        )
+        raise Refused(f"resume_from: that wall has other {' and other '.join(other)}; its damage says nothing of this one", RESUME)
 
 
 def read_earlier(context: Context, options: Sla) -> Stored:
@@ -110,28 +108,18 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         get = {name: array.numbers for name, array in stored.arrays["sla"].items()}
         there, here = get["point_xy"], model.point_xy
         if len(there) != len(here):
-            raise Refused(
-                f"resume_from: that wall has {len(there)} points, this one {len(here)}; the mesh must be the same",
-                RESUME,
-            )
+            raise Refused(f"resume_from: that wall has {len(there)} points, this one {len(here)}; the mesh must be the same", RESUME)
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
-            raise Refused(
-                f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one", RESUME
-            )
+            raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one", RESUME)
         if len(get["event_point"]) and get["event_point"].max() < 0:
             raise Refused("resume_from: that run was incremental and has no events from which to continue", RESUME)
         if stored["sla"].get("stages"):
-            raise Refused(
-                "resume_from: that run was in stages, whose supports and loads are not kept: write one more stage",
-                RESUME,
-            )
+            raise Refused("resume_from: that run was in stages, whose supports and loads are not kept: write one more stage", RESUME)
         _refuse_other(stored["sla"].get("makeup"), makeup(model))
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
-            raise Refused(
-                f"resume_event is {event}, that run has {len(get['event_point'])} events", ("analysis", "resume_event")
-            )
+            raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events", ("analysis", "resume_event"))
         if event >= 1 and "event_step" in get and get["event_step"][event - 1]:
             first = int(np.argmax(get["event_step"])) + 1
             raise Refused(
@@ -144,13 +132,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
             totals = [float(get[f"event_{name}"][event - 1]) for name in LEDGER]
             numbers = stored["sla"]
             before = numbers.get("events_before_resume", 0) + event - 1
-            earlier = Earlier(
-                numbers["sense"],
-                before,
-                float(get["event_load"][event - 1]),
-                int(get["event_point"][event - 1]),
-                totals,
-            )
+            earlier = Earlier(numbers["sense"], before, float(get["event_load"][event - 1]), int(get["event_point"][event - 1]), totals)
         lost = "joints that slide" if model.slides else "cracks that rotate"
         by_events = not model.slides and stored["sla"].get("cracking") != "rotating"
         return _damage_at(event, get, None if by_events else lost), earlier
@@ -174,9 +156,7 @@ def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) ->
             f"were events {', '.join(str(e) for e in kept)}: name others in states of that run",
             ("analysis", "resume_event"),
         )
-    return damage_before(
-        get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
-    )
+    return damage_before(get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1])
 
 
 def carry_on(curve: Curve, earlier: Earlier | None, unit: float) -> None:

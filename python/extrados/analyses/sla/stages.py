@@ -33,9 +33,7 @@ class Wall:
     events: int
     fixed: np.ndarray
     loads: list[tuple[np.ndarray, float]]
-    histories: np.ndarray | None = (
-        None  # (2, points), of a stage that ended with equilibrium iterations: the next begins so
-    )
+    histories: np.ndarray | None = None  # (2, points), of a stage that ended with equilibrium iterations: the next begins so
 
 
 class Supports:
@@ -99,11 +97,7 @@ class Supports:
 
 
 def run_stages(
-    model: SlaModel,
-    options: Sla,
-    threads: int,
-    progress: Callable[[float, float, str], None],
-    chain: Callable[[list], Chain] | None = None,
+    model: SlaModel, options: Sla, threads: int, progress: Callable[[float, float, str], None], chain: Callable[[list], Chain] | None = None
 ) -> list[Curve]:
     """The curves of all stages, up to the first that leaves no state to go on from.
 
@@ -119,10 +113,7 @@ def run_stages(
             curve.name = options.stage_names[0]
             return [curve]
         core_model.loads(model.constant, np.zeros_like(model.constant), carried=True)
-        wall = Wall(
-            core_model.displacement(0.0), model.constant, core_model.damage(), NOTHING_DONE, 0,
-            supports.held.copy(), [],
-        )  # fmt: skip
+        wall = Wall(core_model.displacement(0.0), model.constant, core_model.damage(), NOTHING_DONE, 0, supports.held.copy(), [])
         if stage_a is not None and len(stage_a):
             wall.ledger = stage_a.ledger
             wall.events = int(stage_a.number[-1])
@@ -149,9 +140,7 @@ def run_stages(
             away, most = np.abs(start - wall.displacement).max(), np.abs(wall.displacement).max()
             watch = staged.control
             before = float(watch.share @ start[watch.node, watch.direction])
-            curve = run_reference_loads(
-                core_model, staged, own, 1, before, told, False, chain and chain([k, wall.damage]), stop
-            )
+            curve = run_reference_loads(core_model, staged, own, 1, before, told, False, chain and chain([k, wall.damage]), stop)
             curve.name, curve.damage_start = name, wall.damage
             if wall.histories is not None and staged.driven and len(curve.events):
                 curve.already = float(curve.events.pull[0])
@@ -160,9 +149,7 @@ def run_stages(
                 curve.stage_a = stage_a
                 curve.warnings += warnings
             if away > SAME * most and most > 0.0:
-                curve.warnings.append(
-                    f"stage {name} does not start quite where the one before ended: nodes lie up to {away:.2g} m away"
-                )
+                curve.warnings.append(f"stage {name} does not start quite where the one before ended: nodes lie up to {away:.2g} m away")
             curves.append(curve)
             events = curve.events
             if not curve.leads_on(options.stage_names[k + 1 :]):
@@ -228,16 +215,24 @@ def _prepare(
     unit = 1.0 if stage.moves else resultant(reference)
     own = options.model_copy(
         update={
-            "control": stage.control or options.control, "events": stage.events or options.events,
-            "stop_fraction": stage.stop_fraction, "target_displacement": None,
+            "control": stage.control or options.control,
+            "events": stage.events or options.events,
+            "stop_fraction": stage.stop_fraction,
+            "target_displacement": None,
             **({} if main else {"states": [], "probes": []}),
         }
-    )  # fmt: skip
+    )
     staged = replace(
-        model, freedoms=supports.freedoms(wall.fixed, moved), constant=constant, reference=reference, unit=unit,
-        moved=np.column_stack([value[moved], rate[moved]]), already=unit * _already(wall.loads, reference),
-        control=_control(supports, own, reference, unit, rate), acceleration=acceleration_of(stage.reference),
-    )  # fmt: skip
+        model,
+        freedoms=supports.freedoms(wall.fixed, moved),
+        constant=constant,
+        reference=reference,
+        unit=unit,
+        moved=np.column_stack([value[moved], rate[moved]]),
+        already=unit * _already(wall.loads, reference),
+        control=_control(supports, own, reference, unit, rate),
+        acceleration=acceleration_of(stage.reference),
+    )
     target, side = 0.0, 0
     if stage.target_displacement is not None:
         watch = staged.control
@@ -248,9 +243,13 @@ def _prepare(
             raise BadGeometry(f"{what}.target_displacement: the control displacement is {now:g} m at the start already")
     multiplier = stage.target_multiplier or (1.0 if stage.free else np.inf)
     stop = core.Stop(
-        load=multiplier, fraction=stage.stop_fraction or -1.0, compliance=model.mechanism_ratio, target=target, side=side,
+        load=multiplier,
+        fraction=stage.stop_fraction or -1.0,
+        compliance=model.mechanism_ratio,
+        target=target,
+        side=side,
         already=staged.already / unit,
-    )  # fmt: skip
+    )
     return staged, stop, own
 
 
@@ -260,9 +259,7 @@ def _control(supports: Supports, options: Sla, reference: np.ndarray, unit: floa
         return control_of(supports.model.mesh, options, reference, unit)
     equation = int(np.abs(rate).argmax())
     node, direction = divmod(int(supports.node_of[equation]), 2)
-    return core.Monitor(
-        np.array([node]), np.array([direction]), np.array([1.0 / (rate[equation] * supports.factor[node, direction])])
-    )
+    return core.Monitor(np.array([node]), np.array([direction]), np.array([1.0 / (rate[equation] * supports.factor[node, direction])]))
 
 
 def _reactions(supports: Supports, wall: Wall, options: Sla, equation: np.ndarray, threads: int) -> np.ndarray:

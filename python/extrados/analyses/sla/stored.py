@@ -21,9 +21,8 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
     arrays = {"node": Array(model.mesh.xy, ("nodes", "axis"), "m", "nodes of the mesh")}
     for i, group in enumerate(model.mesh.groups):
         arrays[f"elements_{i}"] = Array(
-            group.connect, (f"elements_of_{i}", f"corner_{i}"), "", f"nodes of the {group.kind} elements, from 0",
-            "elements",
-        )  # fmt: skip
+            group.connect, (f"elements_of_{i}", f"corner_{i}"), "", f"nodes of the {group.kind} elements, from 0", "elements"
+        )
     arrays["point_xy"] = Array(model.point_xy, ("points", "axis"), "m", "integration points")
     per = [plane.points_each for plane in model.planes]
     band = np.concatenate([np.repeat(h, n) for h, n in zip(model.bands, per, strict=True)])
@@ -34,7 +33,7 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
         reach = [
             h if g.joint is None else np.hypot(*(model.mesh.xy[g.connect[:, 1]] - model.mesh.xy[g.connect[:, 0]]).T) / g.gauss[0]
             for g, h in zip(model.mesh.groups, model.bands, strict=True)
-        ]  # fmt: skip
+        ]
         each = np.concatenate([np.repeat(h, n) for h, n in zip(reach, per, strict=True)])
         arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that belongs to a point")
     return arrays
@@ -53,11 +52,7 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
         "limit_c": (limits[1], "N", "greatest lower limit of the load"),
         "stored": (e.stored, "J", "elastic energy"),
         "external": (e.external, "J", "work of all loads along the straight way between events"),
-        "lost": (
-            e.lost,
-            "J",
-            "work along that way that is not stored; it may decrease, because events without equilibrium are no states",
-        ),
+        "lost": (e.lost, "J", "work along that way that is not stored; it may decrease, because events without equilibrium are no states"),
         "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; never decreases"),
         "crack": (e.crack, "J", "area of the teeth passed"),
         "scale": (e.scale, "", "part of all loads that is applied, below 1 if they were reduced together"),
@@ -65,12 +60,9 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     for name, (data, u, about) in columns.items():
         result.arrays[f"{prefix}event_{name}"] = Array(data, dim, u, about)
     result.arrays[f"{prefix}event_point"] = Array(e.point, dim, "", "point damaged, from 0")
-    result.arrays[f"{prefix}event_code"] = Array(e.code, dim, "", "kind of event: " + ", ".join(
-        f"{k} {v}" for k, v in EVENTS.items()))  # fmt: skip
+    result.arrays[f"{prefix}event_code"] = Array(e.code, dim, "", "kind of event: " + ", ".join(f"{k} {v}" for k, v in EVENTS.items()))
     result.arrays[f"{prefix}event_equilibrium"] = Array(e.equilibrium.astype(np.int8), dim, "", "1 in equilibrium")
-    result.arrays[f"{prefix}event_step"] = Array(
-        e.steps.astype(np.int8), dim, "", "1 a step of equilibrium iterations, 0 an event"
-    )
+    result.arrays[f"{prefix}event_step"] = Array(e.steps.astype(np.int8), dim, "", "1 a step of equilibrium iterations, 0 an event")
     result.arrays[f"{prefix}event_residual"] = Array(
         np.where(e.steps, e.residual, np.nan), dim, "", "residual of a step over the largest nodal force of an element"
     )
@@ -81,10 +73,7 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     if not prefix:
         for name in ("damage_start", "damage_end"):
             result.arrays[name] = Array(
-                getattr(curve, name).T,
-                ("all_points", "damage_row"),
-                "",
-                "damage, from which a later run can continue this run",
+                getattr(curve, name).T, ("all_points", "damage_row"), "", "damage, from which a later run can continue this run"
             )
     d, p = curve.envelope(unit)
     result.arrays[f"{prefix}envelope_displacement"] = Array(d, (f"{prefix}envelope",), "m", "monotone envelope")
@@ -93,14 +82,20 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     name = "load_displacement" + of
     result.tables[name] = TableData(
         {
-            "event": np.arange(1, len(e) + 1), "load": curve.force(unit), "displacement": e.monitors[:, 0],
-            "equilibrium": e.equilibrium.astype(int), "state": np.where(out, -1, state).astype(int), "point": e.point + 1,
+            "event": np.arange(1, len(e) + 1),
+            "load": curve.force(unit),
+            "displacement": e.monitors[:, 0],
+            "equilibrium": e.equilibrium.astype(int),
+            "state": np.where(out, -1, state).astype(int),
+            "point": e.point + 1,
             "kind": [EVENTS.get(int(c), "end" if p >= 0 else "step") for c, p in zip(e.code, e.point, strict=True)],
             "residual": np.where(e.steps, e.residual, np.nan),
-            "external": e.external, "stored": e.stored, "dissipated": curve.dissipated,
+            "external": e.external,
+            "stored": e.stored,
+            "dissipated": curve.dissipated,
         },
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},
-    )  # fmt: skip
+    )
     result.tables["envelope" + of] = TableData({"displacement": d, "load": p}, {"displacement": "m", "load": "N"})
 
 
@@ -111,24 +106,28 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
     if curve.states:
         states = curve.states
         dims = (f"{prefix}states",)
-        result.arrays[f"{prefix}state_event"] = Array(
-            np.array([s.event + 1 for s in states]), dims, "", "event, from 1"
-        )
+        result.arrays[f"{prefix}state_event"] = Array(np.array([s.event + 1 for s in states]), dims, "", "event, from 1")
         if not prefix:
             result.arrays["state_damage"] = Array(
-                np.stack([s.damage.T for s in states]), (*dims, "all_points", "damage_row"), "",
+                np.stack([s.damage.T for s in states]),
+                (*dims, "all_points", "damage_row"),
+                "",
                 "damage before the event, from which a later run can continue this run",
-            )  # fmt: skip
+            )
         result.arrays[f"{prefix}state_load"] = Array(curve.force(unit)[[s.event for s in states]], dims, "N", "load")
         result.arrays[f"{prefix}state_displacement"] = Array(
             np.stack([s.displacement for s in states]), (*dims, "nodes", "axis"), "m", "displacements of the nodes"
         )
         for field, (u, about) in {
-            "width_n": ("m", "width of the first crack"), "width_s": ("m", "width of the second crack"),
-            "angle": ("rad", "direction of the first crack's normal"), "stress_1": ("Pa", "greater principal stress"),
-            "stress_2": ("Pa", "lesser principal stress"), "ratio_n": ("", "stiffness left across the first crack"),
-            "ratio_s": ("", "stiffness left across the second crack"), "stress_angle": ("rad", "of stress_1"),
-        }.items():  # fmt: skip
+            "width_n": ("m", "width of the first crack"),
+            "width_s": ("m", "width of the second crack"),
+            "angle": ("rad", "direction of the first crack's normal"),
+            "stress_1": ("Pa", "greater principal stress"),
+            "stress_2": ("Pa", "lesser principal stress"),
+            "ratio_n": ("", "stiffness left across the first crack"),
+            "ratio_s": ("", "stiffness left across the second crack"),
+            "stress_angle": ("rad", "of stress_1"),
+        }.items():
             data = np.stack([point_fields(model, s)[field] for s in states])
             result.arrays[f"{prefix}state_{field}"] = Array(data, (*dims, "points"), u, about)
 
@@ -155,9 +154,13 @@ def point_fields(model: SlaModel, state: State) -> dict[str, np.ndarray]:
     return {
         "width_n": width(r["strain_n"], r["stress_n"], r["ratio_n"]),
         "width_s": width(r["strain_s"], r["stress_s"], r["ratio_s"]),
-        "angle": angle, "ratio_n": r["ratio_n"], "ratio_s": r["ratio_s"],
-        "stress_1": mean + radius, "stress_2": mean - radius, "stress_angle": angle + turn,
-    }  # fmt: skip
+        "angle": angle,
+        "ratio_n": r["ratio_n"],
+        "ratio_s": r["ratio_s"],
+        "stress_1": mean + radius,
+        "stress_2": mean - radius,
+        "stress_angle": angle + turn,
+    }
 
 
 def _bounded(limits: np.ndarray) -> np.ndarray:
@@ -179,9 +182,7 @@ def sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> Non
         away = np.abs(model.point_xy[:, 0] - x)
         near = np.flatnonzero(away <= away.min() + 1e-6 * model.mesh.size)
         near = near[np.argsort(model.point_xy[near, 1], kind="stable")]
-        result.arrays[f"section_{i}_y"] = Array(
-            model.point_xy[near, 1], (f"section_{i}",), "m", f"points at x = {x:g} m", "section_y"
-        )
+        result.arrays[f"section_{i}_y"] = Array(model.point_xy[near, 1], (f"section_{i}",), "m", f"points at x = {x:g} m", "section_y")
         for end in ("lo", "hi"):
             rows = np.stack([s.report[f"lambda_{end}"][near] for s in curve.states])
             result.arrays[f"section_{i}_{end}"] = Array(

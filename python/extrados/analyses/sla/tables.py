@@ -88,14 +88,10 @@ class Stage(Table):
     """One stage of several: what changes of the supports, and the loads that grow. It starts in the state in which the one
     before it ended: its displacements, its loads and its damage."""
 
-    name: str | None = key(
-        None, "of the stage, in figures and results; default its number", min_length=1, max_length=40
-    )
+    name: str | None = key(None, "of the stage, in figures and results; default its number", min_length=1, max_length=40)
     hold: list[Hold] = key([], "places held from this stage on, at their positions at its start", max_length=100)
     free: list[Hold] = key(
-        [],
-        "supports removed in this stage, of any stage or of the building. Their reactions are ramped to zero",
-        max_length=100,
+        [], "supports removed in this stage, of any stage or of the building. Their reactions are ramped to zero", max_length=100
     )
     reference: list[Load] = key(
         [],
@@ -104,9 +100,7 @@ class Stage(Table):
         max_length=100,
     )
     control: list[Watch] = key(
-        [],
-        "displacement of the curve, a sum of terms; default the analysis', or the mean displacement under B",
-        max_length=50,
+        [], "displacement of the curve, a sum of terms; default the analysis', or the mean displacement under B", max_length=50
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
         None, "the stage ends where lambda reaches it, and these loads stay on; 1 where supports are let go"
@@ -120,9 +114,7 @@ class Stage(Table):
     @model_validator(mode="after")
     def _one_cause(self) -> "Stage":
         if self.free and self.reference:
-            raise ValueError(
-                "free and reference: supports that are let go are the load of their stage; take two stages"
-            )
+            raise ValueError("free and reference: supports that are let go are the load of their stage; take two stages")
         if not (self.free or self.reference):
             raise ValueError("a stage needs a load that grows: expected reference, or free")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
@@ -139,9 +131,16 @@ class Stage(Table):
 MATERIAL = tuple(f"material.{name}" for name in Material.model_fields)
 ROWS = ("joints.tension", "joints.fracture_energy", "joints.normal_stiffness", "supports.stiffness")
 INTERFACES = (
-    *ROWS, "joints.friction", "joints.cohesion", "joints.shear_energy", "joints.compressive_strength", "joints.crushing_energy",
-    "joints.softening", "joints.shear_stiffness", "joints.shear_ratio",
-)  # fmt: skip
+    *ROWS,
+    "joints.friction",
+    "joints.cohesion",
+    "joints.shear_energy",
+    "joints.compressive_strength",
+    "joints.crushing_energy",
+    "joints.softening",
+    "joints.shear_stiffness",
+    "joints.shear_ratio",
+)
 
 
 def without_effect(building: "Building") -> set[str]:
@@ -174,8 +173,7 @@ class CrackOptions(Table):
     crack_band: Length | None = key(None, "crack band width h; default by crack_band_rule", gt=0)
     crack_band_rule: Literal["projected", "area"] = key(
         "projected",
-        "crack band from the element's width across its crack, or as in the thesis: sqrt(2 A) of linear and sqrt(A) of "
-        "quadratic elements",
+        "crack band from the element's width across its crack, or as in the thesis: sqrt(2 A) of linear and sqrt(A) of quadratic elements",
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
@@ -237,9 +235,16 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     view: ClassVar = "mesh"
     bears: ClassVar = ("[[ties]]",)
     uses: ClassVar = (
-        "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
-        "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength", "joints.tension",
-    )  # fmt: skip
+        "material.density",
+        "material.young",
+        "material.poisson",
+        "material.tensile_strength",
+        "material.fracture_energy",
+        "material.compressive_strength",
+        "material.tensile_strength_parallel",
+        "material.shear_strength",
+        "joints.tension",
+    )
     beside: ClassVar = (*MATERIAL, *INTERFACES, "supports.held")
     starter_structure: ClassVar = "panel"
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
@@ -264,9 +269,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         return found
 
     constant: list[Load] | None = key(
-        None,
-        "loads A, there from the start; default the weight of stones, and of walls whose reference is not given",
-        max_length=100,
+        None, "loads A, there from the start; default the weight of stones, and of walls whose reference is not given", max_length=100
     )
     reference: list[Load] | None = key(
         None,
@@ -279,9 +282,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "loads A grow from 0 to 1 and cause damage before loads B act; false: loads B act on the undamaged wall",
         source="thesis 4.3.1",
     )
-    directions: list[Literal["+", "-"]] = key(
-        ["+"], "senses of B, each from the same start", min_length=1, max_length=2
-    )
+    directions: list[Literal["+", "-"]] = key(["+"], "senses of B, each from the same start", min_length=1, max_length=2)
     stages: list[Stage] = key(
         [],
         "stages one after the other, [[analysis.stages]], in place of `reference`: each has its supports, loads and end, and "
@@ -290,12 +291,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         max_length=50,
     )
     main_stage: str | None = key(
-        None,
-        "name of the stage whose results and figures are reported as those of the analysis; default the last stage",
+        None, "name of the stage whose results and figures are reported as those of the analysis; default the last stage"
     )
-    control: list[Watch] = key(
-        [], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50
-    )
+    control: list[Watch] = key([], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50)
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
@@ -304,10 +302,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "stop where the compliance has grown by this factor; default 1e4, of stones 1e5"
     )
     friction_ripple: float = key(
-        0.02,
-        "a quarter of the slip back after which a joint that slides sticks, over the elastic slip of its friction",
-        ge=0.001,
-        le=0.1,
+        0.02, "a quarter of the slip back after which a joint that slides sticks, over the elastic slip of its friction", ge=0.001, le=0.1
     )
     crack_closure: bool | None = key(
         None,
@@ -334,9 +329,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         source="Oliver, Huespe and Cante 2008",
     )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
-    states: list[Annotated[int, Field(ge=1)]] = key(
-        [], "events whose state is kept (the peak and the last are anyway)", max_length=200
-    )
+    states: list[Annotated[int, Field(ge=1)]] = key([], "events whose state is kept (the peak and the last are anyway)", max_length=200)
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
     measured: str | None = key(
         None,
@@ -353,8 +346,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "displacement-based verification of a wall on which the horizontal forces of its own masses act to +x, [analysis.verification]",
     )
     resume_from: str | None = key(
-        None,
-        "results folder of an earlier run of the same wall, from which to continue, inside the deck's folder or absolute",
+        None, "results folder of an earlier run of the same wall, from which to continue, inside the deck's folder or absolute"
     )
     resume_event: int | None = key(None, "continue before this event of that run; default its last", ge=1)
 
@@ -372,22 +364,24 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         reference = self.reference or []
         self.check_stages(
             {
-                "reference": self.reference is not None, "directions": self.directions != ["+"], "seeds": bool(self.seeds),
-                "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
-                "resume_from": self.resume_from is not None, 'solution = "incremental"': self.solution == "incremental",
+                "reference": self.reference is not None,
+                "directions": self.directions != ["+"],
+                "seeds": bool(self.seeds),
+                "target_displacement": self.target_displacement is not None,
+                "stop_fraction": self.stop_fraction > 0.0,
+                "resume_from": self.resume_from is not None,
+                'solution = "incremental"': self.solution == "incremental",
                 'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
                 "constant_damage = false": not self.constant_damage,
             }
-        )  # fmt: skip
+        )
         if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
             raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
-        if self.solution == "incremental" and (
-            self.without_equilibrium not in ("continue", "load-unload") or self.states
-        ):
+        if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states):
             raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
         if self.verification.model_fields_set and not self.by_inertia:
             raise ValueError("verification: needs one horizontal push by masses alone, without stages")

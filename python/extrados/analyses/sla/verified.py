@@ -19,17 +19,13 @@ from extrados.schema.constants import GRAVITY
 ROUNDING = 1e-6
 
 
-def verify_wall(
-    context: Context, result: Result, model: SlaModel, options: Sla, curves: list[Curve]
-) -> Verification | None:
+def verify_wall(context: Context, result: Result, model: SlaModel, options: Sla, curves: list[Curve]) -> Verification | None:
     """Displacement demand and capacity of all senses; conditions that the curves do not know. The masses are those of the push."""
     assert model.acceleration is not None
     along = model.reference.sum(axis=0) / np.linalg.norm(model.reference.sum(axis=0))
     mass = model.reference @ along / model.acceleration
     with model.open(options, 1) as core_model:
-        shape, through = displaced_shape(
-            core_model, model.reference, model.control, along, model.freedoms.equation >= 0
-        )
+        shape, through = displaced_shape(core_model, model.reference, model.control, along, model.freedoms.equation >= 0)
     violated, pushes = [], []
     without = float(-model.constant[:, 1].sum() - GRAVITY * mass.sum())
     if without > ROUNDING * GRAVITY * mass.sum():

@@ -13,9 +13,7 @@ def answer_of_stones(r: dict[str, Any], both: bool, slide: bool) -> str:
         kilonewtons = f"{of['peak_load_N'] / 1e3:.4g} kN"
         return f"an acceleration of {of['peak_acceleration_g']:.4g} g ({kilonewtons})" if by_masses else kilonewtons
 
-    text = (
-        f"The stones become a mechanism at {capacity(r)}; joints open {'and slide' if slide else 'but do not slide'}."
-    )
+    text = f"The stones become a mechanism at {capacity(r)}; joints open {'and slide' if slide else 'but do not slide'}."
     if names := r["hinges"]:
         shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
         text += f" Hinges: {shown}."

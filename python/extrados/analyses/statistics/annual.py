@@ -37,9 +37,7 @@ def hazard_curve(options: Hazard, folder: Path) -> HazardCurve:
         try:
             x, rate = (float(cell) for cell in next(csv.reader([line])))
         except (ValueError, csv.Error):
-            raise Refused(
-                f"{options.file}:{k}: expected an intensity and an annual rate, found {line[:60]!r}", FILE
-            ) from None
+            raise Refused(f"{options.file}:{k}: expected an intensity and an annual rate, found {line[:60]!r}", FILE) from None
         rows.append((x, rate))
     try:
         if len(rows) < 2 or not np.isfinite(rows).all():

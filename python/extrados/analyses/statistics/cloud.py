@@ -64,9 +64,11 @@ def describe(
         r |= {"median": None, "dispersion": None}
     else:
         r |= {
-            "median": found.median, "dispersion": found.dispersion, "median_interval": region.median,
+            "median": found.median,
+            "dispersion": found.dispersion,
+            "median_interval": region.median,
             "dispersion_interval": region.dispersion,
-        }  # fmt: skip
+        }
         _curve("curve", "collapse", found, region, grid, columns, result)
         result.answer += (
             f" Over the {name} that the motions have of themselves the probability of collapse has the median "
@@ -91,7 +93,7 @@ def describe(
             out.RotationLimit(
                 rotation_ratio=limit, median=found.median, dispersion=found.dispersion, median_interval=region.median.tolist(), **annual
             )
-        )  # fmt: skip
+        )
     if rows:
         r["rotation_limits"] = rows
     if len(columns) > 1:
@@ -99,15 +101,7 @@ def describe(
     return r
 
 
-def _curve(
-    key: str,
-    what: str,
-    found: Lognormal,
-    region: Region,
-    grid: np.ndarray,
-    columns: dict[str, np.ndarray],
-    result: Result,
-) -> None:
+def _curve(key: str, what: str, found: Lognormal, region: Region, grid: np.ndarray, columns: dict[str, np.ndarray], result: Result) -> None:
     """A curve with its band into the table and the arrays; those of rotations as series."""
     low, high = region.band(grid)
     for end, values in (("", found.probability(grid)), ("_lower", low), ("_upper", high)):

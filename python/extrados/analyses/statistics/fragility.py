@@ -74,11 +74,15 @@ class EnsembleJob:
         motion = member // per_motion - low
         reason = np.array([ground if isinstance(ground, str) else "" for ground in found])[motion]
         rows: dict[str, np.ndarray] = {
-            "outcome": np.full(count, FAILED, np.int8), "half_cycles": np.zeros(count, np.int32),
-            **{n: np.full(count, np.nan)
-               for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity", "friction")},
-            "slips": np.zeros(count, np.int8), "strays": np.zeros(count, np.int8),
-        }  # fmt: skip
+            "outcome": np.full(count, FAILED, np.int8),
+            "half_cycles": np.zeros(count, np.int32),
+            **{
+                n: np.full(count, np.nan)
+                for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity", "friction")
+            },
+            "slips": np.zeros(count, np.int8),
+            "strays": np.zeros(count, np.int8),
+        }
         whose = member // per_motion if len(self.bodies) > 1 else np.zeros(count, int)
         without = np.array([self.bodies[b] if isinstance(self.bodies[b], str) else "" for b in whose])
         reason = np.where(reason == "", without, reason)
@@ -95,18 +99,22 @@ class EnsembleJob:
                 if self.measure == "arias":
                     scale = np.sqrt(scale)
             level_ok = np.isfinite(scale)
-            reason = np.where(
-                np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason
-            )
+            reason = np.where(np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason)
             good, index, scale = good[level_ok], index[level_ok], scale[level_ok]
             if not len(good):
                 return {**rows, "reason": reason}
             used, body = np.unique(whose[good], return_inverse=True)
             e = core_rocking.ensemble(
-                [self.bodies[b] for b in used], grounds, body, index, scale,
+                [self.bodies[b] for b in used],
+                grounds,
+                body,
+                index,
+                scale,
                 np.array([g.end for g in grounds])[index] + self.settle,
-                start_rotation=self.starts[used][body], tolerance=self.tolerance, threads=threads,
-            )  # fmt: skip
+                start_rotation=self.starts[used][body],
+                tolerance=self.tolerance,
+                threads=threads,
+            )
             if e.interrupted:
                 raise Cancelled(status_code("cancelled"), "ensemble interrupted")
             rows["outcome"][good] = e.outcome
@@ -172,19 +180,7 @@ def job_of(context: Context, options: Fragility, base: Rocker, duration: float |
         measure, unit = "pgv", base.unit_acceleration * GRAVITY * base.time_unit
     sa = (options.sa_period, options.sa_damping) if options.sa_period and (options.levels or options.cloud) else None
     settle = 40.0 * base.time_unit if options.settle is None else options.settle
-    job = EnsembleJob(
-        source,
-        made.bodies,
-        made.starts,
-        made.fallen,
-        measure,
-        unit,
-        levels,
-        sa,
-        settle,
-        options.tolerance,
-        astray_of(base),
-    )
+    job = EnsembleJob(source, made.bodies, made.starts, made.fallen, measure, unit, levels, sa, settle, options.tolerance, astray_of(base))
     if made.fallen.any():
         context.warnings.append(
             f"{int(made.fallen.sum())} of {len(made.fallen)} sampled buildings cannot stand under their own weight: they count as collapsed"
@@ -192,15 +188,7 @@ def job_of(context: Context, options: Fragility, base: Rocker, duration: float |
     return job, motions * (1 if levels is None else len(levels)), motions
 
 
-def _describe(
-    context: Context,
-    options: Fragility,
-    base: Rocker,
-    job: EnsembleJob,
-    swept: Swept,
-    motions: int,
-    result: Result,
-) -> None:
+def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, motions: int, result: Result) -> None:
     _stopped(swept, result)
     if not swept.finished:
         result.answer = "No member is finished."
@@ -245,9 +233,8 @@ def _describe(
         result.results = out.OverLevels(**r)
         return
     r |= shares_of(
-        lambda: ((rows["outcome"], rows["peak_ratio"]) for _, rows in swept.pieces("outcome", "peak_ratio")),
-        options.confidence, initial,
-    )  # fmt: skip
+        lambda: ((rows["outcome"], rows["peak_ratio"]) for _, rows in swept.pieces("outcome", "peak_ratio")), options.confidence, initial
+    )
     middle = {name: median(partial(_column, swept, name)) for name in ("pga", "pgv", "arias")}
     r |= {
         "median_pga_g": None if middle["pga"] is None else middle["pga"] / GRAVITY,
@@ -275,32 +262,53 @@ def _describe(
     p, (low, high) = r["collapse_probability"], r["confidence_interval"]
     many = context.deck.motion is None or is_set(context.deck.motion)
     counted = (
-        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down" if many
+        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down"
+        if many
         else f"Of {r['count']} buildings of uncertain values {r['collapsed']} collapse"
-    )  # fmt: skip
+    )
     result.answer = (
-        f"{counted}: probability of collapse {100 * p:.1f} % "
-        f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
-        f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
-        f"The {'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
-    ) if p is not None else "No motion could be run."  # fmt: skip
+        (
+            f"{counted}: probability of collapse {100 * p:.1f} % "
+            f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
+            f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
+            f"The {'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
+        )
+        if p is not None
+        else "No motion could be run."
+    )
     if swept.complete and job.levels is None:
         r |= _by_rule(context, options, base, job, motions, result)
     if options.cloud:
         name, _, unit = INTENSITIES[options.intensity]
         r |= cloud.describe(
-            swept["intensity"], swept["outcome"], swept["peak_ratio"], name, unit, options.rotation_limits, hazard,
-            options.confidence, result,
-        )  # fmt: skip
+            swept["intensity"],
+            swept["outcome"],
+            swept["peak_ratio"],
+            name,
+            unit,
+            options.rotation_limits,
+            hazard,
+            options.confidence,
+            result,
+        )
     if options.histories and swept.complete:
         _histories(job, base, min(options.histories, motions), result)
     if options.sensitivity is not None and swept.complete:
         try:
             r |= sensitivity(
-                context, sorted(options.uncertain), lambda draws: bodies_at(context, options, base, draws), job.source,
-                motions if context.deck.motion is None or is_set(context.deck.motion) else 1, job.settle,
-                options.sensitivity, options.seed or 0, options.bootstrap, options.confidence, options.tolerance, result,
-            )  # fmt: skip
+                context,
+                sorted(options.uncertain),
+                lambda draws: bodies_at(context, options, base, draws),
+                job.source,
+                motions if context.deck.motion is None or is_set(context.deck.motion) else 1,
+                job.settle,
+                options.sensitivity,
+                options.seed or 0,
+                options.bootstrap,
+                options.confidence,
+                options.tolerance,
+                result,
+            )
             result.answer += f" {spoken(r['sensitivity'])}"
         except Unfinished as stop:
             result.status, result.reason = ("interrupted" if stop.interrupted else "failed"), str(stop)
@@ -311,14 +319,14 @@ def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarra
     """Whether blocks slide or hinges form elsewhere; of sampled buildings of several stones only whether the nominal one slides
     before it rocks."""
     if options.uncertain and base.watch is not None and not isinstance(base.model, BlockModel):
-        why = "Friction and thrust line are not checked: the forces at the joints are those of the nominal building, not of the sampled ones."
+        why = (
+            "Friction and thrust line are not checked: the forces at the joints are those of the nominal building, not of the sampled ones."
+        )
         return {"conditions": Conditions(not_checked=why, violated=slides_at_rest(base, rows, "motions"))}
     return of_many(base, Counted.of(rows), "motions")
 
 
-def _by_rule(
-    context: Context, options: Fragility, base: Rocker, job: EnsembleJob, count: int, result: Result
-) -> dict[str, Any]:  # fmt: skip
+def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJob, count: int, result: Result) -> dict[str, Any]:
     """Share of the runs that collapse by each impact rule, at each level where there are any, where their c_v differ by more than
     DIFFER and the runs are few enough."""
     rivals = base.rivals(DIFFER)
@@ -334,9 +342,7 @@ def _by_rule(
     found = {}
     levels = 1 if job.levels is None else len(job.levels)
     for rule, (_, body) in rivals.items():
-        swept = sweep(
-            context, "fragility", replace(job, bodies=[base.held(body)]), count, f"fragility by the rule {rule}"
-        ).whole()
+        swept = sweep(context, "fragility", replace(job, bodies=[base.held(body)]), count, f"fragility by the rule {rule}").whole()
         good = swept["outcome"] != FAILED
         at = swept.members % levels
         hits, runs = (np.bincount(at, weight, levels) for weight in (swept["outcome"] == COLLAPSE, good))
@@ -349,8 +355,7 @@ def _by_rule(
         return {"collapse_probability_by_rule": {rule: float(share[0]) for rule, share in found.items()}}
     order = np.argsort(job.levels, kind="stable")
     rows = [
-        out.RuleShares(rule=rule, restitution=rivals[rule][0], collapse_probability=share[order].tolist())
-        for rule, share in found.items()
+        out.RuleShares(rule=rule, restitution=rivals[rule][0], collapse_probability=share[order].tolist()) for rule, share in found.items()
     ]
     every = np.array(list(found.values()))[:, order]
     apart = float(np.ptp(every, axis=0).max())
@@ -359,12 +364,8 @@ def _by_rule(
         f"by up to {100.0 * apart:.3g} %."
     )
     result.arrays |= {
-        "stripe_rule_least": Array(
-            every.min(axis=0), ("stripe",), "", "least probability of collapse of the impact rules"
-        ),
-        "stripe_rule_most": Array(
-            every.max(axis=0), ("stripe",), "", "greatest probability of collapse of the impact rules"
-        ),
+        "stripe_rule_least": Array(every.min(axis=0), ("stripe",), "", "least probability of collapse of the impact rules"),
+        "stripe_rule_most": Array(every.max(axis=0), ("stripe",), "", "greatest probability of collapse of the impact rules"),
     }
     return {"collapse_by_rule": rows, "rule_band": apart}
 
@@ -387,22 +388,17 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
             ("time", "history_time", h.time, "s", ""),
             ("rotation", "history_time", h.rotation / critical, "", f"rotation over the critical one: {h.outcome}"),
         ):
-            result.arrays[f"history_{what}_{k + 1}"] = Array(
-                data, (f"{axis}_{k + 1}",), unit, about, series=f"history_{what}"
-            )
+            result.arrays[f"history_{what}_{k + 1}"] = Array(data, (f"{axis}_{k + 1}",), unit, about, series=f"history_{what}")
 
 
 def _response(body: Body, ground: Ground, end: float, start: float, tolerance: float) -> Response | SoftBaseResponse:
     """A body under a motion until a time [s], from a rotation [rad]."""
     if body.kind == SOFT_BASE:
         base = SoftBase.of(body)
-        return soft_base_history(
-            base, ground, end, end / POINTS, tolerance=tolerance, start=soft_base_start(base, start)
-        )
+        return soft_base_history(base, ground, end, end / POINTS, tolerance=tolerance, start=soft_base_start(base, start))
     return core_rocking.history(
-        body, ground, end, end / POINTS, tolerance=tolerance, start_side=1 if start >= 0.0 else -1,
-        start_rotation=abs(start),
-    )  # fmt: skip
+        body, ground, end, end / POINTS, tolerance=tolerance, start_side=1 if start >= 0.0 else -1, start_rotation=abs(start)
+    )
 
 
 def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Result) -> None:
@@ -442,19 +438,7 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
         units["level"] = INTENSITIES[options.intensity][2]
     words = np.array([*core_rocking.OUTCOMES, "failed"])
     reasons = any((rows["reason"] != "").any() for _, rows in swept.pieces("reason"))
-    names = (
-        "scale",
-        "pga",
-        "pgv",
-        "arias",
-        "outcome",
-        "half_cycles",
-        "peak",
-        "peak_ratio",
-        "stop_time",
-        "reason",
-        "intensity",
-    )
+    names = ("scale", "pga", "pgv", "arias", "outcome", "half_cycles", "peak", "peak_ratio", "stop_time", "reason", "intensity")
 
     def columns(members: np.ndarray, rows: dict[str, np.ndarray]) -> dict[str, Any]:
         found: dict[str, Any] = {"member": members + 1, "motion": members // per_motion + 1}
@@ -463,10 +447,16 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
         if job.levels is not None:
             found["level"] = job.levels[members % per_motion]
         found |= {
-            "scale": rows["scale"], "pga": rows["pga"] / GRAVITY, "pgv": rows["pgv"], "arias": rows["arias"],
-            "outcome": words[rows["outcome"]], "half_cycles": rows["half_cycles"], "peak_rotation": rows["peak"],
-            "peak_ratio": rows["peak_ratio"], "stop_time": rows["stop_time"],
-        }  # fmt: skip
+            "scale": rows["scale"],
+            "pga": rows["pga"] / GRAVITY,
+            "pgv": rows["pgv"],
+            "arias": rows["arias"],
+            "outcome": words[rows["outcome"]],
+            "half_cycles": rows["half_cycles"],
+            "peak_rotation": rows["peak"],
+            "peak_ratio": rows["peak_ratio"],
+            "stop_time": rows["stop_time"],
+        }
         return found | ({"reason": rows["reason"]} if reasons else {})
 
     result.tables["ensemble"] = (
@@ -538,6 +528,7 @@ def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[floa
     }
     text = "; ".join(
         f"{d:g} s: {100 * row['collapse_probability']:.1f} % collapse, mean rotation {row['mean_peak_rotation_ratio']:.2f}"
-        for d, row in zip(durations, rows, strict=True) if row["count"]
-    )  # fmt: skip
+        for d, row in zip(durations, rows, strict=True)
+        if row["count"]
+    )
     result.answer = f"Over the duration of the motions ({rows[0]['count'] if rows else 0} each), {text} of the critical rotation (collapse counted as 1)."

@@ -30,9 +30,15 @@ def run(context: Context, options: HarmonicMap) -> Result:
     grounds = [pulses.harmonic(1.0, f, options.cycles / f).ground for f in frequency]
     motion = np.repeat(np.arange(len(frequency)), len(amplitude))
     job = runs_job(
-        [model.body], grounds, 0, motion, np.tile(amplitude, len(frequency)), np.array([g.end for g in grounds])[motion],
-        model.start_rotation, astray=astray_of(model),
-    )  # fmt: skip
+        [model.body],
+        grounds,
+        0,
+        motion,
+        np.tile(amplitude, len(frequency)),
+        np.array([g.end for g in grounds])[motion],
+        model.start_rotation,
+        astray=astray_of(model),
+    )
     swept = sweep(context, "harmonic-map", job, len(motion), "harmonic map")
     result = Result("harmonic-map")
     if not swept.complete:
@@ -57,11 +63,14 @@ def run(context: Context, options: HarmonicMap) -> Result:
     result.warnings += told(result.results.conditions)
     result.tables["harmonic_map"] = TableData(
         {
-            "frequency": np.repeat(frequency, len(amplitude)), "amplitude": np.tile(amplitude, len(frequency)) / GRAVITY,
-            "outcome": outcome.ravel(), "peak_ratio": ratio.ravel(), "half_cycles": swept["half_cycles"],
+            "frequency": np.repeat(frequency, len(amplitude)),
+            "amplitude": np.tile(amplitude, len(frequency)) / GRAVITY,
+            "outcome": outcome.ravel(),
+            "peak_ratio": ratio.ravel(),
+            "half_cycles": swept["half_cycles"],
         },
         {"frequency": "Hz", "amplitude": "g"},
-    )  # fmt: skip
+    )
     result.arrays = {
         "frequency": Array(frequency, ("frequency",), "Hz"),
         "amplitude": Array(amplitude / GRAVITY, ("amplitude",), "g"),
@@ -77,5 +86,7 @@ def run(context: Context, options: HarmonicMap) -> Result:
             f"{pockets} cells of the map lie above a failing amplitude and are safe."
         )
     else:
-        result.answer = f"No harmonic motion of the map, up to {cap / GRAVITY:.3g} g, causes collapse of the {model.word} in {options.cycles} cycles."
+        result.answer = (
+            f"No harmonic motion of the map, up to {cap / GRAVITY:.3g} g, causes collapse of the {model.word} in {options.cycles} cycles."
+        )
     return result

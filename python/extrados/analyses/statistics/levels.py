@@ -116,8 +116,9 @@ def describe(
     r |= {key: [row[key] for row in rows] for key in rows[0]}
     r |= {f"peak_rotation_ratio_{p}": seen.percentile(p) for p in PERCENTILES}
     with np.errstate(invalid="ignore"):
-        r["median_pga_g"] = [float(np.median(v[ok])) / GRAVITY if ok.any() else None
-                             for v, ok in zip(seen.pga.T, seen.valid.T, strict=True)]  # fmt: skip
+        r["median_pga_g"] = [
+            float(np.median(v[ok])) / GRAVITY if ok.any() else None for v, ok in zip(seen.pga.T, seen.valid.T, strict=True)
+        ]
     fits, draws = _curves(seen, confidence, repeats, seed, name, unit, r, result)
     _incremental(seen, unit, r, result)
     _table(seen, unit, r, result)
@@ -153,8 +154,13 @@ def _curves(
             r |= {f"{stage}median": None, f"{stage}dispersion": None}
             result.warnings.append(f"no curve of {text}: {error}")
             continue
-        r |= {f"{stage}median": fit.median, f"{stage}dispersion": fit.dispersion, f"{stage}deviance": fit.deviance,
-              f"{stage}degrees_of_freedom": fit.freedom, f"{stage}goodness_p_value": fit.p_value}  # fmt: skip
+        r |= {
+            f"{stage}median": fit.median,
+            f"{stage}dispersion": fit.dispersion,
+            f"{stage}deviance": fit.deviance,
+            f"{stage}degrees_of_freedom": fit.freedom,
+            f"{stage}goodness_p_value": fit.p_value,
+        }
         curves[f"{stage}curve"] = Array(fit.probability(grid), ("grid",), "", f"fitted probability of {text}")
         if stage in ("", "first_collapse_") and fit.freedom > 0 and fit.p_value < 0.01:
             result.warnings.append(
@@ -169,14 +175,18 @@ def _curves(
         draws = likelihood.bootstrap(levels, over, valid, repeats, confidence, seed)
         r |= {"median_interval": draws.interval(draws.median), "dispersion_interval": draws.interval(draws.dispersion)}
         low, high = draws.band(grid)
-        curves |= {"curve_lower": Array(low, ("grid",), "", "bootstrap band of the probability of collapse"),
-                   "curve_upper": Array(high, ("grid",))}  # fmt: skip
+        curves |= {
+            "curve_lower": Array(low, ("grid",), "", "bootstrap band of the probability of collapse"),
+            "curve_upper": Array(high, ("grid",)),
+        }
     if "first_collapse_" in fits:
         region = likelihood.region(first, fits["first_collapse_"], confidence)
         r |= {"first_collapse_median_interval": region.median, "first_collapse_dispersion_interval": region.dispersion}
         low, high = region.band(grid)
-        curves |= {"first_collapse_lower": Array(low, ("grid",), "", "profile-likelihood band of the first collapse"),
-                   "first_collapse_upper": Array(high, ("grid",))}  # fmt: skip
+        curves |= {
+            "first_collapse_lower": Array(low, ("grid",), "", "profile-likelihood band of the first collapse"),
+            "first_collapse_upper": Array(high, ("grid",)),
+        }
     result.arrays |= curves
     return fits, draws
 
@@ -189,18 +199,17 @@ def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) ->
     risen = (np.arange(len(levels)) > index[:, None]) & fell[:, None] & valid & ~over
     r |= {"motions_that_collapse": int(fell.sum()), "resurrections": int(risen.any(axis=1).sum())}
     result.tables["incremental"] = TableData(
-        {"motion": np.arange(len(fell)) + 1, "first_collapse": np.where(fell, levels[index], np.nan),
-         "resurrected_levels": risen.sum(axis=1)},
+        {
+            "motion": np.arange(len(fell)) + 1,
+            "first_collapse": np.where(fell, levels[index], np.nan),
+            "resurrected_levels": risen.sum(axis=1),
+        },
         {"first_collapse": unit},
-    )  # fmt: skip
+    )
     result.arrays |= {
-        "incremental_ratio": Array(
-            seen.ratio[:SHOWN], ("shown", "stripe"), "", "peak rotation ratio of the first motions"
-        ),
+        "incremental_ratio": Array(seen.ratio[:SHOWN], ("shown", "stripe"), "", "peak rotation ratio of the first motions"),
         "incremental_over": Array(over[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: collapse"),
-        "incremental_risen": Array(
-            risen[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"
-        ),
+        "incremental_risen": Array(risen[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"),
     }
 
 
@@ -209,47 +218,42 @@ def _table(seen: Stripes, unit: str, r: dict[str, Any], result: Result) -> None:
     confidence = np.array(r["confidence_interval"])
     uplift = np.array(r["uplift_confidence_interval"])
     table = {
-        "level": seen.levels, "count": r["count"], "uplifted": r["uplifted"], "collapsed": r["collapsed"],
-        "collapse_probability": r["collapse_probability"], "lower": confidence[:, 0], "upper": confidence[:, 1],
-        "uplift_probability": r["uplift_probability"], "uplift_lower": uplift[:, 0], "uplift_upper": uplift[:, 1],
+        "level": seen.levels,
+        "count": r["count"],
+        "uplifted": r["uplifted"],
+        "collapsed": r["collapsed"],
+        "collapse_probability": r["collapse_probability"],
+        "lower": confidence[:, 0],
+        "upper": confidence[:, 1],
+        "uplift_probability": r["uplift_probability"],
+        "uplift_lower": uplift[:, 0],
+        "uplift_upper": uplift[:, 1],
         **{f"peak_ratio_{p}": r[f"peak_rotation_ratio_{p}"] for p in PERCENTILES},
-    }  # fmt: skip
+    }
     table = {k: np.array(v, dtype=int if k in ("count", "uplifted", "collapsed") else float) for k, v in table.items()}
     result.tables["fragility"] = TableData(dict(table), {"level": unit})
-    result.arrays |= {
-        f"stripe_{k}": Array(v.astype(float), ("stripe",), unit if k == "level" else "") for k, v in table.items()
-    }
+    result.arrays |= {f"stripe_{k}": Array(v.astype(float), ("stripe",), unit if k == "level" else "") for k, v in table.items()}
 
 
-def _answer(
-    seen: Stripes, fits: dict[str, Lognormal], name: str, unit: str, word: str, confidence: float, r: dict[str, Any]
-) -> str:
+def _answer(seen: Stripes, fits: dict[str, Lognormal], name: str, unit: str, word: str, confidence: float, r: dict[str, Any]) -> str:
     def told(stage: str) -> str:
         fit = fits[stage]
         text = f"{fit.median:.4g}{' ' + unit if unit else ''}, dispersion {fit.dispersion:.3f}"
         low, high = r.get(f"{stage}median_interval", (np.nan, np.nan))
-        return text + (
-            f" (median between {low:.4g} and {high:.4g} at {100 * confidence:g} %)" if np.isfinite(low) else ""
-        )
+        return text + (f" (median between {low:.4g} and {high:.4g} at {100 * confidence:g} %)" if np.isfinite(low) else "")
 
     motions, n = seen.outcome.shape
     whole = int(seen.valid.all(axis=1).sum())
-    whose = (
-        f"{motions} motions"
-        if whole == motions
-        else f"{whole} of {motions} motions (the rest has no result at some level)"
-    )
-    said = [f"{whose} at {n} level{'s' if n > 1 else ''} of {name}: "
-            + (f"the probability of collapse has the median {told('')}" if "" in fits else "no curve of collapse could be fitted")]  # fmt: skip
+    whose = f"{motions} motions" if whole == motions else f"{whole} of {motions} motions (the rest has no result at some level)"
+    said = [
+        f"{whose} at {n} level{'s' if n > 1 else ''} of {name}: "
+        + (f"the probability of collapse has the median {told('')}" if "" in fits else "no curve of collapse could be fitted")
+    ]
     if "first_collapse_" in fits:
-        said.append(
-            f"Raised level by level, a motion first brings the {word} down at the median {told('first_collapse_')}"
-        )
+        said.append(f"Raised level by level, a motion first brings the {word} down at the median {told('first_collapse_')}")
     known = [p for p in r["collapse_probability"] if p is not None]
     if known:
-        said.append(
-            f"Collapse: {100 * known[0]:.1f} % of the motions at the lowest, {100 * known[-1]:.1f} % at the highest level"
-        )
+        said.append(f"Collapse: {100 * known[0]:.1f} % of the motions at the lowest, {100 * known[-1]:.1f} % at the highest level")
     said.append(
         f"{r['resurrections']} motion{' leaves' if r['resurrections'] == 1 else 's leave'} the {word} standing at a level "
         "above one that overturns it"

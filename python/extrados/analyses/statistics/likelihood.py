@@ -125,8 +125,9 @@ def fit(seen: Capacities) -> Lognormal:
     if low.max() <= high.min():
         raise NoFit(
             f"a step between {low.max():.4g} and {high.min():.4g} explains all runs: the dispersion cannot be estimated"
-            if low.max() < high.min() else f"a step at {low.max():.4g} explains all runs: the dispersion cannot be estimated"
-        )  # fmt: skip
+            if low.max() < high.min()
+            else f"a step at {low.max():.4g} explains all runs: the dispersion cannot be estimated"
+        )
     a, b = _greatest(low, high, weight[None, :])
     if not b[0] > 1e-9:
         raise NoFit("the probability does not grow with the intensity")
@@ -306,10 +307,7 @@ def _likelihood(
     low, high: logarithms of the ends, -inf and inf where open. -inf where an interval has no probability left.
     """
     x = [np.where(np.isfinite(end), end, 0.0) for end in (low, high)]
-    z = [
-        np.where(np.isfinite(end), b[:, None] * end0 - a[:, None], end)
-        for end, end0 in zip((low, high), x, strict=True)
-    ]
+    z = [np.where(np.isfinite(end), b[:, None] * end0 - a[:, None], end) for end, end0 in zip((low, high), x, strict=True)]
     # The lower tail holds its digits: an interval in the upper one is mirrored
     flip = z[0] > 0.0
     log_high = log_ndtr(np.where(flip, -z[0], z[1]))
@@ -318,9 +316,7 @@ def _likelihood(
         log_p = np.where(z[1] > z[0], log_high + np.log(-np.expm1(log_low - log_high)), -np.inf)
         seen = weight > 0.0
         total = np.sum(np.where(seen, weight * log_p, 0.0), axis=1)
-        lower, upper = (
-            np.where(np.isfinite(log_p), np.exp(-0.5 * end**2 - 0.5 * np.log(2.0 * np.pi) - log_p), 0.0) for end in z
-        )
+        lower, upper = (np.where(np.isfinite(log_p), np.exp(-0.5 * end**2 - 0.5 * np.log(2.0 * np.pi) - log_p), 0.0) for end in z)
         finite = [np.where(np.isfinite(end), end, 0.0) for end in z]
         curved = (-finite[0] * lower + lower**2, -lower * upper, finite[1] * upper + upper**2)
     bend = [np.where(seen, weight * v, 0.0) for v in curved]

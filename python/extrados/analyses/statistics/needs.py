@@ -42,14 +42,9 @@ def needs(context: Context, options: RockingTable) -> Iterator[Need]:
 
 def _refuse_of_spectra(building: Building) -> None:
     if building.joints.energy_ratio is not None:
-        raise Refused(
-            "spectra take restitution, of these blocks the square root of the energy ratio", ("joints", "energy_ratio")
-        )
+        raise Refused("spectra take restitution, of these blocks the square root of the energy ratio", ("joints", "energy_ratio"))
     if building.supports.stiffness is not None:
-        raise Refused(
-            "spectra are those of structures on rigid ground: remove it, or use `rocking` of a block",
-            ("supports", "stiffness"),
-        )
+        raise Refused("spectra are those of structures on rigid ground: remove it, or use `rocking` of a block", ("supports", "stiffness"))
 
 
 def _foretell(context: Context, options: tables.Fragility) -> None:
@@ -62,12 +57,11 @@ def _foretell(context: Context, options: tables.Fragility) -> None:
         return
     on_disk = context.out is not None and not options.cloud and options.durations is None and runs > IN_MEMORY
     cell = CELL_BESIDE_DISK if on_disk else CELL
-    of = f"{count:,} motions or buildings" + (
-        f" at {levels} level{'s' if levels > 1 else ''}" if options.levels else ""
-    )
+    of = f"{count:,} motions or buildings" + (f" at {levels} level{'s' if levels > 1 else ''}" if options.levels else "")
     key = "count" if options.count or not options.levels else "levels"
-    refuse_memory(cell * runs, f"{of}, {runs:.3g} runs,", f"at most {int(SHARE * room.total() / cell * count / runs)} fit",
-                  ("analysis", key))  # fmt: skip
+    refuse_memory(
+        cell * runs, f"{of}, {runs:.3g} runs,", f"at most {int(SHARE * room.total() / cell * count / runs)} fit", ("analysis", key)
+    )
     disk = f", {CELL_ON_DISK * runs / 1e9:.2g} GB of disk" if on_disk else ""
     context.tell(
         f"fragility: {of}, {runs:.3g} runs: about {cell * runs / 1e9:.2g} GB of memory{disk} and {_time_of(context, options, runs)}"
@@ -102,6 +96,5 @@ def _refuse_motions(context: Context, options: tables.Fragility) -> None:
     there = how_many(context)
     if there is not None and options.count is not None and options.count > there and not options.uncertain:
         raise Refused(
-            f"{options.count}, but the deck has {there} motion{'s' if there > 1 else ''}: expected at most {there}",
-            ("analysis", "count"),
+            f"{options.count}, but the deck has {there} motion{'s' if there > 1 else ''}: expected at most {there}", ("analysis", "count")
         )

@@ -61,9 +61,7 @@ def optimal_motion(model: Rocker, cap: float, ratio: float, half_cycles: int) ->
     while True:
         end = (switches[-1] if switches else 0.0) + horizon
         ground = steps(cap, switches, end, sign)
-        r = core_rocking.history(
-            model.body, ground, end, horizon / 2000.0, start_rotation=start, room=4 * half_cycles + 64
-        )
+        r = core_rocking.history(model.body, ground, end, horizon / 2000.0, start_rotation=start, room=4 * half_cycles + 64)
         turns = [(t, x) for kind, t, x in r.events if kind == "peak" and t > (switches[-1] if switches else 0.0) + 1e-9]
         if (r.outcome == "collapse" and not turns) or not turns or len(switches) >= half_cycles:
             return Optimum(ground, np.array(switches), np.array(peaks), r)
@@ -152,26 +150,20 @@ def run(context: Context, options: Resonance) -> Result:
         "time": Array(r.time[keep], ("time",), "s"),
         "rotation": Array(r.rotation[keep], ("time",), "rad"),
         "ground": Array(r.ground[keep], ("time",), "m/s^2"),
-        "ledger": Array(
-            r.ledger[keep], ("time",), "J", "work done by the ground motion, minus the energy lost at impacts"
-        ),
+        "ledger": Array(r.ledger[keep], ("time",), "J", "work done by the ground motion, minus the energy lost at impacts"),
     }
     result.tables["resonance"] = TableData(
-        {"switch": optimum.switches, "peak_rotation": np.abs(optimum.peaks[1:])},
-        {"switch": "s", "peak_rotation": "rad"},
+        {"switch": optimum.switches, "peak_rotation": np.abs(optimum.peaks[1:])}, {"switch": "s", "peak_rotation": "rad"}
     )
     fate = (
-        f"overturned after {len(optimum.switches)} half cycles, {r.stop_time:.2f} s" if collapse
+        f"overturned after {len(optimum.switches)} half cycles, {r.stop_time:.2f} s"
+        if collapse
         else f"not overturned within {len(optimum.switches)} half cycles (greatest rotation {abs(optimum.peaks).max() / model.critical[0]:.2f} of the critical one)"
-    )  # fmt: skip
+    )
     result.answer = (
         f"Pushed by +-{cap / GRAVITY:.3f} g ({cap / GRAVITY / model.uplift:.2f} of uplift) always against its motion, from "
         f"{_start(context):g} of the critical rotation, the {model.word} is {fate}"
-        + (
-            f"; between the changes of sign lie {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last."
-            if len(spacing) > 1
-            else "."
-        )
+        + (f"; between the changes of sign lie {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last." if len(spacing) > 1 else ".")
     )
     if isinstance(model.model, BlockModel):
         numbers |= _block_figures(context, options, model, result)
@@ -198,10 +190,13 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     own = model.model
     assert isinstance(own, BlockModel)
     linear = own.linear
-    table = np.array([
-        least_cap(BlockModel(make_block(aspect, 1.0), own.rule, own.energy_ratio, linear), INITIAL)
-        / (np.arctan(aspect) if linear else aspect) for aspect in ASPECTS
-    ])  # fmt: skip
+    table = np.array(
+        [
+            least_cap(BlockModel(make_block(aspect, 1.0), own.rule, own.energy_ratio, linear), INITIAL)
+            / (np.arctan(aspect) if linear else aspect)
+            for aspect in ASPECTS
+        ]
+    )
     least = float(least_cap(own, _start(context))) if own.block.toe_right == own.block.toe_left else None
     numbers: dict[str, Any] = {}
     if least is not None and not linear:
@@ -216,41 +211,26 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
         "initial_ratios": INITIAL,
     }
     result.tables["least_cap"] = TableData(
-        {
-            "aspect": np.repeat(ASPECTS, len(INITIAL)),
-            "initial_ratio": np.tile(INITIAL, len(ASPECTS)),
-            "cap_ratio": table.ravel(),
-        }
+        {"aspect": np.repeat(ASPECTS, len(INITIAL)), "initial_ratio": np.tile(INITIAL, len(ASPECTS)), "cap_ratio": table.ravel()}
     )
     amplitude = options.impulse_amplitude or 0.5 * model.uplift * GRAVITY
-    by_period = np.array(
-        [[_energy_change(own, model, 0.25, amplitude, tp, s) for s in STARTS] for tp in IMPULSE_PERIODS]
-    )
-    by_rotation = np.array(
-        [[_energy_change(own, model, x, amplitude, 0.5, s) for s in STARTS] for x in INITIAL_ROTATIONS]
-    )
+    by_period = np.array([[_energy_change(own, model, 0.25, amplitude, tp, s) for s in STARTS] for tp in IMPULSE_PERIODS])
+    by_rotation = np.array([[_energy_change(own, model, x, amplitude, 0.5, s) for s in STARTS] for x in INITIAL_ROTATIONS])
     result.arrays |= {
         "aspect": Array(ASPECTS, ("aspect",), "", "B/H"),
         "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "initial rotation over the critical one"),
         "least_cap_ratio": Array(table, ("aspect", "initial_ratio"), "", "least acceleration over uplift"),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
-        "impulse_rotation": Array(
-            np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "initial rotation over the critical one"
-        ),
+        "impulse_rotation": Array(np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "initial rotation over the critical one"),
         "impulse_start": Array(STARTS, ("impulse_start",), "", "t_start/T_n"),
         "energy_by_period": Array(
-            by_period,
-            ("impulse_period_ratio", "impulse_start"),
-            "",
-            "energy supplied over that at the start, theta_cr/4",
+            by_period, ("impulse_period_ratio", "impulse_start"), "", "energy supplied over that at the start, theta_cr/4"
         ),
         "energy_by_rotation": Array(by_rotation, ("impulse_rotation", "impulse_start"), "", "the same for T_p = T_n/2"),
     }
     numbers |= {
         "impulse_amplitude_g": amplitude / GRAVITY,
-        "share_of_starts_that_add": {
-            f"{tp:g}": float((row > 0.0).mean()) for tp, row in zip(IMPULSE_PERIODS, by_period, strict=True)
-        },
+        "share_of_starts_that_add": {f"{tp:g}": float((row > 0.0).mean()) for tp, row in zip(IMPULSE_PERIODS, by_period, strict=True)},
     }
     if least is not None:
         result.answer += (
@@ -265,9 +245,7 @@ def natural_period(model: BlockModel, ratio: float) -> float:
     return 4.0 / float(model.frequency[0]) * float(np.arccosh(1.0 / (1.0 - ratio)))
 
 
-def _energy_change(
-    own: BlockModel, model: Rocker, ratio: float, amplitude: float, period_ratio: float, start_ratio: float
-) -> float:
+def _energy_change(own: BlockModel, model: Rocker, ratio: float, amplitude: float, period_ratio: float, start_ratio: float) -> float:
     """Energy that one sine impulse supplies to free rocking from `ratio` alpha, over the initial energy (Fig. 6-4).
 
     Period and start of the impulse over T_n. Losses at impacts are not counted: they happen without it too.
@@ -280,9 +258,7 @@ def _energy_change(
         linear=np.zeros((2, 1, 2)),
         harmonic=np.array([[[[0.0, 0.0, 0.0, 0.0]]], [[[amplitude, 0.0, 2.0 * np.pi / period, 0.0]]]]),
     )
-    r = core_rocking.history(
-        model.body, ground, begin + period, begin + period, start_rotation=ratio * model.critical[0]
-    )
+    r = core_rocking.history(model.body, ground, begin + period, begin + period, start_rotation=ratio * model.critical[0])
     alpha = own.alpha[0]
     q = ratio * alpha
     moment = GRAVITY * own.block.mass[0] * own.block.radius[0]

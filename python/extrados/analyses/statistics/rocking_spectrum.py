@@ -45,18 +45,14 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         family, sizes, rockers = _arches(context, options, periods)
     else:
         alphas = np.radians(options.slenderness)
-        rockers = [
-            block_of(t, a, _at_rest(context.building), options.form == "linear") for a in alphas for t in periods
-        ]
+        rockers = [block_of(t, a, _at_rest(context.building), options.form == "linear") for a in alphas for t in periods]
         family = [f"alpha {a:g} deg" for a in options.slenderness]
         sizes = 0.75 * GRAVITY * (periods / (2.0 * np.pi)) ** 2
     n = len(rockers)
     settle = np.tile(periods, len(family)) * 6.0
 
     def job_of(bodies: list[Body]) -> RunsJob:
-        return runs_job(
-            bodies, [motion.ground], np.arange(n), 0, 1.0, motion.end + settle, astray=astray_of(rockers[0])
-        )
+        return runs_job(bodies, [motion.ground], np.arange(n), 0, 1.0, motion.end + settle, astray=astray_of(rockers[0]))
 
     job = job_of([one.body for one in rockers])
     swept = sweep(context, "rocking-spectrum", job, n, "rocking spectrum")
@@ -82,17 +78,19 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         result.warnings += [f"{name}: {text}" for text in told(one)]
     result.tables["rocking_spectrum"] = TableData(
         {
-            "family": np.repeat(family, len(periods)), "period": np.tile(periods, len(family)), "size": np.tile(sizes, len(family)),
-            "peak_rotation": rotation.ravel(), "peak_ratio": ratio.ravel(), "overturned": overturned.ravel().astype(int),
+            "family": np.repeat(family, len(periods)),
+            "period": np.tile(periods, len(family)),
+            "size": np.tile(sizes, len(family)),
+            "peak_rotation": rotation.ravel(),
+            "peak_ratio": ratio.ravel(),
+            "overturned": overturned.ravel().astype(int),
         },
         {"period": "s", "size": "m", "peak_rotation": "rad"},
-    )  # fmt: skip
+    )
     result.arrays |= {
         "period": Array(periods, ("period",), "s", "2 pi/p, or 2 pi times the natural time of an arch"),
         "size": Array(sizes, ("period",), "m", "half-diagonal of the block, radius of the arch"),
-        "peak_ratio": Array(
-            ratio, ("family", "period"), "", "greatest rotation over the critical one; NaN where overturned"
-        ),
+        "peak_ratio": Array(ratio, ("family", "period"), "", "greatest rotation over the critical one; NaN where overturned"),
         "overturned": Array(overturned.astype(np.int8), ("family", "period")),
     }
     words = []
@@ -103,9 +101,7 @@ def run(context: Context, options: RockingSpectrum) -> Result:
     return result
 
 
-def _by_rule(
-    context: Context, rockers: list[Rocker], job_of: Callable[[list[Body]], RunsJob], result: Result
-) -> dict[str, Any]:  # fmt: skip
+def _by_rule(context: Context, rockers: list[Rocker], job_of: Callable[[list[Body]], RunsJob], result: Result) -> dict[str, Any]:
     """Spectra by each impact rule, where their c_v differ by more than DIFFER; nothing where they agree. All sizes of one shape have the
     same c_v."""
     each = [one.rivals(DIFFER) for one in rockers]
@@ -115,21 +111,15 @@ def _by_rule(
     rows, ratios = [], []
     for rule in rules:
         bodies = [one.held(rivals[rule][1]) for one, rivals in zip(rockers, each, strict=True)]
-        found = sweep(
-            context, f"rocking-spectrum-{rule}", job_of(bodies), len(rockers), f"spectrum by the rule {rule}"
-        ).whole()
+        found = sweep(context, f"rocking-spectrum-{rule}", job_of(bodies), len(rockers), f"spectrum by the rule {rule}").whole()
         fell = found["outcome"] == COLLAPSE
         ratios.append(np.where(fell, np.inf, found["peak_ratio"]))
         rows.append(out.RuleSpectrum(rule=rule, restitution=each[0][rule][0], overturned=int(fell.sum())))
     least, most = np.min(ratios, axis=0), np.max(ratios, axis=0)
     decided = int((np.isinf(least) != np.isinf(most)).sum())
     result.arrays |= {
-        "rule_least": Array(
-            least, ("period",), "", "least peak rotation ratio of the impact rules; infinite: collapse"
-        ),
-        "rule_most": Array(
-            most, ("period",), "", "greatest peak rotation ratio of the impact rules; infinite: collapse"
-        ),
+        "rule_least": Array(least, ("period",), "", "least peak rotation ratio of the impact rules; infinite: collapse"),
+        "rule_most": Array(most, ("period",), "", "greatest peak rotation ratio of the impact rules; infinite: collapse"),
     }
     told_rules = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.overturned}' for one in rows)
     result.warnings.append(
@@ -153,9 +143,7 @@ def _at_rest(building: Building) -> Building:
     return building.having(initial=Initial(), joints=building.joints.model_copy(update={"types": []}))
 
 
-def _arches(
-    context: Context, options: RockingSpectrum, periods: np.ndarray
-) -> tuple[list[str], np.ndarray, list[Rocker]]:
+def _arches(context: Context, options: RockingSpectrum, periods: np.ndarray) -> tuple[list[str], np.ndarray, list[Rocker]]:
     """The deck's arch in the sizes whose natural time is period / 2 pi: it grows with the root of the size (Eq. 5.7)."""
     structure = context.building.require_structure()
     assert isinstance(structure, Arch)

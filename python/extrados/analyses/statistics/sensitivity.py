@@ -40,7 +40,7 @@ def sensitivity(
     models: structures at points (n, names) of the unit cube; the motion is one more value, each of `motions` as likely.
     settle: time after a motion [s].
     samples: a power of 2; samples times (values + 2) runs. The intervals come from drawing samples anew.
-    """  # fmt: skip
+    """
     motions = min(motions, MOST_MOTIONS)
     grounds = source.grounds(0, motions, context.threads)
     usable = [g for g in grounds if not isinstance(g, str)]
@@ -70,10 +70,7 @@ def sensitivity(
     job = runs_job(bodies, usable, body, chosen, 1.0, end, start, tolerance=tolerance, strict=False)
     swept = sweep(context, "sensitivity", job, len(points), "sensitivity").whole()
     if (failed := int((swept["outcome"] == FAILED).sum())) > 0:
-        raise Refused(
-            f"{failed} of {len(points)} runs of the sensitivity fail: its indices need all of them",
-            ("analysis", "uncertain"),
-        )
+        raise Refused(f"{failed} of {len(points)} runs of the sensitivity fail: its indices need all of them", ("analysis", "uncertain"))
     answers = np.stack([np.minimum(swept["peak_ratio"], 1.0), swept["outcome"] == COLLAPSE]).astype(float)
     whole = answers.reshape(2, d + 2, samples)
     found = [_indices(rows[None], d) for rows in whole]
@@ -84,8 +81,7 @@ def sensitivity(
         for k, rows in enumerate(whole):
             drawn[k].append(_indices(rows[None, :, pick], d))
     tails = [0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence]
-    bands = [np.nanquantile(rows, tails, axis=0) if repeats and np.isfinite(rows).any() else np.full((2, 2, d), np.nan)
-             for rows in drawn]  # fmt: skip
+    bands = [np.nanquantile(rows, tails, axis=0) if repeats and np.isfinite(rows).any() else np.full((2, 2, d), np.nan) for rows in drawn]
     table: dict[str, Any] = {"value": values}
     of_value: dict[str, dict[str, Any]] = {value: {} for value in values}
     for k, what in enumerate(("rotation", "collapse")):
@@ -96,9 +92,8 @@ def sensitivity(
                 of_value[value] |= {key: found[k][j, i], f"{key}_interval": bands[k][:, j, i]}
     result.tables["sensitivity"] = TableData(table)
     result.arrays |= {
-        f"sensitivity_{name}": Array(np.asarray(v), ("value",), "", "Sobol index")
-        for name, v in table.items() if name != "value"
-    }  # fmt: skip
+        f"sensitivity_{name}": Array(np.asarray(v), ("value",), "", "Sobol index") for name, v in table.items() if name != "value"
+    }
     return {"sensitivity": {v: out.Sensitivity(**row) for v, row in of_value.items()}, "sensitivity_runs": len(points)}
 
 

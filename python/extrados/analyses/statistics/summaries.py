@@ -15,9 +15,7 @@ Pieces = Callable[[], Iterator[np.ndarray]]
 FEW, BINS = 100_000, 65_536
 
 
-def wilson(
-    hits: np.ndarray | float, count: np.ndarray | float, confidence: float = 0.95
-) -> tuple[np.ndarray, np.ndarray]:
+def wilson(hits: np.ndarray | float, count: np.ndarray | float, confidence: float = 0.95) -> tuple[np.ndarray, np.ndarray]:
     """Score interval of a probability from `hits` in `count` (Wilson 1927, JASA 22:209-212)."""
     hits, count = np.asarray(hits, dtype=float), np.asarray(count, dtype=float)
     z = norm.ppf(0.5 + 0.5 * confidence)
@@ -63,10 +61,7 @@ def median(pieces: Pieces) -> float | None:
         upto = np.cumsum(bins)
         first, last = (int(np.searchsorted(upto, k, side="right")) for k in wanted)
         if first < last:  # neighbours in rank: the greatest up to the one bin and the least from the other on
-            ends = [
-                (float(x[x < edges[first + 1]].max(initial=-np.inf)), float(x[x >= edges[last]].min(initial=np.inf)))
-                for x in pieces()
-            ]
+            ends = [(float(x[x < edges[first + 1]].max(initial=-np.inf)), float(x[x >= edges[last]].min(initial=np.inf))) for x in pieces()]
             return 0.5 * (max(end for end, _ in ends) + min(end for _, end in ends))
         below += int(upto[first] - bins[first])
         low = edges[first]
@@ -80,9 +75,7 @@ def shares(outcome: np.ndarray, peak_ratio: np.ndarray, confidence: float, initi
     return shares_of(lambda: iter([(outcome, peak_ratio)]), confidence, initial)
 
 
-def shares_of(
-    runs: Callable[[], Iterator[tuple[np.ndarray, np.ndarray]]], confidence: float, initial: float
-) -> dict[str, Any]:
+def shares_of(runs: Callable[[], Iterator[tuple[np.ndarray, np.ndarray]]], confidence: float, initial: float) -> dict[str, Any]:
     """The same of runs that come in pieces, outcome and peak rotation ratio."""
 
     def ratios() -> Iterator[np.ndarray]:

@@ -35,9 +35,8 @@ class Hazard(Table):
         None, "ascending intensities, numbers in the unit of the measure or text", min_length=2, max_length=1000
     )
     annual_rates: list[Rate] | None = key(
-        None, "mean annual rates at which they are exceeded, descending; lines between the logarithms", min_length=2,
-        max_length=1000,
-    )  # fmt: skip
+        None, "mean annual rates at which they are exceeded, descending; lines between the logarithms", min_length=2, max_length=1000
+    )
     file: str | None = key(None, "CSV with both as columns, instead of the lists; lines that begin with # are skipped")
     years: float = key(50.0, "time for which the probability of collapse is given", gt=0, le=1e5)
     acceptable_rate: Rate | None = key(None, "annual rate of collapse that is accepted: the demand of the verdict")
@@ -77,17 +76,19 @@ class Fragility(RockingTable):
         None, "repeat for these t_d of a generated set", source="thesis Fig. 6-8", min_length=1, max_length=100
     )
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
-        "pga", "measure of levels, cloud and hazard: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) [g], Arias intensity "
-        "[m/s], or the factor itself", source="Dimitrakopoulos and Paraskeva 2015",
-    )  # fmt: skip
+        "pga",
+        "measure of levels, cloud and hazard: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) [g], Arias intensity "
+        "[m/s], or the factor itself",
+        source="Dimitrakopoulos and Paraskeva 2015",
+    )
     levels: list[Level] | None = key(
-        None, 'intensities to which every motion is scaled, numbers in the unit of the measure or text such as "0.1 g"',
-        min_length=1, max_length=500,
-    )  # fmt: skip
+        None,
+        'intensities to which every motion is scaled, numbers in the unit of the measure or text such as "0.1 g"',
+        min_length=1,
+        max_length=500,
+    )
     cloud: bool = key(
-        False,
-        "fit curves over the intensities that the motions have of themselves, unscaled",
-        source="Jalayer and others 2017",
+        False, "fit curves over the intensities that the motions have of themselves, unscaled", source="Jalayer and others 2017"
     )
     rotation_limits: list[Annotated[float, Field(gt=0, le=1)]] = key(
         [], "of a cloud: also the curves of a rotation beyond these shares of the critical one", max_length=20
@@ -97,14 +98,18 @@ class Fragility(RockingTable):
     sa_period: Time | None = key(None, "period of SA", gt=0)
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
-        {}, "coefficients of variation of width, height, thickness, restitution, of the thickness lost at worn `corners`, of "
+        {},
+        "coefficients of variation of width, height, thickness, restitution, of the thickness lost at worn `corners`, of "
         "the `density` from stone to stone; `imperfection`: how far corners and joints of stones stray, over the shortest "
-        "joint; `stiffness` and `damping_ratio` of a compliant base; sampled by a Sobol sequence"
-    )  # fmt: skip
+        "joint; `stiffness` and `damping_ratio` of a compliant base; sampled by a Sobol sequence",
+    )
     sensitivity: int | None = key(
-        None, "samples, a power of 2, for Sobol indices of `uncertain` and of the motion: samples times (values + 2) runs",
-        ge=16, le=2**20, source="Saltelli and others 2010",
-    )  # fmt: skip
+        None,
+        "samples, a power of 2, for Sobol indices of `uncertain` and of the motion: samples times (values + 2) runs",
+        ge=16,
+        le=2**20,
+        source="Saltelli and others 2010",
+    )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "draws for the band of the fitted curve", ge=0, le=100_000)
     bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
@@ -118,11 +123,7 @@ class Fragility(RockingTable):
         if not isinstance(data, dict):
             return data
         hazard = data.get("hazard")
-        found = (
-            {**data, "levels": _numbers(data.get("levels"), data.get("intensity", "pga"), "levels")}
-            if "levels" in data
-            else data
-        )
+        found = {**data, "levels": _numbers(data.get("levels"), data.get("intensity", "pga"), "levels")} if "levels" in data else data
         if isinstance(hazard, dict) and "intensities" in hazard:
             numbers = _numbers(hazard["intensities"], data.get("intensity", "pga"), "hazard.intensities")
             found = {**found, "hazard": {**hazard, "intensities": numbers}}
@@ -156,9 +157,7 @@ class Fragility(RockingTable):
             if name not in known:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(known)}")
             if not 0.0 < value <= 0.5:
-                raise ValueError(
-                    f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5"
-                )
+                raise ValueError(f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5")
         return self
 
 
@@ -181,9 +180,7 @@ class Resonance(RockingTable):
 
     kind: Literal["resonance"]
     bears: ClassVar = ()
-    cap: Acceleration | None = key(
-        None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5"
-    )
+    cap: Acceleration | None = key(None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5")
     half_cycles: int = key(40, "at most so many", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
         None, "amplitude of the impulses of Fig. 6-4; default half of uplift", gt=0, source="thesis 6.2.3"
@@ -198,10 +195,7 @@ class RockingSpectrum(RockingTable):
     view: ClassVar = ""
     needs_motion: ClassVar = True
     periods: list[Time] | None = key(
-        None,
-        "2 pi/p (for arches 2 pi times their natural time); default 60 values from 0.2 to 8 s",
-        min_length=1,
-        max_length=5000,
+        None, "2 pi/p (for arches 2 pi times their natural time); default 60 values from 0.2 to 8 s", min_length=1, max_length=5000
     )
     slenderness: list[Angle] = key([10.0, 15.0, 20.0, 25.0], "alpha", min_length=1, max_length=50)
 

@@ -104,9 +104,7 @@ def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndar
     ]
     fallen = rows["kind"] == FALLEN
     stand_in = next((body for body in bodies if isinstance(body, Body)), base.body)
-    return Bodies(
-        [stand_in if down else body for body, down in zip(bodies, fallen, strict=True)], rows["start"], fallen
-    )
+    return Bodies([stand_in if down else body for body, down in zip(bodies, fallen, strict=True)], rows["start"], fallen)
 
 
 def refuse_unknown(building: Building, names: list[str]) -> None:
@@ -116,51 +114,38 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
     what = structure.kind
     known = UNCERTAIN.get(what, ("restitution",) if structure.rocks_as == "piers" else STONES)
     if building.supports.stiffness is not None:
-        known = tuple(name for name in known if name != "restitution") + tuple(
-            name for name in BASE if getattr(building.supports, name)
-        )
+        known = tuple(name for name in known if name != "restitution") + tuple(name for name in BASE if getattr(building.supports, name))
     for name in names:
         key = ("analysis", "uncertain", name)
         if name == "density" and what == "block" and name not in known:
-            raise Refused(
-                "densities of stones cannot vary: the structure is modelled as one rigid block; remove density", key
-            )
+            raise Refused("densities of stones cannot vary: the structure is modelled as one rigid block; remove density", key)
         sized = name not in (*STONES, *BASE, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
             raise Refused(f"does not belong to this {structure.word}; it has {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
-            "uncertain stones make an arch unsymmetric, where the balance of the thesis says nothing: give another "
-            "joints.restitution",
+            "uncertain stones make an arch unsymmetric, where the balance of the thesis says nothing: give another joints.restitution",
             ("analysis", "uncertain"),
         )
     if "corners" in names and getattr(structure, "thickness_factor", 1.0) == 1.0:
-        raise Refused(
-            "thickness_factor is 1, so no thickness is lost that could vary", ("analysis", "uncertain", "corners")
-        )
+        raise Refused("thickness_factor is 1, so no thickness is lost that could vary", ("analysis", "uncertain", "corners"))
 
 
 def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> Rocker:
     structure = building.require_structure()
     update: dict[str, Any] = {
-        name: getattr(structure, name) * value
-        for name, value in factor.items()
-        if name not in (*STONES, *BASE, "corners")
+        name: getattr(structure, name) * value for name, value in factor.items() if name not in (*STONES, *BASE, "corners")
     }
     base = {name: getattr(building.supports, name) * factor[name] for name in BASE if name in factor}
     if "corners" in factor:
         given: float | None = getattr(structure, "thickness_factor", None)
         if given is None:
-            raise NoView(
-                f"a structure of kind '{structure.kind}' has no worn corners", ("analysis", "uncertain", "corners")
-            )
+            raise NoView(f"a structure of kind '{structure.kind}' has no worn corners", ("analysis", "uncertain", "corners"))
         left = 1.0 - (1.0 - given) * factor["corners"]
         if left <= 0.0:
             raise NoView("its corners are worn away", ("analysis", "uncertain", "corners"))
         update["thickness_factor"] = left
-    changed = building.having(
-        structure=structure.model_copy(update=update), supports=building.supports.model_copy(update=base)
-    ).apart()
+    changed = building.having(structure=structure.model_copy(update=update), supports=building.supports.model_copy(update=base)).apart()
     stones = _stones(changed.blocks(), options, seeds) if seeds else None
     rocker = make_rocker(changed, options.form == "linear", stones, options.soft_base)
     if not isinstance(rocker.model, BlockModel):

@@ -95,13 +95,7 @@ def tie_alternatives(building: Building, options: Strengthen) -> list[TieAlterna
         return usual_ties(building)
     found = []
     for k, option in enumerate(options.ties):
-        word = (
-            "bonded strip"
-            if option.debonding_force is not None
-            else "ring beam"
-            if option.beam_weight
-            else word_of(option)
-        )
+        word = "bonded strip" if option.debonding_force is not None else "ring beam" if option.beam_weight else word_of(option)
         name = option.name or f"{word} {k + 1}"
         count = option.places if option.start_to is not None or option.far_to is not None else 1
         shares = np.linspace(0.0, 1.0, count).tolist()
@@ -118,9 +112,7 @@ def tie_alternatives(building: Building, options: Strengthen) -> list[TieAlterna
         if not placed and trouble is not None:
             raise Refused(str(trouble), ("analysis", "ties", k))
         found.append(
-            TieAlternative(
-                name, placed, lengths, option.greatest, option.anchorage, option.beam_weight or 0.0, option.source or ""
-            )
+            TieAlternative(name, placed, lengths, option.greatest, option.anchorage, option.beam_weight or 0.0, option.source or "")
         )
     return found
 
@@ -150,9 +142,7 @@ def usual_hoops(building: Building) -> list[TieAlternative]:
     z = np.concatenate([part.vertices[:, 2] for part in building.solids().parts])
     low, high = float(z.min()), float(z.max())
     hoops = [
-        Tie.model_validate(
-            {"name": "hoop (strengthening)", "start": [0.0, 0.0, low + share * (high - low)], "hoop": True}
-        )
+        Tie.model_validate({"name": "hoop (strengthening)", "start": [0.0, 0.0, low + share * (high - low)], "hoop": True})
         for share in HOOPS
     ]
     placed = [tie for tie in hoops if _holds(building, tie)]
@@ -245,9 +235,7 @@ def change_alternatives(context: Context, options: Strengthen) -> list[ChangeAlt
     found = []
     for what in varied(building, dict.fromkeys(THICKNESS.get(structure.kind, ("structure.thickness",)), 0.1), None):
         name = what.key.rpartition(".")[2].replace("_", " ")
-        found.append(
-            ChangeAlternative(f"greater {name}", what.key, what.unit, what.base, GREATEST * what.base, 9, False)
-        )
+        found.append(ChangeAlternative(f"greater {name}", what.key, what.unit, what.base, GREATEST * what.base, 9, False))
     return found
 
 
@@ -259,13 +247,9 @@ def _change(context: Context, options: Strengthen, k: int, one: Change) -> Chang
         way = one.vary.removeprefix("options.")
         base, unit = _option(options.options, way), unit_at(kinds.load(kinds.ANALYSES[options.by].table), way)
         if base is None and one.start is None:
-            raise Refused(
-                f"{one.vary}: the options hold no plain number there; write it in SI, or give start", (*at, "vary")
-            )
+            raise Refused(f"{one.vary}: the options hold no plain number there; write it in SI, or give start", (*at, "vary"))
         start = base if one.start is None else number_of(one.start, unit, (*at, "start"))
-        return ChangeAlternative(
-            name, one.vary, unit, float(start or 0.0), number_of(one.stop, unit, (*at, "stop")), one.count, False
-        )
+        return ChangeAlternative(name, one.vary, unit, float(start or 0.0), number_of(one.stop, unit, (*at, "stop")), one.count, False)
     there = varied(context.building, {one.vary: 0.1}, None)
     if not there and one.start is None:
         raise Refused(f"{one.vary}: the building has no such number above 0; give start", (*at, "vary"))

@@ -21,15 +21,7 @@ from extrados.analyses.strengthen.alternatives import (
     word_of,
 )
 from extrados.analyses.strengthen.anchorage import check_anchorage
-from extrados.analyses.strengthen.measures import (
-    Measure,
-    Runs,
-    Statics,
-    Worth,
-    nested,
-    plain_data,
-    with_value,
-)
+from extrados.analyses.strengthen.measures import Measure, Runs, Statics, Worth, nested, plain_data, with_value
 from extrados.analyses.strengthen.space import SpaceStatics
 from extrados.analyses.strengthen.tables import Strengthen
 from extrados.decks.reader import DeckError, make_deck
@@ -83,9 +75,7 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
     """
     building, measure = context.building, measure_of(context, options, closely)
     result = Result("strengthen")
-    before = (
-        measure.of(building, picture=True) if isinstance(measure, Statics) else measure.of_data(plain_data(context))
-    )
+    before = measure.of(building, picture=True) if isinstance(measure, Statics) else measure.of_data(plain_data(context))
     met = _reached(measure, before)
     work = _Work(context, options, measure, before)
     sized: list[_Sized] = []
@@ -109,10 +99,19 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
         more["fragility"] = work.fragility(best)
     quantity, unit = _quantity(options)
     result.results = out.Strengthen(
-        by=options.by, quantity=quantity, unit=unit, target=measure.target, demand=measure.demand, direction=_direction(measure, options),
-        value_before=before.value, safety_factor_before=_over(before.value, measure.demand), met_before=met,
-        mechanism_before=before.mechanism or before.reason, interventions=[s.row for s in sized], **more,
-    )  # fmt: skip
+        by=options.by,
+        quantity=quantity,
+        unit=unit,
+        target=measure.target,
+        demand=measure.demand,
+        direction=_direction(measure, options),
+        value_before=before.value,
+        safety_factor_before=_over(before.value, measure.demand),
+        met_before=met,
+        mechanism_before=before.mechanism or before.reason,
+        interventions=[s.row for s in sized],
+        **more,
+    )
     if before.value is None:
         result.warnings.append(f"The existing building has no value: {before.reason}")
     if before.bound == "upper":
@@ -211,20 +210,28 @@ class _Work:
         if worth is None and points is not None:
             worth = statics.of(one.having(self.context.building, place, points[-1].force), picture=True)
         tie, length = one.places[place], one.lengths[place]
-        no_force = (
-            "no force of the tie suffices"
-            if np.isinf(one.most)
-            else "no force up to the greatest one considered suffices"
-        )
+        no_force = "no force of the tie suffices" if np.isinf(one.most) else "no force up to the greatest one considered suffices"
         reason = no_result or ("" if required is not None else no_force)
         if bound_by_friction and required is None:
             reason = "the upper bound (dilatant friction) meets the target; the state without dilatancy does not"
         curve = ([], []) if points is None else _polyline(points)
         row = self._row(
-            name=one.name, kind="ring-beam" if one.beam_weight else word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
-            worth=worth, ranges=ranges, length=length, force=required or 0.0, volume=0.0, reason=reason,
-            tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage,
-        )  # fmt: skip
+            name=one.name,
+            kind="ring-beam" if one.beam_weight else word_of(tie),
+            place=_placed(tie),
+            unit="N",
+            required=required,
+            greatest=greatest,
+            worth=worth,
+            ranges=ranges,
+            length=length,
+            force=required or 0.0,
+            volume=0.0,
+            reason=reason,
+            tie=tie,
+            stiffness=one.stiffness(place, required or 0.0),
+            anchorage=one.anchorage,
+        )
         row = _with_debonding(row, one)
         if one.beam_weight:
             told = f"The ring beam weighs {engineering(one.beam_weight, 'N')}, with its force for limit analysis alone: other strategies are not run with it."
@@ -238,9 +245,7 @@ class _Work:
         sized.costs = [self._cost(length, force, 0.0) for force in curve[0]]
         return sized
 
-    def _checked(
-        self, one: TieAlternative, place: int, force: float, statics: Statics
-    ) -> tuple[float | None, Worth | None, bool]:
+    def _checked(self, one: TieAlternative, place: int, force: float, statics: Statics) -> tuple[float | None, Worth | None, bool]:
         """The force that also meets the target by the collapse load itself, which is another programme, and without dilatancy
         where pressed joints slide; None where no force up to the greatest does. Whether friction asked for more."""
         building = self.context.building
@@ -301,11 +306,15 @@ class _Work:
             return None, []
         ranges = [
             out.GoverningRange(
-                first=p.first, last=p.last, capacity_first=p.low, capacity_last=p.high, direction=statics.word(p.point.direction),
+                first=p.first,
+                last=p.last,
+                capacity_first=p.low,
+                capacity_last=p.high,
+                direction=statics.word(p.point.direction),
                 mechanism=statics.told_at(p.point),
             )
             for p in pieces_of(points)
-        ]  # fmt: skip
+        ]
         return points, ranges
 
     def _tie_by_runs(self, one: TieAlternative, runs: Runs) -> _Sized:
@@ -318,19 +327,28 @@ class _Work:
         required, worth, curve = self._bracket(at, 0.0, one.most, FORCES_OF_RUNS, self._halvings, False)
         tie = one.places[0]
         row = self._row(
-            name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=_safest(runs, curve[1]),
-            worth=worth, ranges=[], length=one.lengths[0], force=required or 0.0, volume=0.0,
+            name=one.name,
+            kind=word_of(tie),
+            place=_placed(tie),
+            unit="N",
+            required=required,
+            greatest=_safest(runs, curve[1]),
+            worth=worth,
+            ranges=[],
+            length=one.lengths[0],
+            force=required or 0.0,
+            volume=0.0,
             reason="" if required is not None else worth.reason or "no force up to the greatest one considered suffices",
-            tie=tie, stiffness=one.stiffness(0, required or 0.0), anchorage=one.anchorage,
-        )  # fmt: skip
+            tie=tie,
+            stiffness=one.stiffness(0, required or 0.0),
+            anchorage=one.anchorage,
+        )
         row = _with_debonding(self._with_lapses(row, curve, True), one)
         sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), worth, tie)
         sized.costs = [self._cost(one.lengths[0], force, 0.0) for force in curve[0]]
         return sized
 
-    def _with_lapses(
-        self, row: out.Intervention, curve: tuple[list[float], list[float]], grows: bool
-    ) -> out.Intervention:
+    def _with_lapses(self, row: out.Intervention, curve: tuple[list[float], list[float]], grows: bool) -> out.Intervention:
         """The row, with the greater changes that do not meet the target: safety need not grow with a size."""
         if row.required_size is None:
             return row
@@ -338,16 +356,12 @@ class _Work:
         beyond = [
             size
             for size, value in zip(sizes, values, strict=True)
-            if (size > row.required_size) is grows
-            and size != row.required_size
-            and not _reached(self.measure, Worth(value))
+            if (size > row.required_size) is grows and size != row.required_size and not _reached(self.measure, Worth(value))
         ]
         if not beyond:
             return row
         text = f"The target is not met at {len(beyond)} greater sizes that were tried, for instance {beyond[0]:.4g} {row.unit}"
-        return row.model_copy(
-            update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not grow with the size."]}
-        )
+        return row.model_copy(update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not grow with the size."]})
 
     # ----- changes of keys
 
@@ -359,9 +373,7 @@ class _Work:
             stop_if_asked()
             if value not in seen:
                 data, keys = with_value(self.context, self.options, one.key, round(value) if one.whole else value)
-                seen[value] = (
-                    self.measure.of_data(data, keys) if isinstance(self.measure, Runs) else self.measure.of_data(data)
-                )
+                seen[value] = self.measure.of_data(data, keys) if isinstance(self.measure, Runs) else self.measure.of_data(data)
             return seen[value]
 
         required, worth, curve = self._bracket(at, one.start, one.stop, one.count, self._halvings, one.whole)
@@ -374,14 +386,7 @@ class _Work:
                     ranges[-1] = ranges[-1].model_copy(update={"last": size, "capacity_last": value})
                 elif np.isfinite(value):
                     ranges.append(
-                        out.GoverningRange(
-                            first=size,
-                            last=size,
-                            capacity_first=value,
-                            capacity_last=value,
-                            direction=way,
-                            mechanism=told,
-                        )
+                        out.GoverningRange(first=size, last=size, capacity_first=value, capacity_last=value, direction=way, mechanism=told)
                     )
         greatest = _safest(self.measure, curve[1])
         if required is None and greatest is not None and isinstance(self.measure, Statics):
@@ -392,11 +397,21 @@ class _Work:
         spent = None if required is None else self._spent(one, required)
         force, volume = spent or (0.0, 0.0)
         row = self._row(
-            name=one.name, kind="change", place=f"from {one.start:.4g} {one.unit}".rstrip(), unit=one.unit, required=required,
-            greatest=greatest, worth=worth, ranges=ranges, length=0.0, force=force,
-            volume=volume, priced=spent is not None, reason="" if required is not None else worth.reason or "no value up to the greatest one considered suffices",
+            name=one.name,
+            kind="change",
+            place=f"from {one.start:.4g} {one.unit}".rstrip(),
+            unit=one.unit,
+            required=required,
+            greatest=greatest,
+            worth=worth,
+            ranges=ranges,
+            length=0.0,
+            force=force,
+            volume=volume,
+            priced=spent is not None,
+            reason="" if required is not None else worth.reason or "no value up to the greatest one considered suffices",
             key=one.key,
-        )  # fmt: skip
+        )
         row = self._with_lapses(row, curve, one.stop > one.start)
         sized = _Sized(row, curve, None, None, worth)
         if required is not None:
@@ -470,10 +485,26 @@ class _Work:
         return w.per_metre * length + w.per_kilonewton * force / 1e3 + w.per_cubic_metre * max(volume, 0.0)
 
     def _row(
-        self, *, name: str, kind: Any, place: str, unit: str, required: float | None, greatest: float | None, worth: Worth | None,
-        ranges: list[out.GoverningRange], length: float, force: float, volume: float, reason: str, tie: Tie | None = None, stiffness: float = 0.0,
-        anchorage: Any = None, key: str = "", priced: bool = True,
-    ) -> out.Intervention:  # fmt: skip
+        self,
+        *,
+        name: str,
+        kind: Any,
+        place: str,
+        unit: str,
+        required: float | None,
+        greatest: float | None,
+        worth: Worth | None,
+        ranges: list[out.GoverningRange],
+        length: float,
+        force: float,
+        volume: float,
+        reason: str,
+        tie: Tie | None = None,
+        stiffness: float = 0.0,
+        anchorage: Any = None,
+        key: str = "",
+        priced: bool = True,
+    ) -> out.Intervention:
         worth = worth or Worth(None)
         met = required is not None
         # The target is met only where the least state without dilatancy reaches it too; the size is that of the upper bound.
@@ -495,16 +526,31 @@ class _Work:
             adverse += [
                 f"The {c.part} carries {c.capacity_N / 1e3:.3g} kN, less than {force / 1e3:.3g} kN: {c.size.partition(' [')[0]} "
                 f"{1e3 * c.needed:.0f} mm is needed."
-                for c in more["anchorage"] if c.capacity_N is not None and c.capacity_N < force
-            ]  # fmt: skip
+                for c in more["anchorage"]
+                if c.capacity_N is not None and c.capacity_N < force
+            ]
         after = worth.value if met else None
         return out.Intervention(
-            name=name, kind=kind, place=place, unit=unit, meets_target=sure, required_size=required, greatest_capacity=greatest,
-            capacity_after=after, safety_factor_after=_over(after, self.measure.demand),
-            next_mechanism=worth.mechanism, bound=worth.bound if met else None,
-            ranges=ranges, length_m=length, force_N=force, volume_m3=volume,
-            cost=self._cost(length, force, volume) if met and priced else None, adverse=adverse, reason=reason, **more,
-        )  # fmt: skip
+            name=name,
+            kind=kind,
+            place=place,
+            unit=unit,
+            meets_target=sure,
+            required_size=required,
+            greatest_capacity=greatest,
+            capacity_after=after,
+            safety_factor_after=_over(after, self.measure.demand),
+            next_mechanism=worth.mechanism,
+            bound=worth.bound if met else None,
+            ranges=ranges,
+            length_m=length,
+            force_N=force,
+            volume_m3=volume,
+            cost=self._cost(length, force, volume) if met and priced else None,
+            adverse=adverse,
+            reason=reason,
+            **more,
+        )
 
     def _adverse(self, worth: Worth, volume: float, met: bool) -> list[str]:
         """What the intervention makes worse."""
@@ -580,11 +626,7 @@ class _Work:
                 if was is None or "ok" not in (was.status, row.status):
                     continue
                 verdict = out.OtherVerdict(
-                    strategy=row.label,
-                    before=was.outcome,
-                    after=row.outcome,
-                    margin_before=_margin(was),
-                    margin_after=_margin(row),
+                    strategy=row.label, before=was.outcome, after=row.outcome, margin_before=_margin(was), margin_after=_margin(row)
                 )
                 verdicts.append(verdict)
                 low, high = verdict.margin_before, verdict.margin_after
@@ -594,9 +636,7 @@ class _Work:
                         f"By {row.label} the margin drops from {_number(low)} to {_number(high)} (verdict {was.outcome}, then {row.outcome})."
                     )
                 elif row.outcome in ("collapses", "cannot-stand"):
-                    adverse.append(
-                        f"By {row.label} the strengthened building still collapses (margin {_number(high)})."
-                    )
+                    adverse.append(f"By {row.label} the strengthened building still collapses (margin {_number(high)}).")
             one.row = one.row.model_copy(update={"verdicts": verdicts, "adverse": [*one.row.adverse, *adverse]})
 
     def _assess(self, name: str, data: dict[str, Any]) -> list[StrategyVerdict] | None:
@@ -604,8 +644,7 @@ class _Work:
         self.context.tell(f"Assess {name}")
         try:
             deck = make_deck(
-                {**data, "analysis": [{"kind": "assess", "budget": self.options.budget, "advise": False}]},
-                self.context.deck.folder,
+                {**data, "analysis": [{"kind": "assess", "budget": self.options.budget, "advise": False}]}, self.context.deck.folder
             )
         except DeckError as error:
             self.context.warnings.append(f"The assessment of {name} was refused: {'; '.join(error.complaints)}")
@@ -619,13 +658,7 @@ class _Work:
     def fragility(self, best: _Sized) -> out.FragilityPair:
         """Probability of collapse over factors on the motions, before and after."""
         keys = {k: v for k, v in self.options.options.items() if self.options.by == "fragility"}
-        asked = {
-            **keys,
-            "kind": "fragility",
-            "intensity": "scale",
-            "levels": sorted(self.options.levels),
-            "bootstrap": 0,
-        }
+        asked = {**keys, "kind": "fragility", "intensity": "scale", "levels": sorted(self.options.levels), "bootstrap": 0}
         found: list[OverLevels | None] = []
         for data in (plain_data(self.context), best.data or {}):
             deck = make_deck({**data, "analysis": [asked]}, self.context.deck.folder)
@@ -639,9 +672,7 @@ class _Work:
         count = len(self.options.levels)
         for word, r in zip(("before", "after"), found, strict=True):
             shares = [None] * count if r is None else r.collapse_probability
-            low, high = (
-                (np.zeros(count), np.ones(count)) if r is None else wilson(np.array(r.collapsed), np.array(r.count))
-            )
+            low, high = (np.zeros(count), np.ones(count)) if r is None else wilson(np.array(r.collapsed), np.array(r.count))
             sides |= {word: shares, f"{word}_low": low.tolist(), f"{word}_high": high.tolist()}
         motions = next((r.motions for r in found if r is not None), 0)
         return out.FragilityPair(name=best.row.name, levels=sorted(self.options.levels), motions=motions, **sides)
@@ -678,9 +709,7 @@ def _placed(tie: Tie) -> str:
     """Where a tie is, in words."""
     if tie.hoop:
         return f"at z = {tie.start[2]:.2f} m"
-    start, end = (
-        ", ".join(f"{axis} = {x:.2f}" for axis, x in zip("xyz", point, strict=False)) for point in (tie.start, tie.far)
-    )
+    start, end = (", ".join(f"{axis} = {x:.2f}" for axis, x in zip("xyz", point, strict=False)) for point in (tie.start, tie.far))
     far = "the ground at " if tie.ground is not None else ""
     return f"from {start} m to {far}{end} m"
 
@@ -723,9 +752,7 @@ def _arrays(context: Context, before: Worth, sized: list[_Sized]) -> dict[str, A
             3,
             "each possible place of each tie: x, y of its middle [m] and required force [N]; infinite: no force is sufficient there",
         ),
-        **packed(
-            "stones", rest, "m", "blocks of the existing building (0/block) and of the alternatives (number/block)"
-        ),
+        **packed("stones", rest, "m", "blocks of the existing building (0/block) and of the alternatives (number/block)"),
         **packed("stones_moved", moved, "m", "the same, moved by the mechanism that governs"),
     }
     for name, worth in drawn:
@@ -736,9 +763,7 @@ def _arrays(context: Context, before: Worth, sized: list[_Sized]) -> dict[str, A
                 for key, array in scene_arrays(solids).items()
                 if key.startswith("solid_")
             }
-            found[f"solid_pose_{name}"] = Array(
-                poses, (f"block_{name}", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on"
-            )
+            found[f"solid_pose_{name}"] = Array(poses, (f"block_{name}", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on")
             tie = sized[int(name) - 1].tie if name != "0" else None
             if tie is not None:
                 strands = context.building.having(ties=(tie,)).strands()
@@ -758,16 +783,28 @@ def _packed(name: str, paths: dict[str, np.ndarray], width: int, about: str) -> 
     return {
         name: Array(rows, (f"{name}_row", f"{name}_column"), "", about),
         f"{name}_start": Array(start, (f"{name}_edge",), "", f"first row of each path of {name}, and the end"),
-        f"{name}_of": Array(
-            np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"
-        ),
+        f"{name}_of": Array(np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"),
     }
 
 
 def _table(sized: list[_Sized]) -> TableData:
     """Alternatives side by side."""
-    names = ("name", "kind", "place", "unit", "meets_target", "required_size", "capacity_after", "safety_factor_after", "length_m",
-             "force_N", "volume_m3", "cost", "next_mechanism", "reason")  # fmt: skip
+    names = (
+        "name",
+        "kind",
+        "place",
+        "unit",
+        "meets_target",
+        "required_size",
+        "capacity_after",
+        "safety_factor_after",
+        "length_m",
+        "force_N",
+        "volume_m3",
+        "cost",
+        "next_mechanism",
+        "reason",
+    )
     rows = [s.row for s in sized]
     return TableData({n: [np.nan if (v := getattr(r, n)) is None else v for r in rows] for n in names})
 

@@ -73,8 +73,7 @@ class Statics:
         self.senses: tuple[float, ...] = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
         if not self.senses:
             raise Refused(
-                f"direction: the abutting wall is on that side ({wall}): the building cannot collapse towards it",
-                ("analysis", "direction"),
+                f"direction: the abutting wall is on that side ({wall}): the building cannot collapse towards it", ("analysis", "direction")
             )
 
     def of(self, building: Building, picture: bool = False) -> Worth:
@@ -91,9 +90,7 @@ class Statics:
             try:
                 state, mechanism = limit.collapse(sense)
                 value = sense * state.gamma
-                value, bound = self._least(
-                    limit, mechanism, sense, value, self.closely and (picture or value >= self.target)
-                )
+                value, bound = self._least(limit, mechanism, sense, value, self.closely and (picture or value >= self.target))
             except Immovable as error:
                 values.append(np.inf)
                 told.append(f"none to {_word(sense)}: {error}")
@@ -116,9 +113,7 @@ class Statics:
         chosen = mechanisms[k]
         moved = (limit.assembly, finite_motion(limit.assembly, chosen)) if picture and chosen is not None else None
         shape = () if chosen is None else unmirrored(signature(limit.assembly, chosen))
-        return Worth(
-            float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved, sense=self.senses[k]
-        )
+        return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved, sense=self.senses[k])
 
     def other_sense_told(self, building: Building) -> str:
         """What the existing building carries in the sense that the deck leaves out."""
@@ -134,9 +129,7 @@ class Statics:
             'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
         )
 
-    def _least(
-        self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool
-    ) -> tuple[float, Bound]:
+    def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool) -> tuple[float, Bound]:
         """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy, which takes seconds
         and is not sought where the upper bound already misses the target."""
         if not limit.associated:
@@ -214,9 +207,11 @@ class Statics:
     @staticmethod
     def collapse(limit: LimitAnalysis, sense: int) -> tuple[Any, Mechanism]:
         """Collapse with dilatant friction, whose capacity is concave in the force of a tie."""
-        return limit.collapse(sense) if limit.associated else LimitAnalysis(
-            limit.assembly, limit.friction, strength=limit.strength, loads=limit.loads
-        ).collapse(sense)  # fmt: skip
+        return (
+            limit.collapse(sense)
+            if limit.associated
+            else LimitAnalysis(limit.assembly, limit.friction, strength=limit.strength, loads=limit.loads).collapse(sense)
+        )
 
     def force(self, one: TieAlternative, place: int, target: float) -> float:
         """The same of one tie, by the programme of the structure itself; infinite where no force suffices."""
@@ -295,9 +290,7 @@ class Runs:
             if not isinstance(result.results, Ensemble):
                 raise Refused("options: levels belong to the key levels of this table", ("analysis", "options"))
             share = result.results.collapse_probability
-            return Worth(
-                share, "rocking until it overturns", reason="" if share is not None else "no motion could be run"
-            )
+            return Worth(share, "rocking until it overturns", reason="" if share is not None else "no motion could be run")
         verdict = result.results.judged(MotionDemand(context))
         if verdict is None or verdict.ratio is None:
             told = "" if verdict is None else f": {verdict.statement}"
@@ -317,9 +310,7 @@ def nested(context: Context, deck: Deck) -> Context:
     return Context(deck, context.threads, motions=context.motions)
 
 
-def with_value(
-    context: Context, options: Strengthen, key: str, value: float
-) -> tuple[dict[str, Any], dict[str, Any] | None]:
+def with_value(context: Context, options: Strengthen, key: str, value: float) -> tuple[dict[str, Any], dict[str, Any] | None]:
     """The deck's data with a key changed, and the options where the key is one of them."""
     data = plain_data(context)
     if key.startswith("options."):

@@ -27,11 +27,7 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
                 yield partial(_refuse, f'by = "tilt" neglects {what}: take by = "fragility", or leave it out', key)
         if is_spatial(building):
             if "[supports] abutting_wall" in building.special_keys:
-                yield partial(
-                    _refuse,
-                    "limit analysis in space neglects an abutting wall: remove it",
-                    ("supports", "abutting_wall"),
-                )
+                yield partial(_refuse, "limit analysis in space neglects an abutting wall: remove it", ("supports", "abutting_wall"))
             yield partial(refuse_in_space, context, options)
             yield lambda: building.refuse_weightless(building.solids())
             yield lambda: building.friction(building.solids())
@@ -50,9 +46,7 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
     if kinds.load(kinds.ANALYSES[options.by].table).needs_motion or options.fragility or options.assess:
         yield partial(_refuse_still, context)
     if (options.fragility or options.by == "fragility") and motion is not None and not is_set(motion):
-        yield partial(
-            _refuse, "a fragility needs many motions: a [motion] of kind suite, generated or compatible", ("motion",)
-        )
+        yield partial(_refuse, "a fragility needs many motions: a [motion] of kind suite, generated or compatible", ("motion",))
     if building.structure is not None or options.ties:
         yield lambda: tie_alternatives(building, options)
     yield lambda: _refuse_idle(context, options)
@@ -91,13 +85,10 @@ def _refuse_unlimited(options: Strengthen) -> None:
             raise Refused('the weight of a ring beam is for by = "tilt": remove beam_weight', ("analysis", "ties", k))
         if not np.isfinite(tie.greatest):
             raise Refused(
-                f'by = "{options.by}" searches the force by runs: give yield_force, the greatest one considered',
-                ("analysis", "ties", k),
+                f'by = "{options.by}" searches the force by runs: give yield_force, the greatest one considered', ("analysis", "ties", k)
             )
         if tie.start_to is not None or tie.far_to is not None:
-            raise Refused(
-                'a range of places is for by = "tilt"; give one place, or one table for each', ("analysis", "ties", k)
-            )
+            raise Refused('a range of places is for by = "tilt"; give one place, or one table for each', ("analysis", "ties", k))
 
 
 def _refuse_still(context: Context) -> None:

@@ -57,19 +57,21 @@ class SpaceStatics(Statics):
         k = int(np.argmin(values))
         governs = found[k]
         if governs is None:
-            return Worth(
-                np.inf, "none: the contacts restrain the blocks from all sides", bound="exact", by_sense=tuple(values)
-            )
+            return Worth(np.inf, "none: the contacts restrain the blocks from all sides", bound="exact", by_sense=tuple(values))
         slides = dilating_contacts(limit, governs)
         # blocks are counted, as mechanisms of a round structure along several directions differ by their names alone
         moving = len(moving_blocks(limit.assembly, governs)) / len(limit.assembly.mass)
         shape = (("moving blocks", f"{round(SHARES * moving)}"),)
         return Worth(
-            values[k], self._told(limit, governs, self.senses[k]), shape, "upper" if slides else "exact",
-            by_sense=tuple(values), sense=self.senses[k],
+            values[k],
+            self._told(limit, governs, self.senses[k]),
+            shape,
+            "upper" if slides else "exact",
+            by_sense=tuple(values),
+            sense=self.senses[k],
             in_space=(limit.assembly, pose_of(limit.assembly, governs.motion)) if picture else None,
             beside=self._without_dilatancy(limit, found) if picture and slides else None,
-        )  # fmt: skip
+        )
 
     def _without_dilatancy(self, limit: SolidLimit, found: list[Programme | None]) -> float | None:
         """The least design value over the directions [g]; None of large structures, or where no state is certified."""
@@ -155,11 +157,7 @@ class SpaceStatics(Statics):
         found = limit.push(sense)
         if isinstance(found, Falls) or found.gamma < 0.0:
             falls = found if isinstance(found, Falls) else limit.falls()
-            name = (
-                ""
-                if falls is None
-                else limit.assembly.block_names[int(np.linalg.norm(falls.motion[:, :3], axis=1).argmax())]
-            )
+            name = "" if falls is None else limit.assembly.block_names[int(np.linalg.norm(falls.motion[:, :3], axis=1).argmax())]
             raise NoEquilibrium(f"certificate: a motion in which the weights do work, fastest at {name}")
         return found
 
@@ -171,14 +169,19 @@ def refuse_in_space(context: Context, options: Strengthen) -> None:
     """Refused where a deck asks in space for what is known in a plane section alone."""
     wrong: dict[str, tuple[bool, Any]] = {
         "direction: belongs to a plane section; give directions": (options.direction != "both", ("analysis", "direction")),
-        "friction_rule: in space ties are sized for dilatant sliding": (options.friction_rule != "associated", ("analysis", "friction_rule")),
+        "friction_rule: in space ties are sized for dilatant sliding": (
+            options.friction_rule != "associated",
+            ("analysis", "friction_rule"),
+        ),
         "compressive_strength: limit analysis in space neglects crushing": (
-            context.building.material.compressive_strength is not None, ("material", "compressive_strength"),
+            context.building.material.compressive_strength is not None,
+            ("material", "compressive_strength"),
         ),
         "beam_weight: is considered in plane sections; in space add a load that sways": (
-            any(tie.beam_weight for tie in options.ties), ("analysis", "ties"),
+            any(tie.beam_weight for tie in options.ties),
+            ("analysis", "ties"),
         ),
-    }  # fmt: skip
+    }
     for text, (there, key) in wrong.items():
         if there:
             raise Refused(text, key)

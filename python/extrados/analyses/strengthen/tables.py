@@ -22,12 +22,8 @@ class Anchorage(Table):
     plate_width: Length | None = key(None, "width of the anchor plate", gt=0)
     plate_height: Length | None = key(None, "height of the anchor plate", gt=0)
     wall_thickness: Length | None = key(None, "thickness of the wall behind the plate", gt=0)
-    compressive_strength: Stress | None = key(
-        None, "design compressive strength of the masonry under the plate; gives bearing", gt=0
-    )
-    shear_strength: Stress | None = key(
-        None, "design shear strength of the masonry around the plate; gives punching", gt=0
-    )
+    compressive_strength: Stress | None = key(None, "design compressive strength of the masonry under the plate; gives bearing", gt=0)
+    shear_strength: Stress | None = key(None, "design shear strength of the masonry around the plate; gives punching", gt=0)
     bond_length: Length | None = key(None, "length of an injected anchor", gt=0)
     bond_diameter: Length | None = key(None, "diameter of its borehole", gt=0)
     bond_strength: Stress | None = key(None, "design bond strength along the borehole; gives pull-out", gt=0)
@@ -66,10 +62,7 @@ class TieOption(Tie):
         None, "of a bonded FRP or FRCM strip: design force at which it debonds, the greatest force considered", gt=0
     )
     source: str | None = key(
-        None,
-        "of the debonding force: document and formula, or test, that gives it; the report prints it",
-        min_length=3,
-        max_length=300,
+        None, "of the debonding force: document and formula, or test, that gives it; the report prints it", min_length=3, max_length=300
     )
     anchorage: Anchorage | None = key(None, "strengths of bar and anchorage, for their checks")
     beam_weight: Force | None = key(
@@ -123,9 +116,7 @@ class Change(Table):
     )
     start: float | str | None = key(None, "value without the intervention; default that of the deck")
     stop: float | str = key(about='greatest change considered, in the unit of the key or as text such as "40 cm"')
-    count: int = key(
-        9, "number of values from `start` to `stop`, both included, at which the capacity is computed", ge=3, le=200
-    )
+    count: int = key(9, "number of values from `start` to `stop`, both included, at which the capacity is computed", ge=3, le=200)
 
 
 class Weights(Table):
@@ -148,13 +139,13 @@ class Strengthen(LimitAnalysisTable):
     beside: ClassVar = ("supports.abutting_wall", "supports.stiffness")
     starter_structure: ClassVar = "arch"
     starter: ClassVar = {"acceleration": '"0.5 g"'}
-    acceleration: Acceleration | None = key(
-        None, "target: the constant horizontal acceleration that the building is to carry", gt=0
-    )
+    acceleration: Acceleration | None = key(None, "target: the constant horizontal acceleration that the building is to carry", gt=0)
     safety_factor: float | None = key(
-        None, "target: capacity over demand, of limit analysis on the peak of [motion]; by a code its safety index (zeta_E, %NBS / 100)",
-        gt=0, le=100,
-    )  # fmt: skip
+        None,
+        "target: capacity over demand, of limit analysis on the peak of [motion]; by a code its safety index (zeta_E, %NBS / 100)",
+        gt=0,
+        le=100,
+    )
     probability: float | None = key(
         None, 'target: probability of collapse over the motions of [motion]; needs by = "fragility"', gt=0, lt=1
     )
@@ -162,29 +153,19 @@ class Strengthen(LimitAnalysisTable):
         "tilt", "analysis by which the target is measured; with tilt the tie force is found by one linear programme"
     )
     options: dict[str, Any] = key({}, "keys of that analysis, as in its own table")
-    direction: Literal["both", "+x", "-x"] = key(
-        "both", "sense of the load, for limit analysis; beside an abutting wall away from it"
-    )
+    direction: Literal["both", "+x", "-x"] = key("both", "sense of the load, for limit analysis; beside an abutting wall away from it")
     directions: list[Annotated[Angle, Field(ge=-360, le=360)]] = key(
-        [],
-        "of blocks in space: directions in plan of the load, from +x to +y; default 0, 90, 180 and 270",
-        max_length=72,
+        [], "of blocks in space: directions in plan of the load, from +x to +y; default 0, 90, 180 and 270", max_length=72
     )
     ties: list[TieOption] = key([], "ties whose force is sought: alternatives", max_length=50)
     changes: list[Change] = key([], "numbers of the deck whose least change is sought: alternatives", max_length=50)
-    combine: bool = key(
-        True, "also seek the combination of the given ties of least total force, by one linear programme"
-    )
+    combine: bool = key(True, "also seek the combination of the given ties of least total force, by one linear programme")
     weights: Weights = key(Weights(), "weights of the cost by which alternatives are compared")
-    fragility: bool = key(
-        False, "also compute the fragility before and after, of the cheapest intervention; needs a [motion]"
-    )
+    fragility: bool = key(False, "also compute the fragility before and after, of the cheapest intervention; needs a [motion]")
     levels: list[Annotated[float, Field(gt=0, le=100)]] = key(
         [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0], "factors on the motions of these curves", min_length=2, max_length=50
     )
-    assess: bool = key(
-        False, "also assess the building and each strengthened one by every strategy that applies; needs a [motion]"
-    )
+    assess: bool = key(False, "also assess the building and each strengthened one by every strategy that applies; needs a [motion]")
     budget: float = key(20.0, "time limit of each of these assessments, in s", ge=5, le=1e6)
 
     @model_validator(mode="after")

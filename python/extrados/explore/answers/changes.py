@@ -100,11 +100,7 @@ def _clipped(handle: Handle, value: Any) -> Any:
 
 def _range(handle: Handle) -> str:
     """The bounds of a handle in words."""
-    return (
-        f"{handle.least:g} to {handle.most:g} {handle.unit}"
-        if handle.most is not None
-        else f"at least {handle.least:g} {handle.unit}"
-    )
+    return f"{handle.least:g} to {handle.most:g} {handle.unit}" if handle.most is not None else f"at least {handle.least:g} {handle.unit}"
 
 
 def _reached(desk: Desk, handle: Handle, wanted: Any, why: str) -> tuple[Any, str]:

@@ -40,10 +40,14 @@ def hello(desk: Desk, message: Message) -> Iterator[Reply]:
     folder = desk.folder
     yield Reply(
         {
-            "version": VERSION, "presets": folder.presets(), "decks": folder.decks(), "runs": folder.runs(),
-            "folder": str(folder.root), "kinds": {section: list(there) for section, there in kinds.TABLES.items()},
+            "version": VERSION,
+            "presets": folder.presets(),
+            "decks": folder.decks(),
+            "runs": folder.runs(),
+            "folder": str(folder.root),
+            "kinds": {section: list(there) for section, there in kinds.TABLES.items()},
         }
-    )  # fmt: skip
+    )
     kept = message.get("kept")
     if isinstance(kept, dict) and isinstance(kept.get("text"), str):
         drops = kept.get("drops", [])
@@ -55,9 +59,7 @@ def hello(desk: Desk, message: Message) -> Iterator[Reply]:
     elif desk.first is not None:
         yield from open_deck(desk, {"path": desk.first})
     else:
-        yield from open_deck(
-            desk, {"text": desk.first_text, "name": "new-arch.toml" if desk.first_text == NEW_DECK else "deck.toml"}
-        )
+        yield from open_deck(desk, {"text": desk.first_text, "name": "new-arch.toml" if desk.first_text == NEW_DECK else "deck.toml"})
 
 
 def list_folder(desk: Desk, _: Message) -> Iterator[Reply]:
@@ -116,10 +118,7 @@ def drop(desk: Desk, message: Message) -> Iterator[Reply]:
         yield from open_deck(desk, {"text": text, "name": target.name, "dropped": "1"})
     elif sort in (".dxf", ".json"):
         unit = f'unit = "{message["unit"]}"\n' if message.get("unit") in UNITS else ""
-        text = (
-            f'title = "{target.stem}"\n\n[structure]\nkind = "blocks"\nfile = "{target.name}"\n{unit}\n'
-            '[[analysis]]\nkind = "tilt"\n'
-        )
+        text = f'title = "{target.stem}"\n\n[structure]\nkind = "blocks"\nfile = "{target.name}"\n{unit}\n[[analysis]]\nkind = "tilt"\n'
         yield from open_deck(desk, {"text": text, "name": f"{target.stem}.toml", "dropped": target.name})
     else:
         yield from _under(desk, target)
@@ -172,11 +171,8 @@ def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
     # an outline is a little smaller than the arcs that it stands for
     other = np.abs(density - deck.building.material.density) > 1e-3 * deck.building.material.density
     rows = [
-        f"[[structure.block]]\nname = {json.dumps(name)}\npoints = {_thinned(outline)}\n"
-        + f"density = {rho!r}\n" * differs
-        for name, outline, rho, differs in zip(
-            assembly.block_names, assembly.outlines, density.tolist(), other.tolist(), strict=True
-        )
+        f"[[structure.block]]\nname = {json.dumps(name)}\npoints = {_thinned(outline)}\n" + f"density = {rho!r}\n" * differs
+        for name, outline, rho, differs in zip(assembly.block_names, assembly.outlines, density.tolist(), other.tolist(), strict=True)
     ]
     grounded = [j for j in range(len(assembly.a)) if -1 in (assembly.a[j], assembly.b[j])]
     ground = [[round(float(v), 6) for v in (*assembly.p[j], *assembly.q[j])] for j in grounded]

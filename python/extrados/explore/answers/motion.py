@@ -49,9 +49,7 @@ def domain(desk: Desk, message: Message) -> Iterator[Reply]:
     if message.get("pulse") in ("step", "sine"):
         asked = asked.model_copy(update={"pulse": message["pulse"]})
     rocker = building.rocker(asked.form == "linear", soft_base=True)
-    mark = (
-        f"{asked.model_dump_json()} {rocker.body.kind} {rocker.body.parameters.tobytes().hex()} {rocker.start_rotation}"
-    )
+    mark = f"{asked.model_dump_json()} {rocker.body.kind} {rocker.body.parameters.tobytes().hex()} {rocker.start_rotation}"
     known = desk.maps.get(mark)
     if known is not None and known[0]["whole"]:
         words, arrays = known

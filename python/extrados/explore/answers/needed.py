@@ -26,9 +26,7 @@ def needed(desk: Desk, message: Message) -> Iterator[Reply]:
         raise BadMessage(f"expected an acceleration above 0 and up to {MOST:g} g")
     deck = desk.there().deck
     options, _, _ = desk.analysis(LimitAnalysisTable, lambda: None)
-    own = (
-        {} if options is None else options.model_dump(exclude_unset=True, include=set(LimitAnalysisTable.model_fields))
-    )
+    own = {} if options is None else options.model_dump(exclude_unset=True, include=set(LimitAnalysisTable.model_fields))
     asked = {**own, "kind": "strengthen", "acceleration": f"{float(target)!r} g"}
     data = {k: v for k, v in deck.data.items() if k != "analysis"}
     made = make_deck({**data, "analysis": [asked]}, deck.folder)
@@ -40,23 +38,24 @@ def needed(desk: Desk, message: Message) -> Iterator[Reply]:
     assert isinstance(r, Strengthen)
     bound = any(one.bound == "upper" for one in r.interventions)
     ties = data.get("ties", [])
-    yield Reply({
-        "needed": {
-            "target_g": target, "met": r.met_before, "statement": r.statement(), "mechanism": r.mechanism_before,
-            "capacity_g": r.value_before, "bound": bound, "interventions": [_told(one, ties) for one in r.interventions],
+    yield Reply(
+        {
+            "needed": {
+                "target_g": target,
+                "met": r.met_before,
+                "statement": r.statement(),
+                "mechanism": r.mechanism_before,
+                "capacity_g": r.value_before,
+                "bound": bound,
+                "interventions": [_told(one, ties) for one in r.interventions],
+            }
         }
-    })  # fmt: skip
+    )
 
 
 def _told(one: Intervention, ties: list[Any]) -> dict[str, Any]:
     """An intervention in words, and the keys that put it into the deck."""
-    words = {
-        "name": one.name,
-        "met": one.meets_target,
-        "size": size_told(one),
-        "next": one.next_mechanism,
-        "reason": one.reason,
-    }
+    words = {"name": one.name, "met": one.meets_target, "size": size_told(one), "next": one.next_mechanism, "reason": one.reason}
     if not one.meets_target or one.required_size is None:
         return words
     if one.key is not None:
@@ -64,9 +63,12 @@ def _told(one: Intervention, ties: list[Any]) -> dict[str, Any]:
     far = "ground" if "ground" in one.place else "end"
     works = works_in(one)
     tie = {
-        "name": f"strengthening {len(ties) + 1}", "start": one.start_m, "works_in": works,
+        "name": f"strengthening {len(ties) + 1}",
+        "start": one.start_m,
+        "works_in": works,
         **({"hoop": True} if one.kind == "hoop" else {far: one.end_m}),
         **({"via": one.via_m} if one.kind == "chain" else {}),
-        "yield_force": one.required_size * UP, "stiffness": one.stiffness_N_m,
-    }  # fmt: skip
+        "yield_force": one.required_size * UP,
+        "stiffness": one.stiffness_N_m,
+    }
     return words | {"changes": {"ties": [*ties, tie]}}

@@ -79,9 +79,7 @@ def _text(desk: Desk, blocks: list[tuple[str, list[list[float]]]], ground: list[
     structure: Any = made["structure"]
     table = None if fresh else _drawn(desk)
     before: dict[str, list[tuple[int, Any, Any]]] = {}
-    for k, (row, raw) in enumerate(
-        zip((table.block if table else None) or [], structure.get("block", []), strict=False)
-    ):
+    for k, (row, raw) in enumerate(zip((table.block if table else None) or [], structure.get("block", []), strict=False)):
         before.setdefault(row.name or f"block {k + 1}", []).append((k, row.points, raw))
     rows = tomlkit.aot()
     for k, (name, points) in enumerate(blocks):

@@ -120,9 +120,7 @@ def _around(value: float) -> np.ndarray:
 
 def _frame(reply: Reply) -> bytes:
     """A reply without what the file does not show."""
-    arrays = {
-        name: array for name, array in reply.arrays.items() if not name.endswith("velocity") and name != "polygon"
-    }
+    arrays = {name: array for name, array in reply.arrays.items() if not name.endswith("velocity") and name != "polygon"}
     return Reply({"scene": reply.words["scene"]}, arrays).pack()
 
 
@@ -137,9 +135,7 @@ def make_page(grid: Grid, words: dict[str, str] | None = None) -> str:
     page = _PAGE.replace("{title}", html.escape(grid.title)).replace("{style}", style)
     page = page.replace("{sources}", sources).replace("{data}", told)
     if len(page.encode()) > LARGEST:
-        raise Refused(
-            f"the file would have {len(page) / 1e6:.1f} MB, more than {LARGEST / 1e6:g}: a structure of fewer blocks fits"
-        )
+        raise Refused(f"the file would have {len(page) / 1e6:.1f} MB, more than {LARGEST / 1e6:g}: a structure of fewer blocks fits")
     return page
 
 

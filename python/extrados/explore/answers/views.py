@@ -48,17 +48,20 @@ def scene(desk: Desk) -> Reply:
     return _seen(desk, made, handles, made.words, made.arrays)
 
 
-def _loads(
-    loads: list[Any], name: str, assembly: Assembly, anchor: np.ndarray
-) -> tuple[list[dict[str, Any]], list[Handle]]:
+def _loads(loads: list[Any], name: str, assembly: Assembly, anchor: np.ndarray) -> tuple[list[dict[str, Any]], list[Handle]]:
     """Arrows and handles of the loads of the analysis `name`."""
     surfaces = [(row.x, block_under(assembly, row.x)[1] if row.y is None else row.y) for row in loads]
     scale = 0.15 * assembly.size / (max(abs(row.force) for row in loads) or 1.0)
     arrows = [
-        {"at": [x - anchor[0], y - anchor[1]], "force_N": row.force, "horizontal_N": row.horizontal,
-         "end": None if row.x_end is None else row.x_end - anchor[0], "scale": scale}
+        {
+            "at": [x - anchor[0], y - anchor[1]],
+            "force_N": row.force,
+            "horizontal_N": row.horizontal,
+            "end": None if row.x_end is None else row.x_end - anchor[0],
+            "scale": scale,
+        }
         for row, (x, y) in zip(loads, surfaces, strict=True)
-    ]  # fmt: skip
+    ]
     return arrows, list(load_handles(loads, name, surfaces, scale))
 
 
@@ -74,16 +77,13 @@ def _body(desk: Desk, why: str) -> Reply:
     return _seen(desk, None, handles, {"empty": why, "seen": words or None, "gamma": 0.0}, arrays)
 
 
-def _seen(
-    desk: Desk, made: statics.Picture | None, handles: list[Handle], words: dict[str, Any], arrays: dict[str, np.ndarray]
-) -> Reply:  # fmt: skip
+def _seen(desk: Desk, made: statics.Picture | None, handles: list[Handle], words: dict[str, Any], arrays: dict[str, np.ndarray]) -> Reply:
     """The reply that shows a picture, which is now that of the desk; places of handles are told from the anchor [m]."""
     desk.picture, desk.handles = made, {h.name: h for h in handles}
     x, y = desk.anchor.tolist()
     told = [
-        {"name": h.name, "label": h.label, "unit": h.unit, "at": [h.x - x, h.y - y], "value": h.value, "along": h.along}
-        for h in handles
-    ]  # fmt: skip
+        {"name": h.name, "label": h.label, "unit": h.unit, "at": [h.x - x, h.y - y], "value": h.value, "along": h.along} for h in handles
+    ]
     return Reply({"scene": words, "handles": told, "anchor": [x, y], "deck": desk.words()}, arrays)
 
 

@@ -42,18 +42,14 @@ def stone_at(assembly: Assembly, point: np.ndarray, name: str | None, what: str,
     if name is not None:
         if name not in names:
             more = ", ..." if len(names) > 8 else ""
-            raise BadGeometry(
-                f"{what}: there is no stone '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone")
-            )
+            raise BadGeometry(f"{what}: there is no stone '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
         return names.index(name)
     found = stones_at(assembly, point)
     place = f"x = {point[0]:.4g}, y = {point[1]:.4g} m"
     if not found:
         away = np.hypot(*(assembly.centroid - point).T)
         near = names[int(away.argmin())]
-        raise BadGeometry(
-            f"{what}: no stone is at {place}; name it if it is anchored outside of one, '{near}' is near", (*key, end)
-        )
+        raise BadGeometry(f"{what}: no stone is at {place}; name it if it is anchored outside of one, '{near}' is near", (*key, end))
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
         raise BadGeometry(f"{what}: {place} lies between {said}; name the one that it is anchored in", (*key, end))

@@ -121,11 +121,22 @@ def part_of(assembly: Assembly, blocks: list[int]) -> Assembly:
     a, b = number[assembly.a], number[assembly.b]
     kept = np.flatnonzero((a < len(blocks)) & (b < len(blocks)))
     return replace(
-        assembly, outlines=[assembly.outlines[i] for i in blocks], mass=assembly.mass[blocks],
-        centroid=assembly.centroid[blocks], inertia=assembly.inertia[blocks], p=assembly.p[kept], q=assembly.q[kept],
-        a=a[kept], b=b[kept], block_names=[assembly.block_names[i] for i in blocks],
+        assembly,
+        outlines=[assembly.outlines[i] for i in blocks],
+        mass=assembly.mass[blocks],
+        centroid=assembly.centroid[blocks],
+        inertia=assembly.inertia[blocks],
+        p=assembly.p[kept],
+        q=assembly.q[kept],
+        a=a[kept],
+        b=b[kept],
+        block_names=[assembly.block_names[i] for i in blocks],
         joint_names=[assembly.joint_names[j] for j in kept],
-        inward=None if assembly.inward is None else np.asarray(assembly.inward)[kept], chains={}, buttresses=[],
-        fill=None if assembly.fill is None else assembly.fill[blocks], measures={}, groups={},
+        inward=None if assembly.inward is None else np.asarray(assembly.inward)[kept],
+        chains={},
+        buttresses=[],
+        fill=None if assembly.fill is None else assembly.fill[blocks],
+        measures={},
+        groups={},
         materials=[assembly.materials[i] for i in blocks] if assembly.materials else [],
-    )  # fmt: skip
+    )

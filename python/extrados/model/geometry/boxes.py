@@ -48,10 +48,7 @@ def contacts(boxes: Sequence[Box], size: float) -> list[tuple[int, int, np.ndarr
     def touching(line: list[tuple[float, int]], low: float, high: float, axis: int) -> list[tuple[int, float, float]]:
         """Boxes along a line that share some of low..high, and what they share."""
         start = max(0, bisect_right(line, (low, len(boxes))) - 1)
-        shared = [
-            (i, max(low, boxes[i][axis]), min(high, boxes[i][axis + 1]))
-            for _, i in line[start : bisect_left(line, (high, -1))]
-        ]
+        shared = [(i, max(low, boxes[i][axis]), min(high, boxes[i][axis + 1])) for _, i in line[start : bisect_left(line, (high, -1))]]
         return [(i, one, two) for i, one, two in shared if two - one > SAME * size]
 
     found = []

@@ -40,9 +40,8 @@ class Builder:
         return len(self._joints) - 1
 
     def ring(
-        self, name: str, centre: np.ndarray, inner: float, outer: float, embrace: float, voussoirs: int,
-        left: int, right: int,
-    ) -> list[int]:  # fmt: skip
+        self, name: str, centre: np.ndarray, inner: float, outer: float, embrace: float, voussoirs: int, left: int, right: int
+    ) -> list[int]:
         """An arch of sector voussoirs between blocks `left` and `right`; its joints from left to right."""
         delta = embrace / voussoirs
         area, reach, polar = ring_sector(inner, outer, delta)

@@ -57,13 +57,23 @@ def in_order(assembly: Assembly) -> Assembly:
     rank = np.empty(count + 1, dtype=int)
     rank[order], rank[GROUND] = np.arange(count), GROUND
     return replace(
-        assembly, outlines=[assembly.outlines[i] for i in order], mass=assembly.mass[order],
-        centroid=assembly.centroid[order], inertia=assembly.inertia[order], p=assembly.p[joints], q=assembly.q[joints],
-        a=rank[a], b=rank[b], inward=inward, block_names=[assembly.block_names[i] for i in order],
-        joint_names=[assembly.joint_names[j] for j in joints], chains={next(iter(assembly.chains)): list(range(count + 1))},
-        materials=[assembly.materials[i] for i in order] if assembly.materials else [], groups={},
+        assembly,
+        outlines=[assembly.outlines[i] for i in order],
+        mass=assembly.mass[order],
+        centroid=assembly.centroid[order],
+        inertia=assembly.inertia[order],
+        p=assembly.p[joints],
+        q=assembly.q[joints],
+        a=rank[a],
+        b=rank[b],
+        inward=inward,
+        block_names=[assembly.block_names[i] for i in order],
+        joint_names=[assembly.joint_names[j] for j in joints],
+        chains={next(iter(assembly.chains)): list(range(count + 1))},
+        materials=[assembly.materials[i] for i in order] if assembly.materials else [],
+        groups={},
         fill=None if assembly.fill is None else assembly.fill[order],
-    )  # fmt: skip
+    )
 
 
 def _left(p: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -129,9 +139,7 @@ def carried_on(assembly: Assembly, joints: list[int]) -> tuple[Assembly, list[in
     for at, way in ((0, -step), (-1, step)):
         while way != 0.0:
             last = whole[at]
-            block = next(
-                (b for b in assembly.ends[last] if b != GROUND and b not in seen and assembly.mass[b] < heavy), None
-            )
+            block = next((b for b in assembly.ends[last] if b != GROUND and b not in seen and assembly.mass[b] < heavy), None)
             like = [
                 (abs(turn(last, j) / way - 1.0), j)
                 for j in (() if block is None else assembly.bounds[block])

@@ -41,9 +41,7 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     else:
         faults = {AXES[a]: next(k for k, m in meshes.items() if _section(*m, a) is None) for a in (1, 0, 2)}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
-        raise NoView(
-            f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms", ("structure", "file")
-        )
+        raise NoView(f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms", ("structure", "file"))
     blocks, ground, depths = [], [], []
     for key, found in sections.items():
         assert found is not None
@@ -97,9 +95,7 @@ def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise BadGeometry(f"{where}: expected a mesh with vertex and face") from None
     if xyz.ndim != 2 or len(xyz) < 6 or not (np.abs(xyz) <= FARTHEST).all():  # NaN too
-        raise BadGeometry(
-            f"{where}: its mesh has {len(xyz)} vertices, expected those of a solid, of finite numbers within {FARTHEST:g}"
-        )
+        raise BadGeometry(f"{where}: its mesh has {len(xyz)} vertices, expected those of a solid, of finite numbers within {FARTHEST:g}")
     return xyz, faces
 
 

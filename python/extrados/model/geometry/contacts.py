@@ -86,18 +86,12 @@ def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: flo
         gap = np.maximum(np.abs(at_low), np.abs(at_high))
         on = faces & (gap <= tolerance)
         half = 0.5 if middle else 0.0
-        rows.append(
-            _stretches(
-                first, last, e[on], low[on], high[on], half * at_low[on], half * at_high[on], owner[e[on]], other[on]
-            )
-        )
+        rows.append(_stretches(first, last, e[on], low[on], high[on], half * at_low[on], half * at_high[on], owner[e[on]], other[on]))
         apart = np.maximum(-at_low, -at_high)  # the other lies to the right, outside
         for k in np.flatnonzero(faces & (apart > ROUNDING * tolerance) & (gap <= reach)).tolist():
             along = (last[e[k]] - first[e[k]]) / np.hypot(*(last[e[k]] - first[e[k]]))
             place = first[e[k]] + (low[k] if -at_low[k] > -at_high[k] else high[k]) * along
-            gaps.append(
-                Flaw("gap", int(owner[e[k]]), int(other[k]), float(apart[k]), _xy(place), float(high[k] - low[k]))
-            )
+            gaps.append(Flaw("gap", int(owner[e[k]]), int(other[k]), float(apart[k]), _xy(place), float(high[k] - low[k])))
 
     meet(one, first[two], last[two], owner[two], middle=True)
     if len(ground):
@@ -165,9 +159,7 @@ class _Near:
     BadGeometry where outlines of many points lie so close that too much would have to be compared.
     """
 
-    def __init__(
-        self, outlines: list[np.ndarray], start: np.ndarray, first: np.ndarray, last: np.ndarray, reach: float
-    ):
+    def __init__(self, outlines: list[np.ndarray], start: np.ndarray, first: np.ndarray, last: np.ndarray, reach: float):
         self.start, self.size, self.first, self.last = start[:-1], np.diff(start), first, last
         self.grown = 0.5 * reach
         self.low, self.high = np.minimum(first, last) - self.grown, np.maximum(first, last) + self.grown
@@ -193,8 +185,7 @@ class _Near:
         pairs.append(np.stack([one, two]))
         if sum(len(p[0]) for p in pairs) > max(MOST_KEPT, 10 * len(self.first)):
             raise BadGeometry(
-                f"more than {MOST_KEPT:,} pairs of edges of the outlines or the ground run beside each other: much of it "
-                "lies over itself"
+                f"more than {MOST_KEPT:,} pairs of edges of the outlines or the ground run beside each other: much of it lies over itself"
             )
 
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
@@ -262,9 +253,7 @@ def box_pairs(low: np.ndarray, high: np.ndarray, most: int) -> tuple[np.ndarray,
     return tuple(np.concatenate(found, axis=1))
 
 
-def _shared(
-    a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _shared(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Stretch of edges a that opposite edges b share, as distances along a, and where b lies at its ends, positive to
     the left of a. Edges that run the same way share nothing."""
     along = a1 - a0
@@ -345,9 +334,7 @@ def _in_line(face: np.ndarray, more: np.ndarray, slack: float) -> np.ndarray | N
     return together[[first, last, *rest]]
 
 
-def _overlaps(
-    outlines: list[np.ndarray], near: _Near, owner: np.ndarray, one: np.ndarray, two: np.ndarray, rounding: float
-) -> list[Flaw]:
+def _overlaps(outlines: list[np.ndarray], near: _Near, owner: np.ndarray, one: np.ndarray, two: np.ndarray, rounding: float) -> list[Flaw]:
     """Where two blocks lie in each other by more than `rounding`: their edges cross, or one holds a place of the other."""
     first, last = near.first, near.last
     rows: list[np.ndarray] = []  # block i, block j, depth, x, y
@@ -362,9 +349,7 @@ def _overlaps(
         return begin, end
 
     (b0, b1), (a0, a1) = offsets(one, two), offsets(two, one)
-    crossing = np.minimum.reduce([
-        -np.minimum(b0, b1), np.maximum(b0, b1), -np.minimum(a0, a1), np.maximum(a0, a1)
-    ])  # fmt: skip
+    crossing = np.minimum.reduce([-np.minimum(b0, b1), np.maximum(b0, b1), -np.minimum(a0, a1), np.maximum(a0, a1)])
     k = np.flatnonzero(crossing > rounding)
     where = first[two[k]] + (b0[k] / (b0[k] - b1[k]))[:, None] * (last[two[k]] - first[two[k]])
     add(owner[one[k]], owner[two[k]], crossing[k], where)

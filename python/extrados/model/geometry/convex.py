@@ -113,10 +113,7 @@ def convex_parts(polygon: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
             if merging:
                 break
     n = len(polygon)
-    return [
-        (polygon[piece], np.array([(b - a) % n == 1 for a, b in zip(piece, piece[1:] + piece[:1], strict=True)]))
-        for piece in pieces
-    ]
+    return [(polygon[piece], np.array([(b - a) % n == 1 for a, b in zip(piece, piece[1:] + piece[:1], strict=True)])) for piece in pieces]
 
 
 def rounded(polygon: np.ndarray, radius: float, steps: int = 3) -> np.ndarray:
@@ -143,9 +140,9 @@ def rounded(polygon: np.ndarray, radius: float, steps: int = 3) -> np.ndarray:
         sweep = np.pi - 2.0 * angle
         for k in range(steps + 1):
             turn = sweep * k / steps
-            out.append(centre + np.array([
-                np.cos(turn) * first[0] - np.sin(turn) * first[1], np.sin(turn) * first[0] + np.cos(turn) * first[1],
-            ]))  # fmt: skip
+            out.append(
+                centre + np.array([np.cos(turn) * first[0] - np.sin(turn) * first[1], np.sin(turn) * first[0] + np.cos(turn) * first[1]])
+            )
     return np.array(out)
 
 

@@ -23,6 +23,11 @@ def resurveyed(assembly: Assembly, deviation: float, random: np.random.Generator
     shift = np.array([new[1] - old[1] for old, new in zip(before, after, strict=True)])
     turn = np.array([new[2] / old[2] for old, new in zip(before, after, strict=True)])
     return replace(
-        assembly, outlines=outlines, mass=assembly.mass * share, centroid=assembly.centroid + shift,
-        inertia=assembly.inertia * turn, p=moved(assembly.p), q=moved(assembly.q),
-    )  # fmt: skip
+        assembly,
+        outlines=outlines,
+        mass=assembly.mass * share,
+        centroid=assembly.centroid + shift,
+        inertia=assembly.inertia * turn,
+        p=moved(assembly.p),
+        q=moved(assembly.q),
+    )

@@ -80,9 +80,7 @@ def read_json(file: File) -> Drawing:
         if not isinstance(entry, dict) or not isinstance(title, str) or set(entry) - {"name", "points", "density"}:
             raise BadGeometry(f"{name}: blocks[{i}]: expected an object with points and, if wished, name and density")
         density = entry.get("density")
-        if density is not None and (
-            isinstance(density, bool) or not isinstance(density, int | float) or not 0.0 < density < 3e4
-        ):
+        if density is not None and (isinstance(density, bool) or not isinstance(density, int | float) or not 0.0 < density < 3e4):
             raise BadGeometry(f"{name}: block '{title}': density {_shown(density)}, expected kg/m^3 above 0")
         points = numbers(entry.get("points"), 2, f"{name}: block '{title}': points")
         polygons.append(Polygon(title, scale * points, density))

@@ -22,12 +22,31 @@ SAGITTA = 2e-4  # m: how far the chords of an arc may lie from it
 CURVES = {"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "SPLINE", "ELLIPSE", "CIRCLE"}
 #: What a drawing holds beside lines, and what to call it
 LEFT_OUT = {
-    "HATCH": "hatch", "MPOLYGON": "hatch", "TEXT": "text", "MTEXT": "text", "ATTDEF": "text", "ATTRIB": "text",
-    "DIMENSION": "dimension", "ARC_DIMENSION": "dimension", "LEADER": "leader", "MULTILEADER": "leader", "MLEADER": "leader",
-    "POINT": "point", "VIEWPORT": "viewport", "SOLID": "solid fill", "TRACE": "solid fill", "WIPEOUT": "wipeout",
-    "IMAGE": "image", "PDFUNDERLAY": "underlay", "DWFUNDERLAY": "underlay", "DGNUNDERLAY": "underlay",
-    "XLINE": "construction line", "RAY": "construction line", "TOLERANCE": "text", "OLE2FRAME": "embedded object",
-}  # fmt: skip
+    "HATCH": "hatch",
+    "MPOLYGON": "hatch",
+    "TEXT": "text",
+    "MTEXT": "text",
+    "ATTDEF": "text",
+    "ATTRIB": "text",
+    "DIMENSION": "dimension",
+    "ARC_DIMENSION": "dimension",
+    "LEADER": "leader",
+    "MULTILEADER": "leader",
+    "MLEADER": "leader",
+    "POINT": "point",
+    "VIEWPORT": "viewport",
+    "SOLID": "solid fill",
+    "TRACE": "solid fill",
+    "WIPEOUT": "wipeout",
+    "IMAGE": "image",
+    "PDFUNDERLAY": "underlay",
+    "DWFUNDERLAY": "underlay",
+    "DGNUNDERLAY": "underlay",
+    "XLINE": "construction line",
+    "RAY": "construction line",
+    "TOLERANCE": "text",
+    "OLE2FRAME": "embedded object",
+}
 MOST_ENTITIES = 200_000
 MOST_LINES = 200_000
 MOST_VERTICES = 2_000_000  # of all lines, those of arcs and curves by their chords
@@ -69,9 +88,16 @@ def read_dxf(
     name = file.path.name
     try:
         found = read_contained(
-            "extrados.model.geometry.dxf:parse_dxf", file.content, ["ezdxf"], name=name, unit=unit, layers=layers,
-            meaning={layer: asdict(one) for layer, one in (meaning or {}).items()}, join_tolerance=join_tolerance, sagitta=sagitta,
-        )  # fmt: skip
+            "extrados.model.geometry.dxf:parse_dxf",
+            file.content,
+            ["ezdxf"],
+            name=name,
+            unit=unit,
+            layers=layers,
+            meaning={layer: asdict(one) for layer, one in (meaning or {}).items()},
+            join_tolerance=join_tolerance,
+            sagitta=sagitta,
+        )
     except Unreadable as error:
         raise BadGeometry(str(error) if error.at else f"{name}: {error}", error.at or ("structure",)) from None
     return Drawing(**{**found, "blocks": [Polygon(**block) for block in found["blocks"]]})
@@ -127,9 +153,7 @@ class _Hiding:
     it refers to another drawing."""
 
     def __init__(self, document: Any, named: set[str]):
-        self.elsewhere = {
-            block.name.lower() for block in document.blocks if block.block.is_xref or block.block.is_xref_overlay
-        }
+        self.elsewhere = {block.name.lower() for block in document.blocks if block.block.is_xref or block.block.is_xref_overlay}
         self.names = {layer.dxf.name.upper(): layer.dxf.name for layer in document.layers}
         self.layers = {
             layer.dxf.name.upper(): "frozen" if layer.is_frozen() else "off"
@@ -212,15 +236,11 @@ def _entities(document: Any, name: str, hides: _Hiding) -> Iterator[tuple[Any, s
         if entity.dxf.name not in document.blocks:
             raise BadGeometry(f"{name}: layer '{layer}': a reference to block '{entity.dxf.name}', which is not there")
         try:
-            placed = [
-                list(one.virtual_entities()) for one in (entity.multi_insert() if entity.mcount > 1 else (entity,))
-            ]
+            placed = [list(one.virtual_entities()) for one in (entity.multi_insert() if entity.mcount > 1 else (entity,))]
         except MemoryError:
             raise
         except Exception as error:  # whatever ezdxf raises, at an axis of no length or a dimension without its parts
-            raise BadGeometry(
-                f"{name}: layer '{layer}': block '{entity.dxf.name}' cannot be put in its place: {error}"
-            ) from None
+            raise BadGeometry(f"{name}: layer '{layer}': block '{entity.dxf.name}' cannot be put in its place: {error}") from None
         for parts in placed:
             for part in parts:
                 yield from within(part, layer if _layer(part) == "0" else _layer(part), depth + 1)
@@ -376,9 +396,7 @@ def _segments(lines: list[np.ndarray]) -> np.ndarray:
     return np.concatenate(pieces) if pieces else np.empty((0, 4))
 
 
-def _drawing(
-    found: _Read, known: Mapping[str, Layer], name: str, scale: float, tolerance: float, stones: bool
-) -> Drawing:
+def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, tolerance: float, stones: bool) -> Drawing:
     """Blocks with names, joined where they are loose lines. stones: whether there must be any."""
     notes, loose = [], []
     outlines = [(layer, handle, scale * points) for layer, handle, points in found.closed]
@@ -422,9 +440,7 @@ def _drawing(
         told = ", ".join(f"{n} of {what}" for what, n in sorted(found.left_out.items()))
         notes.append(f"ignored, since they are no lines: {told}")
     if found.other_layers:
-        notes.append(
-            f"ignored layers: {', '.join(f'{layer} ({n})' for layer, n in sorted(found.other_layers.items()))}"
-        )
+        notes.append(f"ignored layers: {', '.join(f'{layer} ({n})' for layer, n in sorted(found.other_layers.items()))}")
     polygons, numbers = [], itertools.count(1)
     taken: Counter[str] = Counter()
     for layer, handle, points in outlines:
@@ -432,11 +448,7 @@ def _drawing(
         taken[title] += 1
         if taken[title] > 1:  # entities of a block that is referred to several times have one handle
             title = f"{title} ({taken[title]})"
-        polygons.append(
-            Polygon(
-                title, points, layer=layer, material=known[layer.upper()].material if layer.upper() in known else None
-            )
-        )
+        polygons.append(Polygon(title, points, layer=layer, material=known[layer.upper()].material if layer.upper() in known else None))
     ground = scale * _segments(found.ground) if found.ground else None
     marks = {layer: scale * _segments(lines) for layer, lines in found.marks.items()}
     return Drawing(polygons, ground, marks, tuple(f"{name}: {note}" for note in notes), tuple(loose))

@@ -116,14 +116,10 @@ def passive_left_out(earth: Earth | None) -> list[str]:
     """The warning of strategies that know the weight of fill, but not what it resists."""
     if earth is None or earth.passive <= 0.0:
         return []
-    return [
-        "the fill weighs and sways with the stones; its passive pressure, which limit analysis includes, is neglected"
-    ]
+    return ["the fill weighs and sways with the stones; its passive pressure, which limit analysis includes, is neglected"]
 
 
-def _columns(
-    block: np.ndarray, count: int, x0: np.ndarray, x1: np.ndarray, y0: np.ndarray, y1: np.ndarray, top: np.ndarray
-) -> np.ndarray:
+def _columns(block: np.ndarray, count: int, x0: np.ndarray, x1: np.ndarray, y0: np.ndarray, y1: np.ndarray, top: np.ndarray) -> np.ndarray:
     """Area and centroid (count, 3) of the columns from sloping feet up to level tops, those on one block together."""
     width, h0, h1 = x1 - x0, np.maximum(top - y0, 0.0), np.maximum(top - y1, 0.0)
     area = 0.5 * width * (h0 + h1)

@@ -91,9 +91,7 @@ class Inspection:
             more = f" and {len(self.loose) - 5} more" if len(self.loose) > 5 else ""
             gaps = [f for f in self.of("open") if f.first in self.loose or f.second in self.loose]
             near = f"; {self._told(gaps)}; {self._cure(gaps)}" if gaps else ""
-            found.append(
-                f"no joint leads from the ground to block{'s' if len(self.loose) > 1 else ''} {names}{more}{near}"
-            )
+            found.append(f"no joint leads from the ground to block{'s' if len(self.loose) > 1 else ''} {names}{more}{near}")
         return found
 
     def closing(self) -> float | None:
@@ -187,9 +185,7 @@ def inspect(
         found = nearest(outlines, segments, block)
         if found is not None and found.depth > tolerance:
             flaws.append(found)
-    return Inspection(
-        names, outlines, drawing, segments, tolerance, contacts, flaws, loose, _hanging(outlines, contacts, tolerance)
-    )
+    return Inspection(names, outlines, drawing, segments, tolerance, contacts, flaws, loose, _hanging(outlines, contacts, tolerance))
 
 
 def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarray:

@@ -69,8 +69,9 @@ def _knotted(lines: np.ndarray, weight: np.ndarray, tolerance: float) -> tuple[n
     low, high = np.minimum(begin, end) - tolerance, np.maximum(begin, end) + tolerance
     i, j = box_pairs(low, high, max(MOST_PAIRS, MOST_NEIGHBOURS * len(begin)))
     cuts: list[tuple[np.ndarray, np.ndarray]] = [
-        (np.arange(len(begin)), np.zeros(len(begin))), (np.arange(len(begin)), np.ones(len(begin)))
-    ]  # fmt: skip
+        (np.arange(len(begin)), np.zeros(len(begin))),
+        (np.arange(len(begin)), np.ones(len(begin))),
+    ]
     # Ends that stand on another line cut it at their foot.
     for one, two in ((i, j), (j, i)):
         for point in (begin, end):
@@ -122,8 +123,7 @@ def _pruned(ends: np.ndarray, edges: np.ndarray, tolerance: float, near: float) 
     free = np.flatnonzero(degree == 1)
     gaps = _gaps(ends, edges, free, near)
     loose = [
-        LooseEnd((x, y), gap if tolerance < gap <= near else None)
-        for (x, y), gap in zip(ends[free].tolist(), gaps.tolist(), strict=True)
+        LooseEnd((x, y), gap if tolerance < gap <= near else None) for (x, y), gap in zip(ends[free].tolist(), gaps.tolist(), strict=True)
     ]
     kept = np.ones(len(edges), dtype=bool)
     at = np.argsort(edges.ravel(), kind="stable") // 2  # the edges at each point, point by point

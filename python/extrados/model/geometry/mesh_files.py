@@ -71,9 +71,7 @@ def parse_mesh_file(path: str) -> dict[str, Any]:
         "points": np.asarray(mesh.points, dtype=float),
         "cells": [(cells.type, _numbers(cells.data)) for cells in mesh.cells],
         "point_sets": {name: _numbers(points) for name, points in mesh.point_sets.items()},
-        "cell_sets": {
-            name: [None if rows is None else _numbers(rows) for rows in sets] for name, sets in mesh.cell_sets.items()
-        },
+        "cell_sets": {name: [None if rows is None else _numbers(rows) for rows in sets] for name, sets in mesh.cell_sets.items()},
         "cell_data": {name: [_numbers(values) for values in blocks] for name, blocks in mesh.cell_data.items()},
         "field_data": {name: _numbers(values) for name, values in mesh.field_data.items()},
     }

@@ -17,21 +17,49 @@ from extrados.schema.table import Table, key
 # Sizes inferred by fitting published results, or guessed from public facts; never the authors' own.
 AISLED_PRESETS = {
     "vezelay-like": {
-        "radius": 4.8, "thickness": 0.6, "embrace": 150.0, "voussoirs": 20, "springing": 12.5, "pier_width": 1.9,
-        "aisle_thickness": 0.45, "aisle_embrace": 150.0, "aisle_voussoirs": 14, "aisle_springing": 6.0,
-        "buttress_width": 1.8, "buttress_top": 8.5, "half_width": 12.5,
+        "radius": 4.8,
+        "thickness": 0.6,
+        "embrace": 150.0,
+        "voussoirs": 20,
+        "springing": 12.5,
+        "pier_width": 1.9,
+        "aisle_thickness": 0.45,
+        "aisle_embrace": 150.0,
+        "aisle_voussoirs": 14,
+        "aisle_springing": 6.0,
+        "buttress_width": 1.8,
+        "buttress_top": 8.5,
+        "half_width": 12.5,
     },
     "colombier-like": {
-        "radius": 2.9, "thickness": 0.4, "embrace": 150.0, "voussoirs": 20, "springing": 7.6, "pier_width": 1.1,
-        "aisle_thickness": 0.35, "aisle_embrace": 150.0, "aisle_voussoirs": 14, "aisle_springing": 6.6,
-        "buttress_width": 1.7, "half_width": 8.2,
+        "radius": 2.9,
+        "thickness": 0.4,
+        "embrace": 150.0,
+        "voussoirs": 20,
+        "springing": 7.6,
+        "pier_width": 1.1,
+        "aisle_thickness": 0.35,
+        "aisle_embrace": 150.0,
+        "aisle_voussoirs": 14,
+        "aisle_springing": 6.6,
+        "buttress_width": 1.7,
+        "half_width": 8.2,
     },
     "colombier-tall": {
-        "radius": 2.3, "thickness": 0.45, "embrace": 135.0, "voussoirs": 20, "springing": 6.1, "pier_width": 1.05,
-        "aisle_thickness": 0.36, "aisle_embrace": 135.0, "aisle_voussoirs": 14, "aisle_springing": 6.0,
-        "buttress_width": 1.7, "half_width": 8.9,
+        "radius": 2.3,
+        "thickness": 0.45,
+        "embrace": 135.0,
+        "voussoirs": 20,
+        "springing": 6.1,
+        "pier_width": 1.05,
+        "aisle_thickness": 0.36,
+        "aisle_embrace": 135.0,
+        "aisle_voussoirs": 14,
+        "aisle_springing": 6.0,
+        "buttress_width": 1.7,
+        "half_width": 8.9,
     },
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -130,9 +158,7 @@ def make_church(
             measures[f"{word}_aisle_span_m"] = aisle.span
     levels = {name: fill_level if name == "nave" else aisle_fill_level for name in chains if "flyer" not in name}
     if any(level is not None for level in levels.values()):
-        fill = fill_loads(
-            assembly, [(chains[n], level) for n, level in levels.items() if level is not None], fill_density
-        )
+        fill = fill_loads(assembly, [(chains[n], level) for n, level in levels.items() if level is not None], fill_density)
         return replace(assembly, fill=fill, measures=measures)
     return replace(assembly, measures=measures)
 
@@ -163,17 +189,13 @@ def _aisle(
     builder.joint(f"{word} buttress base", outline[0], outline[1], buttress, GROUND, side)
     chains = {f"{word} aisle": chain}
     if aisle.flyer is not None:
-        chains[f"{word} flyer"] = _flyer(
-            builder, f"{word} flyer", side, aisle.span, aisle.flyer, pier, buttress, back, pier_top, top
-        )
+        chains[f"{word} flyer"] = _flyer(builder, f"{word} flyer", side, aisle.span, aisle.flyer, pier, buttress, back, pier_top, top)
     if aisle.added is not None:
         chains[f"{word} prop"], buttress = _prop(builder, word, side, aisle.added, buttress, rear, top)
     return chains, outside, buttress
 
 
-def _prop(
-    builder: Builder, word: str, side: int, added: Added, buttress: int, rear: float, top: float
-) -> tuple[list[int], int]:
+def _prop(builder: Builder, word: str, side: int, added: Added, buttress: int, rear: float, top: float) -> tuple[list[int], int]:
     """The flyer and the block of an added buttress, beyond the rear face of the outer one."""
     face = rear + side * added.gap
     outer = face + side * added.width
@@ -185,9 +207,8 @@ def _prop(
 
 
 def _flyer(
-    builder: Builder, word: str, side: int, span: float, flyer: Flyer, pier: int, buttress: int,
-    back: float, pier_top: float, top: float,
-) -> list[int]:  # fmt: skip
+    builder: Builder, word: str, side: int, span: float, flyer: Flyer, pier: int, buttress: int, back: float, pier_top: float, top: float
+) -> list[int]:
     """Voussoirs with radial joints between vertical end joints at the two faces; joints from left to right."""
     head, foot = np.array([0.0, flyer.head]), np.array([span, flyer.foot])  # u outward from the pier
     chord = foot - head
@@ -206,9 +227,7 @@ def _flyer(
 
     for what, u, limit in (("pier", 0.0, pier_top), ("buttress", span, top)):
         if at(outer, u) > limit + 1e-9 * outer:
-            raise BadGeometry(
-                f"{word}: its extrados meets the {what} at {at(outer, u):.4g} m, above the top at {limit:.4g} m"
-            )
+            raise BadGeometry(f"{word}: its extrados meets the {what} at {at(outer, u):.4g} m, above the top at {limit:.4g} m")
     start = np.arctan2(flyer.head - centre[1], -centre[0])
     end = np.arctan2(flyer.foot - centre[1], span - centre[0])
     angle = np.linspace(start, end, flyer.voussoirs + 1)[1:-1]
@@ -219,9 +238,7 @@ def _flyer(
         np.array([span, at(outer, span)]),
     ]
     if np.any(np.diff([point[0] for point in q]) <= 0.0):
-        raise BadGeometry(
-            f"{word}: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer"
-        )
+        raise BadGeometry(f"{word}: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer")
 
     def place(points: np.ndarray) -> np.ndarray:
         return np.column_stack([back + side * points[:, 0], points[:, 1]])
@@ -232,17 +249,13 @@ def _flyer(
 
     blocks = [
         builder.block(
-            f"{word} voussoir {i + 1}",
-            place(np.concatenate([arc(flyer.radius, p[i], p[i + 1]), arc(outer, q[i], q[i + 1])[::-1]])),
+            f"{word} voussoir {i + 1}", place(np.concatenate([arc(flyer.radius, p[i], p[i + 1]), arc(outer, q[i], q[i + 1])[::-1]]))
         )
         for i in range(flyer.voussoirs)
     ]
     ends = [pier, *blocks, buttress]
     pp, qq = place(np.array(p)), place(np.array(q))
-    joints = [
-        builder.joint(f"{word} joint {j}", pp[j], qq[j], ends[j + 1], ends[j], -side)
-        for j in range(flyer.voussoirs + 1)
-    ]
+    joints = [builder.joint(f"{word} joint {j}", pp[j], qq[j], ends[j + 1], ends[j], -side) for j in range(flyer.voussoirs + 1)]
     return joints if side > 0 else joints[::-1]
 
 
@@ -311,13 +324,9 @@ class AisledVault(PresetStructure):
     aisle_voussoirs: int = key(14, "number of voussoirs of each aisle vault", ge=4, le=5000)
     aisle_springing: Length | None = key(None, "height of the aisle vaults' centres above the ground", gt=0)
     aisle_span: Length | None = key(None, "clear span of the aisles; or give half_width", gt=0)
-    half_width: Length | None = key(
-        None, "from the axis to the outer face of the buttresses; the aisles take the rest", gt=0
-    )
+    half_width: Length | None = key(None, "from the axis to the outer face of the buttresses; the aisles take the rest", gt=0)
     buttress_width: Length | None = key(None, "width of the outer buttresses", gt=0)
-    buttress_top: Length | None = key(
-        None, "height of the outer buttresses; default the extrados of the aisle's springing", gt=0
-    )
+    buttress_top: Length | None = key(None, "height of the outer buttresses; default the extrados of the aisle's springing", gt=0)
     flyer: FlyerTable | None = key(None, "flying buttresses over the aisles")
     added: AddedTable | None = key(None, "buttresses added on both sides", source="thesis Fig. 3-8")
     right: RightSide | None = key(None, "values that differ on the right-hand side")
@@ -344,9 +353,21 @@ class AisledVault(PresetStructure):
             if self.right is None or self.right.aisle is not False:
                 right = self._side(self.right)
         return make_church(
-            self.radius, self.thickness, self.embrace, self.voussoirs, self.springing, self.pier_width, left, right,
-            self.pier_top, self.fill_level, self.aisle_fill_level, self.fill_density, density, self.depth,
-        )  # fmt: skip
+            self.radius,
+            self.thickness,
+            self.embrace,
+            self.voussoirs,
+            self.springing,
+            self.pier_width,
+            left,
+            right,
+            self.pier_top,
+            self.fill_level,
+            self.aisle_fill_level,
+            self.fill_density,
+            density,
+            self.depth,
+        )
 
     def _side(self, side: RightSide | None) -> Aisle:
         """The aisle of a side; `side` holds what differs from the table's own keys."""
@@ -360,7 +381,13 @@ class AisledVault(PresetStructure):
             span = self.half_width - (self.radius - 0.5 * self.thickness) - self.pier_width - width
         flyer, added = value("flyer"), value("added")
         return Aisle(
-            span, value("aisle_thickness"), self.aisle_embrace, self.aisle_voussoirs, value("aisle_springing"), width,
-            value("buttress_top"), None if flyer is None else Flyer(**flyer.model_dump()),
+            span,
+            value("aisle_thickness"),
+            self.aisle_embrace,
+            self.aisle_voussoirs,
+            value("aisle_springing"),
+            width,
+            value("buttress_top"),
+            None if flyer is None else Flyer(**flyer.model_dump()),
             None if added is None else Added(added.gap, added.width, added.top, Flyer(**added.flyer.model_dump())),
-        )  # fmt: skip
+        )

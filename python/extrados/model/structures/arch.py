@@ -43,14 +43,7 @@ class ArchAssembly(Assembly):
         return self.q
 
 
-def make_arch(
-    radius: float,
-    thickness: float,
-    embrace: float,
-    voussoirs: int,
-    density: float = 2000.0,
-    depth: float = 1.0,
-) -> ArchAssembly:
+def make_arch(radius: float, thickness: float, embrace: float, voussoirs: int, density: float = 2000.0, depth: float = 1.0) -> ArchAssembly:
     """Arch of equal voussoirs with radial joints; embrace in degrees, lengths in m, density in kg/m^3."""
     if not (radius > 0.0 and 0.0 < thickness < 2.0 * radius and 0.0 < embrace <= 360.0 and voussoirs >= 1):
         raise ValueError(
@@ -98,17 +91,12 @@ class Arch(Structure):
     thickness: Length = key(about="thickness of the ring, t_A", gt=0, le=1e4)
     embrace: Angle = key(about="angle of embrace, beta_A, from springing to springing", ge=20, le=270)
     voussoirs: int = key(about="number of voussoirs, n_A; they set where hinges can form", ge=4, le=5000)
-    thickness_factor: float = key(
-        1.0, "effective over real thickness; 0.8 for worn corners", source="thesis 5.3.3", gt=0, le=1
-    )
+    thickness_factor: float = key(1.0, "effective over real thickness; 0.8 for worn corners", source="thesis 5.3.3", gt=0, le=1)
     depth: Length = key(1.0, "depth out of plane", gt=0)
     skew: Angle = key(
-        0.0, "in space: angle in plan of its faces to the square section; the coursing joints stay along the springings",
-        gt=-75, lt=75,
-    )  # fmt: skip
-    stones_across: int = key(
-        1, "in space: stones of a course across the depth, set off by half in every other course", ge=1, le=200
+        0.0, "in space: angle in plan of its faces to the square section; the coursing joints stay along the springings", gt=-75, lt=75
     )
+    stones_across: int = key(1, "in space: stones of a course across the depth, set off by half in every other course", ge=1, le=200)
 
     @model_validator(mode="after")
     def _plausible(self) -> "Arch":
@@ -123,6 +111,4 @@ class Arch(Structure):
 
     def section(self, density: float) -> ArchAssembly:
         """The ring of voussoirs in the plane."""
-        return make_arch(
-            self.radius, self.thickness * self.thickness_factor, self.embrace, self.voussoirs, density, self.depth
-        )
+        return make_arch(self.radius, self.thickness * self.thickness_factor, self.embrace, self.voussoirs, density, self.depth)

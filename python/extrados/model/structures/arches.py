@@ -30,9 +30,7 @@ def _arch(inner: list[np.ndarray], outer: list[np.ndarray], density: float, dept
     ends = [GROUND, *range(n), GROUND]
     joints = [builder.joint(f"joint {j}", p[j], q[j], ends[j + 1], ends[j], -1) for j in range(n + 1)]
     rise = float(max(face[:, 1].max() for face in inner))
-    return builder.assembly(
-        chains={"arch": joints}, measures={"clear_span_m": float(p[-1, 0] - p[0, 0]), "rise_m": rise}
-    )
+    return builder.assembly(chains={"arch": joints}, measures={"clear_span_m": float(p[-1, 0] - p[0, 0]), "rise_m": rise})
 
 
 def make_pointed_arch(
@@ -59,12 +57,7 @@ def make_pointed_arch(
             angle = np.linspace(start, last if i == half - 1 else end, FINE)
             faces.append(np.column_stack([away - r * np.cos(angle), r * np.sin(angle)]))
     mirror = np.array([-1.0, 1.0])
-    return _arch(
-        inner + [(f * mirror)[::-1] for f in inner[::-1]],
-        outer + [(f * mirror)[::-1] for f in outer[::-1]],
-        density,
-        depth,
-    )
+    return _arch(inner + [(f * mirror)[::-1] for f in inner[::-1]], outer + [(f * mirror)[::-1] for f in outer[::-1]], density, depth)
 
 
 def make_elliptical_arch(
@@ -95,12 +88,7 @@ def make_elliptical_arch(
 class PointedArch(Structure):
     """Pointed arch of two circular arcs on rigid level springings; the crown joint is vertical."""
 
-    starter: ClassVar = {
-        "span": "6.0",
-        "radius": "6.0",
-        "thickness": "0.5",
-        "voussoirs": "24",
-    }
+    starter: ClassVar = {"span": "6.0", "radius": "6.0", "thickness": "0.5", "voussoirs": "24"}
     word: ClassVar = "pointed arch"
     kind: Literal["pointed-arch"]
     span: Length = key(about="clear span", gt=0)
@@ -116,12 +104,7 @@ class PointedArch(Structure):
 class EllipticalArch(Structure):
     """Arch on half an ellipse; ring of constant thickness, joints normal to the intrados, level springings."""
 
-    starter: ClassVar = {
-        "span": "8.0",
-        "rise": "3.0",
-        "thickness": "0.6",
-        "voussoirs": "24",
-    }
+    starter: ClassVar = {"span": "8.0", "rise": "3.0", "thickness": "0.6", "voussoirs": "24"}
     word: ClassVar = "elliptical arch"
     kind: Literal["elliptical-arch"]
     span: Length = key(about="clear span", gt=0)

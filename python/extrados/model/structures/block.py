@@ -58,14 +58,16 @@ def monolith(assembly: Assembly) -> BlockAssembly:
     (mass,), (centre,), (inertia,) = together(assembly.mass, assembly.centroid, assembly.inertia, one, 1)
     vertices = np.concatenate(assembly.outlines)
     ground, top = vertices[:, 1].min(), vertices[:, 1].max()
-    base, head = (
-        vertices[np.isclose(vertices[:, 1], y, atol=1e-9 * (top - ground)), 0] - centre[0] for y in (ground, top)
-    )
+    base, head = (vertices[np.isclose(vertices[:, 1], y, atol=1e-9 * (top - ground)), 0] - centre[0] for y in (ground, top))
     height = float(top - ground)
     made = make_block(
-        depth=assembly.depth, mass=float(mass), inertia=float(inertia), centre_height=float(centre[1] - ground),
-        toe_right=float(base.max()), toe_left=float(-base.min()),
-    )  # fmt: skip
+        depth=assembly.depth,
+        mass=float(mass),
+        inertia=float(inertia),
+        centre_height=float(centre[1] - ground),
+        toe_right=float(base.max()),
+        toe_left=float(-base.min()),
+    )
     outline = np.array([[base.min(), 0.0], [base.max(), 0.0], [head.max(), height], [head.min(), height]])
     return replace(made, outlines=[outline])
 
@@ -92,8 +94,7 @@ def make_block(
         mass = density * width * height * depth
         if not mass > 0.0:
             raise NoView(
-                "the block has no weight, by which blocks stand, rock and overturn: give a density above zero",
-                ("material", "density"),
+                "the block has no weight, by which blocks stand, rock and overturn: give a density above zero", ("material", "density")
             )
         inertia = mass * (width**2 + height**2) / 12.0
         centre_height, toe_right, toe_left = 0.5 * height, 0.5 * width, 0.5 * width
@@ -149,9 +150,7 @@ class Block(Structure):
     toe_right: Length | None = key(None, "horizontal distance of the right toe from the centre of mass", gt=0)
     toe_left: Length | None = key(None, "the same of the left toe; default as the right one", gt=0)
     head_mass: Mass = key(
-        0.0,
-        "of a pier with a free head: mass that moves with the middle of its head and rotates freely on it; of a rectangle",
-        ge=0,
+        0.0, "of a pier with a free head: mass that moves with the middle of its head and rotates freely on it; of a rectangle", ge=0
     )
     base_slope: Angle = key(0.0, "slope of the ground below the block, up to the right", gt=-60, lt=60)
 
@@ -160,9 +159,7 @@ class Block(Structure):
         body = [name for name in _BODY if getattr(self, name) is not None]
         if self.width is not None or self.height is not None:
             if body:
-                raise ValueError(
-                    f"width and height describe a rectangle, {', '.join(body)} another body: give one of the two"
-                )
+                raise ValueError(f"width and height describe a rectangle, {', '.join(body)} another body: give one of the two")
             if self.width is None or self.height is None:
                 raise ValueError("a rectangle needs width and height")
         elif missing := [name for name in _BODY[:-1] if getattr(self, name) is None]:
@@ -173,8 +170,5 @@ class Block(Structure):
 
     def assembly(self, density: float, folder: Path) -> BlockAssembly:
         return make_block(
-            density=density,
-            head_mass=self.head_mass,
-            slope=float(np.radians(self.base_slope)),
-            **self.model_dump(include=SIZES),
+            density=density, head_mass=self.head_mass, slope=float(np.radians(self.base_slope)), **self.model_dump(include=SIZES)
         )

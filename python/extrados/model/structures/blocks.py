@@ -31,11 +31,7 @@ MARKS = 0.01  # m: how far a line that marks joints may lie from their middles
 
 
 def make_blocks(
-    polygons: list[Polygon],
-    ground: np.ndarray | None,
-    density: float = 2000.0,
-    depth: float = 1.0,
-    tolerance: float = 1e-4,
+    polygons: list[Polygon], ground: np.ndarray | None, density: float = 2000.0, depth: float = 1.0, tolerance: float = 1e-4
 ) -> Assembly:
     """Blocks whose shared edges are the joints, with the chains found among them. ground: segments (k, 4) [m], or None for the lowest level."""
     return assemble(inspect(Drawing(polygons), ground, tolerance), density, depth)
@@ -47,9 +43,7 @@ def assemble(inspection: Inspection, density: float, depth: float) -> Assembly:
     names, contacts, polygons = inspection.names, inspection.contacts, inspection.drawing.blocks
     area, centroid, polar = areas(inspection)
     rho = np.array([density if p.density is None else p.density for p in polygons]) * depth
-    joint_names = [
-        f"{names[a]} on {'the ground' if b < 0 else names[b]}" for a, b in zip(contacts.a, contacts.b, strict=True)
-    ]
+    joint_names = [f"{names[a]} on {'the ground' if b < 0 else names[b]}" for a, b in zip(contacts.a, contacts.b, strict=True)]
     several = {name for name, count in Counter(joint_names).items() if count > 1}
     seen: Counter[str] = Counter()
     for j, name in enumerate(joint_names):
@@ -122,9 +116,9 @@ class LayerTable(Table):
     name: str = key(about="name of the layer, whatever its case", max_length=255)
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
-        'stones; lines of the ground, as those of GROUND are; lines drawn along joints, which [[joints.types]] may then name by '
+        "stones; lines of the ground, as those of GROUND are; lines drawn along joints, which [[joints.types]] may then name by "
         "this layer; or nothing to read",
-    )  # fmt: skip
+    )
     material: str | None = key(None, "a name of [materials], for the stones of this layer")
 
     @model_validator(mode="after")
@@ -141,9 +135,7 @@ class Blocks(Structure):
     word: ClassVar = "assembly of blocks"
     kind: Literal["blocks"]
     file: str | None = key(
-        None,
-        "JSON, COMPAS JSON or DXF file with the blocks, or solids as OBJ, STL or COMPAS JSON, beside the deck",
-        max_length=500,
+        None, "JSON, COMPAS JSON or DXF file with the blocks, or solids as OBJ, STL or COMPAS JSON, beside the deck", max_length=500
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
         None, "unit of a file that does not say (DXF without $INSUNITS, COMPAS, OBJ, STL)"
@@ -152,29 +144,32 @@ class Blocks(Structure):
         None, "axis of a file of solids that points up; default z. With y the x axis stays and the file's z becomes -y"
     )
     layers: list[str] | None = key(None, "layers of the drawing to read as stones; default all", max_length=200)
-    layer: list[LayerTable] = key(
-        [], "layers of the drawing with a material or another role, [[structure.layer]]", max_length=200
-    )
-    join_tolerance: Length = key(
-        1e-3, "ends of loose lines and arcs of a drawing nearer than this are one point", gt=0, le=0.1
-    )
+    layer: list[LayerTable] = key([], "layers of the drawing with a material or another role, [[structure.layer]]", max_length=200)
+    join_tolerance: Length = key(1e-3, "ends of loose lines and arcs of a drawing nearer than this are one point", gt=0, le=0.1)
     origin: Annotated[list[Length], Field(min_length=2, max_length=2)] | Literal["lower-left"] | None = key(
         None, '[x, y] of the file that becomes 0, 0, or "lower-left" of all blocks: for georeferenced surveys'
     )
     block: list[BlockTable] | None = key(None, "the blocks, if no file is given", max_length=20000)
     ground: list[list[Length]] | None = key(
-        None, "segments [x1, y1, x2, y2] that support the structure, in the coordinates of the blocks; default the ground of the "
-        "file, or else the lowest level", max_length=2000,
-    )  # fmt: skip
+        None,
+        "segments [x1, y1, x2, y2] that support the structure, in the coordinates of the blocks; default the ground of the "
+        "file, or else the lowest level",
+        max_length=2000,
+    )
     foundation_levels: list[Length] | None = key(
-        None, "heights, in the coordinates of the blocks, at which every level sole without a stone below is a support: "
-        "foundations at different levels", min_length=1, max_length=100,
-    )  # fmt: skip
+        None,
+        "heights, in the coordinates of the blocks, at which every level sole without a stone below is a support: "
+        "foundations at different levels",
+        min_length=1,
+        max_length=100,
+    )
     contact_tolerance: Length = key(
-        1e-4, "faces nearer than this touch, overlaps less deep are let pass, contacts of solids that are narrower carry no force; "
+        1e-4,
+        "faces nearer than this touch, overlaps less deep are let pass, contacts of solids that are narrower carry no force; "
         "`check` says which tolerance closes which gap; the default of solids is at most a ten-thousandth of their size",
-        gt=0, le=0.1,
-    )  # fmt: skip
+        gt=0,
+        le=0.1,
+    )
     depth: Length | None = key(None, "depth out of plane; default that of the file, or 1 m", gt=0)
     fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level over the highest block")
     surfacing: Surfacing | None = key(None, "road or ballast on the fill")
@@ -201,10 +196,7 @@ class Blocks(Structure):
         if self.up is not None:
             raise NoView("up is of a file of solids, which are no plane section", ("structure", "up"))
         if self.file is None:
-            polygons = [
-                Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density)
-                for i, b in enumerate(self.block or [])
-            ]
+            polygons = [Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density) for i, b in enumerate(self.block or [])]
             return Drawing(polygons), None
         file = read(self.file, LARGEST_FILE, folder)
         sort = file.path.suffix.lower()
@@ -215,8 +207,7 @@ class Blocks(Structure):
             return drawing, None
         if sort in SOLID:
             raise NoView(
-                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` analyse them in space",
-                ("structure", "file"),
+                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` analyse them in space", ("structure", "file")
             )
         if sort != ".json":
             raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")

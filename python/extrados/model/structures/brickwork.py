@@ -63,9 +63,7 @@ def make_brickwork(
     are too many or a lintel has no place.
     """
     if length * height > MOST_UNITS * bond.length * bond.height * (1.0 + 1e-9):
-        raise BadGeometry(
-            f"{length * height / bond.length / bond.height:.0f} units are too many, expected at most {MOST_UNITS}"
-        )
+        raise BadGeometry(f"{length * height / bond.length / bond.height:.0f} units are too many, expected at most {MOST_UNITS}")
     small = min(bond.length, bond.height)
     holes = openings_within(length, height, openings, small)
     beams = lintels_of(bond, length, height, holes) if bond.lintels else {}
@@ -102,9 +100,7 @@ def lintels_of(bond: Bond, length: float, height: float, holes: list[Box]) -> di
             continue
         over = [o for k, o in enumerate(holes) if k != i and o[0] < right and o[1] > left]
         if any(o[2] <= head < o[3] for o in over):
-            raise BadGeometry(
-                f"opening {i + 1} runs into another one, there is no place for its lintel: lintels = false"
-            )
+            raise BadGeometry(f"opening {i + 1} runs into another one, there is no place for its lintel: lintels = false")
         top = min([head + tall, height, *(o[2] for o in over if o[2] > head)])
         low, high = max(0.0, left - bearing), min(length, right + bearing)
         for k, (a, b, c, d) in enumerate(holes):
@@ -146,9 +142,7 @@ def _course(bond: Bond, length: float, course: int, low: float, high: float, hol
     return laid(heads, (0.0, length), low, high, holes, bond.least_unit * bond.length)
 
 
-def laid(
-    heads: np.ndarray, ends: tuple[float, float], low: float, high: float, holes: Sequence[Box], least: float
-) -> list[Box]:
+def laid(heads: np.ndarray, ends: tuple[float, float], low: float, high: float, holes: Sequence[Box], least: float) -> list[Box]:
     """Units of a course between its ends, divided at the head joints and cut by openings, from left to right.
 
     Head joints nearer than `least` [m] to an end or an opening are left out.
@@ -193,26 +187,14 @@ class Laid(Table):
 
     openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course; courses alternate")
-    lintels: bool = key(
-        True, "a stone over each opening; without it the units above rest on the units beside the opening"
-    )
+    lintels: bool = key(True, "a stone over each opening; without it the units above rest on the units beside the opening")
     lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
     lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default half a unit", gt=0)
-    least_unit: float = key(
-        0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5
-    )
+    least_unit: float = key(0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5)
 
     def bond(self, unit_length: float, unit_height: float) -> Bond:
         """How this wall is laid, of a unit [m]."""
-        return Bond(
-            unit_length,
-            unit_height,
-            self.begins,
-            self.lintels,
-            self.lintel_height,
-            self.lintel_bearing,
-            self.least_unit,
-        )
+        return Bond(unit_length, unit_height, self.begins, self.lintels, self.lintel_height, self.lintel_bearing, self.least_unit)
 
     @property
     def holes(self) -> list[Box]:

@@ -28,19 +28,19 @@ class Span(Table):
     """One arch of a bridge, by its intrados."""
 
     shape: Literal["segmental", "three-centred", "pointed", "elliptical", "parabolic", "surveyed"] = key(
-        "segmental",
-        "curve of the intrados; a segmental one with a rise of half the span is a semicircle; surveyed: `intrados`",
+        "segmental", "curve of the intrados; a segmental one with a rise of half the span is a semicircle; surveyed: `intrados`"
     )
     intrados: list[list[Length]] | None = key(
-        None, "measured points [x, y] of the intrados from springing to springing, both at y = 0, for shape surveyed; span and rise "
-        "are then those of the points", min_length=4, max_length=2000,
-    )  # fmt: skip
+        None,
+        "measured points [x, y] of the intrados from springing to springing, both at y = 0, for shape surveyed; span and rise "
+        "are then those of the points",
+        min_length=4,
+        max_length=2000,
+    )
     span: Length = key(about="clear span", gt=0)
     rise: Length = key(about="rise of the intrados", gt=0)
     thickness: Length = key(about="thickness of the arch at the crown, all rings together", gt=0)
-    springing_thickness: Length | None = key(
-        None, "thickness at the springings, linear along the intrados; default as at the crown", gt=0
-    )
+    springing_thickness: Length | None = key(None, "thickness at the springings, linear along the intrados; default as at the crown", gt=0)
     haunch_radius: Length | None = key(
         None, "radius of the side arcs of a three-centred arch; default such that they subtend 60 degrees", gt=0
     )
@@ -51,18 +51,12 @@ class Span(Table):
     @classmethod
     def _measured(cls, given: Any) -> Any:
         """Span and rise of a surveyed intrados, which its points give."""
-        if (
-            not isinstance(given, dict)
-            or given.get("shape") != "surveyed"
-            or not isinstance(given.get("intrados"), list)
-        ):
+        if not isinstance(given, dict) or given.get("shape") != "surveyed" or not isinstance(given.get("intrados"), list):
             return given
         if twice := [name for name in ("span", "rise") if name in given]:
             raise ValueError(f"{twice[0]}: the points of intrados give it; leave it out")
         points = [point for point in given["intrados"] if isinstance(point, list) and len(point) == 2]
-        if len(points) < len(given["intrados"]) or not all(
-            isinstance(v, int | float) for point in points for v in point
-        ):
+        if len(points) < len(given["intrados"]) or not all(isinstance(v, int | float) for point in points for v in point):
             raise ValueError("intrados: expected points [x, y] in metres")
         if not points:
             return given
@@ -75,9 +69,7 @@ class Span(Table):
             raise ValueError("intrados: belongs to the shape surveyed, which needs it")
         for before, after in itertools.pairwise(self.intrados or []):
             if after[0] <= before[0]:
-                raise ValueError(
-                    f"intrados: expected x that grows from point to point, found {before[0]:g} before {after[0]:g}"
-                )
+                raise ValueError(f"intrados: expected x that grows from point to point, found {before[0]:g} before {after[0]:g}")
         if self.intrados and (abs(self.intrados[0][1]) > LEVEL or abs(self.intrados[-1][1]) > LEVEL):
             raise ValueError("intrados: expected both springings at y = 0: all springings of a bridge are at one level")
         return self
@@ -185,9 +177,7 @@ def _three_centred(a: float, b: float, side: float | None, share: np.ndarray) ->
         # R - r = (a - r) / c and R - b = (a - r) s / c
         side = (b - a * (1.0 - s) / c) / (1.0 - (1.0 - s) / c)
     if not 0.0 < side <= b:
-        raise BadGeometry(
-            f"three-centred arch: side arcs of radius {side:.4g} m do not fit a rise of {b:g} m over half a span of {a:g} m"
-        )
+        raise BadGeometry(f"three-centred arch: side arcs of radius {side:.4g} m do not fit a rise of {b:g} m over half a span of {a:g} m")
     if abs(side - a) < 1e-12 * a:  # the semicircle
         turn = 0.5 * np.pi * (2.0 * share - 1.0)
         normal = np.column_stack([np.sin(turn), np.cos(turn)])
@@ -200,9 +190,7 @@ def _three_centred(a: float, b: float, side: float | None, share: np.ndarray) ->
     total = 2.0 * length + radius * (np.pi - 2.0 * angle)
     s = total * share
     left, right = s <= length, s >= total - length
-    turn = np.where(
-        left, -0.5 * np.pi + s / side, np.where(right, 0.5 * np.pi - (total - s) / side, (s - 0.5 * total) / radius)
-    )
+    turn = np.where(left, -0.5 * np.pi + s / side, np.where(right, 0.5 * np.pi - (total - s) / side, (s - 0.5 * total) / radius))
     normal = np.column_stack([np.sin(turn), np.cos(turn)])
     centre = np.where(left[:, None], (side - a, 0.0), np.where(right[:, None], (a - side, 0.0), (0.0, b - radius)))
     return centre + np.where(left | right, side, radius)[:, None] * normal, normal
@@ -245,10 +233,7 @@ class _Bridge:
             ends[-1] = self._abutment("right abutment", lines[-1][-1], 1, bridge.abutments)
         for k, pier in enumerate(piers):
             ends[k + 1] = self._pier(f"pier {k + 1}" if len(piers) > 1 else "pier", pier, lines[k][-1], lines[k + 1][0])
-        self.arches = [
-            self._arch(f"span {k + 1} " if len(lines) > 1 else "", line, ends[k], ends[k + 1])
-            for k, line in enumerate(lines)
-        ]
+        self.arches = [self._arch(f"span {k + 1} " if len(lines) > 1 else "", line, ends[k], ends[k + 1]) for k, line in enumerate(lines)]
         self.backing: list[int] = []
         if bridge.backing is not None:
             for k, support in enumerate(ends):
@@ -265,19 +250,20 @@ class _Bridge:
                 corners = line[[i, i + 1, i + 1, i], [r, r, r + 1, r + 1]]
                 block[r, i] = self.builder.block(f"{name}voussoir {i + 1}", corners)
             ends = [left, *block[r].tolist(), right]
-            joints = [
-                self.builder.joint(f"{name}joint {j}", line[j, r], line[j, r + 1], ends[j + 1], ends[j], -1)
-                for j in range(n + 1)
-            ]
+            joints = [self.builder.joint(f"{name}joint {j}", line[j, r], line[j, r + 1], ends[j + 1], ends[j], -1) for j in range(n + 1)]
             self.chains[name.strip() or "arch"] = joints
             if r:
                 self.groups["rings"] += [
                     self.builder.joint(
-                        f"{prefix}rings {r}-{r + 1} at voussoir {i + 1}", line[i, r], line[i + 1, r], int(block[r, i]),
-                        int(block[r - 1, i]), 1,
+                        f"{prefix}rings {r}-{r + 1} at voussoir {i + 1}",
+                        line[i, r],
+                        line[i + 1, r],
+                        int(block[r, i]),
+                        int(block[r - 1, i]),
+                        1,
                     )
                     for i in range(n)
-                ]  # fmt: skip
+                ]
         return _Arch(line, block)
 
     def _abutment(self, name: str, skewback: np.ndarray, side: int, table: Abutment) -> int:
@@ -337,8 +323,7 @@ class _Bridge:
             points, voussoirs = _haunch(line, level, from_crown)
             outline += list(points)
             joints += [
-                (f"{name} on {self._name(arch, v)}", points[i], points[i + 1], int(arch.block[-1, v]), 1)
-                for i, v in enumerate(voussoirs)
+                (f"{name} on {self._name(arch, v)}", points[i], points[i + 1], int(arch.block[-1, v]), 1) for i, v in enumerate(voussoirs)
             ]
         foot = None
         if left is not None and right is not None:

@@ -13,9 +13,8 @@ from extrados.schema.table import key
 
 
 def make_chimney(
-    height: float, width: tuple[float, float], thickness: tuple[float, float], rings: int, blocks: int, facets: int,
-    density: float = 2000.0,
-) -> SolidAssembly:  # fmt: skip
+    height: float, width: tuple[float, float], thickness: tuple[float, float], rings: int, blocks: int, facets: int, density: float = 2000.0
+) -> SolidAssembly:
     """Rings of equal height on the ground: outer diameter over the corners and thickness of the wall at base and top [m].
 
     The plan is a regular polygon of `facets` sides. A ring has `blocks` blocks, each of facets / blocks facets, those of every
@@ -58,9 +57,11 @@ class Chimney(Spatial):
     top_thickness: Length | None = key(None, "thickness of the wall at the top; default as at the base", gt=0)
     rings: int = key(about="rings from the ground to the top", ge=1, le=400)
     blocks: int = key(
-        1, "blocks in a ring, those of every other ring set off by half a block; 1: each ring is one body, as where bands tie it",
-        ge=1, le=100,
-    )  # fmt: skip
+        1,
+        "blocks in a ring, those of every other ring set off by half a block; 1: each ring is one body, as where bands tie it",
+        ge=1,
+        le=100,
+    )
     facets: int = key(16, "flat facets around, a multiple of twice the blocks", ge=3, le=200)
 
     @property
@@ -89,6 +90,4 @@ class Chimney(Spatial):
         return self
 
     def solids(self, density: float) -> SolidAssembly:
-        return make_chimney(
-            self.height, self.widths, self.thicknesses, self.rings, self.blocks, self.facets, density
-        )  # fmt: skip
+        return make_chimney(self.height, self.widths, self.thicknesses, self.rings, self.blocks, self.facets, density)

@@ -20,9 +20,16 @@ WEBS = ("north", "west", "south", "east")
 
 
 def make_cross_vault(
-    radius: float, thickness: float, embrace: float, voussoirs: int, edge: float, stone_length: float | None = None,
-    springers: int = 1, across: float = 1.0, density: float = 2000.0,
-) -> SolidAssembly:  # fmt: skip
+    radius: float,
+    thickness: float,
+    embrace: float,
+    voussoirs: int,
+    edge: float,
+    stone_length: float | None = None,
+    springers: int = 1,
+    across: float = 1.0,
+    density: float = 2000.0,
+) -> SolidAssembly:
     """Two equal barrels over a bay: radius of the centre line, thickness, edge [m], embrace [deg].
 
     Four webs meet along the diagonals and reach `edge` beyond the corner of the extrados at the springing. A half web has
@@ -35,9 +42,7 @@ def make_cross_vault(
     half = np.radians(0.5 * embrace)
     angle = np.linspace(half, 0.0, voussoirs // 2 + 1)  # from the springing at +x to the crown
     reach = outer * np.sin(half) + edge
-    courses = [
-        _course(inner, outer, angle[i], angle[i + 1], reach, stone_length, bool(i % 2)) for i in range(voussoirs // 2)
-    ]
+    courses = [_course(inner, outer, angle[i], angle[i + 1], reach, stone_length, bool(i % 2)) for i in range(voussoirs // 2)]
     down = np.array([np.cos(half), 0.0, -np.sin(half)])  # out of the lowest bed
     stretch = np.diag([1.0, across, 1.0])
     stones: list[Stone] = []
@@ -69,9 +74,7 @@ def make_cross_vault(
     return assemble(stones, seats=seats, what="cross-vault")
 
 
-def _course(
-    inner: float, outer: float, low: float, high: float, reach: float, length: float | None, half: bool
-) -> list[Polyhedron]:
+def _course(inner: float, outer: float, low: float, high: float, reach: float, length: float | None, half: bool) -> list[Polyhedron]:
     """The stones of a course of the half web x > 0, y > x, between two angles from the vertical, from its edge to the groin;
     `half`: it begins with half a stone. The groin leans inwards as it rises: the last stone reaches beyond its bed."""
     section = [[r * np.sin(a), r * np.cos(a)] for r, a in ((inner, low), (outer, low), (outer, high), (inner, high))]
@@ -104,12 +107,10 @@ class CrossVault(Spatial):
     edge: Length | None = key(
         None, "how far the webs reach beyond the corner of the extrados at the springing; default the thickness", ge=0
     )
-    stone_length: Length | None = key(
-        None, "length of a stone along the barrel; default whole courses, mitred along the groins", gt=0
-    )
+    stone_length: Length | None = key(None, "length of a stone along the barrel; default whole courses, mitred along the groins", gt=0)
     springers: int = key(
         1, "courses from the springing that are one stone in each corner; with 0 each web has its own support", ge=0, le=100
-    )  # fmt: skip
+    )
     oblong: float = key(1.0, "length over width of the bay; the barrel across it is an ellipse then", gt=0.2, lt=5)
     thickness_factor: float = key(1.0, "effective over real thickness; 0.8 for worn corners", gt=0, le=1)
 
@@ -118,13 +119,9 @@ class CrossVault(Spatial):
         if self.thickness >= self.radius:
             raise ValueError(f"thickness {self.thickness:g} m is not below the radius {self.radius:g} m")
         if self.voussoirs % 2:
-            raise ValueError(
-                f"voussoirs: {self.voussoirs} is odd; expected an even number, so that the groins meet in a joint"
-            )
+            raise ValueError(f"voussoirs: {self.voussoirs} is odd; expected an even number, so that the groins meet in a joint")
         if self.springers >= self.voussoirs // 2:
-            raise ValueError(
-                f"springers: {self.springers} courses reach the crown; expected less than {self.voussoirs // 2}"
-            )
+            raise ValueError(f"springers: {self.springers} courses reach the crown; expected less than {self.voussoirs // 2}")
         if self.stone_length is not None:
             count = 8 * self.voussoirs // 2 * 2.0 * self.radius / self.stone_length
             if count > MOST_SOLIDS:
@@ -134,6 +131,13 @@ class CrossVault(Spatial):
     def solids(self, density: float) -> SolidAssembly:
         edge = self.thickness if self.edge is None else self.edge
         return make_cross_vault(
-            self.radius, self.thickness * self.thickness_factor, self.embrace, self.voussoirs, edge, self.stone_length,
-            self.springers, self.oblong, density,
-        )  # fmt: skip
+            self.radius,
+            self.thickness * self.thickness_factor,
+            self.embrace,
+            self.voussoirs,
+            edge,
+            self.stone_length,
+            self.springers,
+            self.oblong,
+            density,
+        )

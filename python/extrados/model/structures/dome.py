@@ -13,9 +13,15 @@ from extrados.schema.table import key
 
 
 def make_dome(
-    radius: float, thickness: float, embrace: float, rings: int, lunes: int, oculus: float = 0.0, density: float = 2000.0,
+    radius: float,
+    thickness: float,
+    embrace: float,
+    rings: int,
+    lunes: int,
+    oculus: float = 0.0,
+    density: float = 2000.0,
     running: bool = False,
-) -> SolidAssembly:  # fmt: skip
+) -> SolidAssembly:
     """Spherical dome of flat-faced stones: radius of the middle surface and thickness [m], embrace and oculus [deg].
 
     Its plan is a polygon as large as the circle; meridians are chords. With an oculus of 0 a stone closes the crown.
@@ -30,17 +36,11 @@ def make_dome(
     plan = np.sqrt(turn / np.sin(turn))  # a polygon of the same area as the circle
 
     def point(r: float, phi: float, k: int) -> list[float]:
-        return [
-            plan * r * np.sin(phi) * np.cos(k * turn),
-            plan * r * np.sin(phi) * np.sin(k * turn),
-            r * np.cos(phi),
-        ]
+        return [plan * r * np.sin(phi) * np.cos(k * turn), plan * r * np.sin(phi) * np.sin(k * turn), r * np.cos(phi)]
 
     def bed(phi: float, k: int) -> np.ndarray:
         """The corners of a facet's bed, counter-clockwise from above."""
-        return np.array(
-            [point(inner, phi, k), point(outer, phi, k), point(outer, phi, k + 1), point(inner, phi, k + 1)]
-        )
+        return np.array([point(inner, phi, k), point(outer, phi, k), point(outer, phi, k + 1), point(inner, phi, k + 1)])
 
     stones: list[Stone] = []
     seats: list[tuple[int, np.ndarray]] = []
@@ -75,7 +75,7 @@ class Dome(Spatial):
     lunes: int = key(about="stones in a ring", ge=4, le=400)
     bond: Literal["lunes", "running"] = key(
         "lunes", "head joints above each other, as between the lunes of a cracked dome; or set off by half a stone in every other ring"
-    )  # fmt: skip
+    )
     thickness_factor: float = key(1.0, "effective over real thickness; 0.8 for worn corners", gt=0, le=1)
 
     @model_validator(mode="after")
@@ -90,6 +90,12 @@ class Dome(Spatial):
 
     def solids(self, density: float) -> SolidAssembly:
         return make_dome(
-            self.radius, self.thickness * self.thickness_factor, self.embrace, self.rings, self.lunes, self.oculus,
-            density, self.bond == "running",
-        )  # fmt: skip
+            self.radius,
+            self.thickness * self.thickness_factor,
+            self.embrace,
+            self.rings,
+            self.lunes,
+            self.oculus,
+            density,
+            self.bond == "running",
+        )

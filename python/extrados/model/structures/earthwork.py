@@ -28,9 +28,7 @@ class Fill(Table):
     dispersal: Literal["boussinesq", "even"] = key(
         "boussinesq", "how a load spreads to the stones: by Boussinesq's stresses, or evenly, within dispersal_angle"
     )
-    dispersal_angle: Angle = key(
-        30.0, "angle to the vertical beyond which a load does not spread; 26.6 is 1 in 2", ge=0, le=70
-    )
+    dispersal_angle: Angle = key(30.0, "angle to the vertical beyond which a load does not spread; 26.6 is 1 in 2", ge=0, le=70)
 
 
 class Surfacing(Table):
@@ -47,24 +45,20 @@ class Spandrels(Table):
     density: Density | None = key(None, "density; default that of [material]", gt=0, le=30000)
 
 
-def refuse_without_fill(
-    fill: Fill | None, surfacing: Surfacing | None, spandrels: Spandrels | None, depth: float | None
-) -> None:
+def refuse_without_fill(fill: Fill | None, surfacing: Surfacing | None, spandrels: Spandrels | None, depth: float | None) -> None:
     """ValueError where surfacing or spandrel walls have no fill, or the walls leave no room for it in the depth [m]."""
     for name, given in (("surfacing", surfacing), ("spandrels", spandrels)):
         if given is not None and fill is None:
             raise ValueError(f"{name}: requires fill; give fill, with a cover of 0 if there is none over the crown")
     if spandrels is not None and depth is not None and 2.0 * spandrels.thickness >= depth:
         raise ValueError(
-            f"spandrels: two walls of {spandrels.thickness:g} m leave no fill between them; the depth is {depth:g} m and "
-            "includes the walls"
+            f"spandrels: two walls of {spandrels.thickness:g} m leave no fill between them; the depth is {depth:g} m and includes the walls"
         )
 
 
 def covered(
-    assembly: Assembly, crown: float, density: float, fill: Fill | None, surfacing: Surfacing | None,
-    spandrels: Spandrels | None,
-) -> Assembly:  # fmt: skip
+    assembly: Assembly, crown: float, density: float, fill: Fill | None, surfacing: Surfacing | None, spandrels: Spandrels | None
+) -> Assembly:
     """The stones under fill up to its cover over `crown` [m], with surfacing and spandrel walls of `density` [kg/m^3].
 
     Fill and walls share the depth: the mass per volume is their mean, and passive pressure acts on the fill alone. As the
@@ -80,9 +74,17 @@ def covered(
         mean = (1.0 - walls) * fill.density + walls * (spandrels.density or density)
         passive *= (1.0 - walls) * min(fill.density / mean, 1.0)
     earth = Earth(
-        skyline(assembly.outlines), crown + fill.cover, mean, paved.thickness, paved.density, fill.friction_angle,
-        fill.cohesion, passive, fill.dispersal, fill.dispersal_angle,
-    )  # fmt: skip
+        skyline(assembly.outlines),
+        crown + fill.cover,
+        mean,
+        paved.thickness,
+        paved.density,
+        fill.friction_angle,
+        fill.cohesion,
+        passive,
+        fill.dispersal,
+        fill.dispersal_angle,
+    )
     soil, surface = earth.masses(len(assembly.mass), assembly.depth)
     total = soil[:, :1] + surface[:, :1]
     place = (soil[:, :1] * soil[:, 1:] + surface[:, :1] * surface[:, 1:]) / np.maximum(total, 1e-300)

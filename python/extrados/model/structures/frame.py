@@ -47,15 +47,20 @@ class FrameAssembly(Assembly):
 
 
 def make_frame(
-    columns: int, width: float, height: float, spacing: float, lintel_height: float, overhang: float = 0.0,
-    lintel_mass: float | None = None, density: float = 2000.0, depth: float = 1.0,
-) -> FrameAssembly:  # fmt: skip
+    columns: int,
+    width: float,
+    height: float,
+    spacing: float,
+    lintel_height: float,
+    overhang: float = 0.0,
+    lintel_mass: float | None = None,
+    density: float = 2000.0,
+    depth: float = 1.0,
+) -> FrameAssembly:
     """Columns of width x height [m] at a spacing of their middles [m], the first at x = 0; the lintel reaches `overhang` [m]
     beyond the outer columns. lintel_mass [kg]: of the lintel with what rests on it; None by its size."""
     if spacing <= width:
-        raise BadGeometry(
-            f"structure: columns of {width:g} m at a spacing of {spacing:g} m overlap; spacing must exceed width"
-        )
+        raise BadGeometry(f"structure: columns of {width:g} m at a spacing of {spacing:g} m overlap; spacing must exceed width")
     half, top = 0.5 * width, height + lintel_height
     x = spacing * np.arange(columns)
     left, right = -half - overhang, float(x[-1]) + half + overhang
@@ -69,9 +74,7 @@ def make_frame(
     if lintel_mass is not None:
         plain.inertia[-1] *= lintel_mass / plain.mass[-1]
         plain.mass[-1] = lintel_mass
-    return FrameAssembly(
-        **{f.name: getattr(plain, f.name) for f in fields(Assembly)} | {"measures": {}}, width=width, height=height
-    )
+    return FrameAssembly(**{f.name: getattr(plain, f.name) for f in fields(Assembly)} | {"measures": {}}, width=width, height=height)
 
 
 class Frame(Structure):
@@ -93,9 +96,7 @@ class Frame(Structure):
     @model_validator(mode="after")
     def _columns_apart(self) -> "Frame":
         if self.spacing <= self.width:
-            raise ValueError(
-                f"spacing of {self.spacing:g} m lets columns of {self.width:g} m overlap; it must exceed their width"
-            )
+            raise ValueError(f"spacing of {self.spacing:g} m lets columns of {self.width:g} m overlap; it must exceed their width")
         return self
 
     def assembly(self, density: float, folder: Path) -> FrameAssembly:

@@ -16,18 +16,25 @@ from extrados.schema.table import key
 
 
 def stones_and_joints(
-    outlines: list[np.ndarray], names: list[str], joints: list[tuple[str, np.ndarray, np.ndarray, int, int]],
-    density: float, depth: float,
-) -> Assembly:  # fmt: skip
+    outlines: list[np.ndarray], names: list[str], joints: list[tuple[str, np.ndarray, np.ndarray, int, int]], density: float, depth: float
+) -> Assembly:
     """Blocks of straight outlines and their joints (name, p, q, block above or right, block below or left)."""
     mass, centroid, inertia = zip(*(properties(o) for o in outlines), strict=True)
     weight = density * depth
     label, p, q, a, b = zip(*joints, strict=True)
     return Assembly(
-        outlines=outlines, mass=np.array(mass) * weight, centroid=np.array(centroid), inertia=np.array(inertia) * weight,
-        p=np.array(p), q=np.array(q), a=np.array(a), b=np.array(b), depth=depth, block_names=names,
+        outlines=outlines,
+        mass=np.array(mass) * weight,
+        centroid=np.array(centroid),
+        inertia=np.array(inertia) * weight,
+        p=np.array(p),
+        q=np.array(q),
+        a=np.array(a),
+        b=np.array(b),
+        depth=depth,
+        block_names=names,
         joint_names=list(label),
-    )  # fmt: skip
+    )
 
 
 def make_column(
@@ -38,18 +45,13 @@ def make_column(
     half = 0.5 * np.interp(levels, [0.0, levels[-1]], [width, width if top_width is None else top_width])
     n = len(heights)
     outlines = [
-        np.array(
-            [[-half[i], levels[i]], [half[i], levels[i]], [half[i + 1], levels[i + 1]], [-half[i + 1], levels[i + 1]]]
-        )
+        np.array([[-half[i], levels[i]], [half[i], levels[i]], [half[i + 1], levels[i + 1]], [-half[i + 1], levels[i + 1]]])
         for i in range(n)
     ]
     joints = [
-        (
-            "base" if i == 0 else f"joint {i}", np.array([-half[i], levels[i]]), np.array([half[i], levels[i]]), i,
-            i - 1 if i else GROUND,
-        )
+        ("base" if i == 0 else f"joint {i}", np.array([-half[i], levels[i]]), np.array([half[i], levels[i]]), i, i - 1 if i else GROUND)
         for i in range(n)
-    ]  # fmt: skip
+    ]
     made = stones_and_joints(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
     return replace(made, chains={"stack": list(range(n))})
 
@@ -75,9 +77,7 @@ class Column(Structure):
         None, 'dowels in the axis between the drums: the shear strength of each, or "unbroken"'
     )
     dowel_reach: Length | None = key(
-        None,
-        "`dem`: how far each dowel reaches into the drum above; drums that part farther have lost it; default: never lost",
-        gt=0,
+        None, "`dem`: how far each dowel reaches into the drum above; drums that part farther have lost it; default: never lost", gt=0
     )
 
     @model_validator(mode="after")
@@ -106,13 +106,7 @@ class Column(Structure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.section == "round":
-            raise NoView(
-                "a column of round drums is no plane section; `tilt` and `dem` analyse its solids",
-                ("structure", "section"),
-            )
+            raise NoView("a column of round drums is no plane section; `tilt` and `dem` analyse its solids", ("structure", "section"))
         if self.dowels is not None:
-            raise NoView(
-                "dowels exist in space alone: give `tilt` a direction, or remove the dowels",
-                ("structure", "dowels"),
-            )
+            raise NoView("dowels exist in space alone: give `tilt` a direction, or remove the dowels", ("structure", "dowels"))
         return make_column(self.width, self.drum_heights, self.top_width, density, self.depth)

@@ -39,8 +39,7 @@ def make_piers(length: float, height: float, openings: Sequence[Box], density: f
         count[what] += 1
         names.append("base" if what == "base" else f"{what} {count[what]}")
     joints = [
-        (f"base of {names[i]}" if k == GROUND else f"{names[i]} on {names[k]}", p, q, i, k)
-        for i, k, p, q in contacts(bodies, length)
+        (f"base of {names[i]}" if k == GROUND else f"{names[i]} on {names[k]}", p, q, i, k) for i, k, p, q in contacts(bodies, length)
     ]
     if all(b != GROUND for *_, b in joints):
         raise BadGeometry(

@@ -42,9 +42,7 @@ class WallOpening(Table):
         Opening(x=self.x, y=self.z)
         for name, (low, high) in (("x", self.x), ("z", self.z)):
             if high - low <= 2 * MEETS:
-                raise ValueError(
-                    f"{name}: the opening is {high - low:.3g} m wide or high; expected more than {2 * MEETS:g} m"
-                )
+                raise ValueError(f"{name}: the opening is {high - low:.3g} m wide or high; expected more than {2 * MEETS:g} m")
         return self
 
 
@@ -118,9 +116,7 @@ class StoreyFloor(Table):
         "rigid; joists: bars across it in one direction; none: only its load",
     )
     walls: list[str] | None = key(
-        None,
-        "names of the walls around it, in order; default all of the storey, if they make one ring",
-        min_length=3,
+        None, "names of the walls around it, in order; default all of the storey, if they make one ring", min_length=3
     )
     young: Stress | None = key(None, "of a flexible floor: its modulus; of joists: that of their wood", gt=0)
     thickness: Length | None = key(None, "of a flexible floor", gt=0)
@@ -132,9 +128,7 @@ class StoreyFloor(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "StoreyFloor":
-        needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(
-            self.kind, ()
-        )
+        needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(self.kind, ())
         for name in ("young", "thickness", "joist_area", "joist_spacing"):
             if (getattr(self, name) is None) == (name in needed):
                 raise ValueError(f"a floor of kind '{self.kind}' {'needs' if name in needed else 'takes no'} {name}")
@@ -194,12 +188,8 @@ class Plan(Structure):
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
     prestress: list[Prestress] = key([], "[[structure.prestress]]", max_length=200)
-    assumed: list[str] = key(
-        [], "assumptions of the deck beyond its sources; every result repeats them", max_length=100
-    )
-    foundation_stiffness: Stiffness | None = key(
-        None, "vertical stiffness of the ground per area of the walls' soles; default rigid", gt=0
-    )
+    assumed: list[str] = key([], "assumptions of the deck beyond its sources; every result repeats them", max_length=100)
+    foundation_stiffness: Stiffness | None = key(None, "vertical stiffness of the ground per area of the walls' soles; default rigid", gt=0)
 
     @model_validator(mode="after")
     def _sound(self) -> "Plan":
@@ -241,18 +231,14 @@ class Plan(Structure):
                 raise ValueError(f"corners[{k}].walls: corner {first + 1} is of the same two walls")
         for k, prop in enumerate(self.props):
             if np.abs(self.wall(prop.wall).direction).max() < 1.0 - 1e-9:
-                raise ValueError(
-                    f"props[{k}].wall: wall '{prop.wall}' stands askew on the plan; a prop holds walls along x or y"
-                )
+                raise ValueError(f"props[{k}].wall: wall '{prop.wall}' stands askew on the plan; a prop holds walls along x or y")
             self._check_storey(f"props[{k}].storey", prop.wall, prop.storey)
         for k, part in enumerate(self.prestress):
             if part.level is not None:
                 self._check_storey(f"prestress[{k}].level", part.wall, part.level)
         for k, floor in enumerate(self.floors):
             if floor.storey > len(self.storeys):
-                raise ValueError(
-                    f"floors[{k}].storey: there is no storey {floor.storey}, there are {len(self.storeys)}"
-                )
+                raise ValueError(f"floors[{k}].storey: there is no storey {floor.storey}, there are {len(self.storeys)}")
         return self
 
     def _check_storey(self, what: str, wall: str, storey: int) -> None:
@@ -263,9 +249,7 @@ class Plan(Structure):
     def _check_wall(self, w: int, wall: PlanWall) -> None:
         first, last = self.reach(wall)
         if not 1 <= first <= last <= len(self.storeys):
-            raise ValueError(
-                f"walls[{w}].storeys: wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}"
-            )
+            raise ValueError(f"walls[{w}].storeys: wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}")
         if wall.thicknesses and len(wall.thicknesses) != last - first + 1:
             raise ValueError(
                 f"walls[{w}].thicknesses: wall '{wall.name}': {len(wall.thicknesses)} thicknesses for {last - first + 1} storeys; "
@@ -276,19 +260,13 @@ class Plan(Structure):
             if not first <= opening.storey <= last:
                 raise ValueError(f"{at}: {said}: the wall has no storey {opening.storey}")
             if opening.x[0] < 0.0 or opening.x[1] > wall.length:
-                raise ValueError(
-                    f"{at}: {said}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long"
-                )
+                raise ValueError(f"{at}: {said}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long")
             tall = self.storeys[opening.storey - 1]
             if opening.z[0] < 0.0 or opening.z[1] >= tall:
-                raise ValueError(
-                    f"{at}: {said}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of {tall:g} m"
-                )
+                raise ValueError(f"{at}: {said}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of {tall:g} m")
             above = float(sum(self.storeys[opening.storey - 1 : last])) - opening.z[1]
             if opening.lintel is not None and opening.lintel.depth > above + MEETS:
-                raise ValueError(
-                    f"{at}.lintel: {said}: a lintel of {opening.lintel.depth:g} m under {above:g} m of wall"
-                )
+                raise ValueError(f"{at}.lintel: {said}: a lintel of {opening.lintel.depth:g} m under {above:g} m of wall")
 
     def reach(self, wall: PlanWall) -> tuple[int, int]:
         """First and last storey of a wall."""
@@ -322,13 +300,7 @@ class Plan(Structure):
     @property
     def wall_area(self) -> float:
         """Of all walls in their planes, openings not deducted [m^2]."""
-        return float(
-            sum(
-                wall.length * np.diff(self.levels[[r[0] - 1, r[1]]])[0]
-                for wall in self.walls
-                if (r := self.reach(wall))
-            )
-        )
+        return float(sum(wall.length * np.diff(self.levels[[r[0] - 1, r[1]]])[0] for wall in self.walls if (r := self.reach(wall))))
 
     def strips(self, wall: PlanWall, storey: int) -> list[tuple[float, float, float]]:
         """Masonry of a wall in a storey, from the bottom up: length, bottom and top above its floor [m] of each strip between
@@ -412,15 +384,11 @@ def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
     """Walls that meet two others each, in the order of the ring they make."""
     meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
     if any(len(others) != 2 for others in meets.values()):
-        raise BadGeometry(
-            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
-        )
+        raise BadGeometry(f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`")
     ring = [walls[0], meets[walls[0]][0]]
     while len(ring) < len(walls):
         after = [b for b in meets[ring[-1]] if b != ring[-2]]
         if after[0] in ring:
-            raise BadGeometry(
-                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
-            )
+            raise BadGeometry(f"{what}: the walls of the storey make more than one ring; name those around it by `walls`")
         ring.append(after[0])
     return ring

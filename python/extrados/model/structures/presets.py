@@ -27,8 +27,5 @@ class PresetStructure(Structure):
         needed = [name for name in schema.get("required", []) if name != "kind"]
         given = [name for name in needed if all(name in sizes for sizes in cls.presets.values())]
         schema["required"] = [name for name in schema["required"] if name not in given]
-        schema["anyOf"] = [
-            {"required": ["preset"], "properties": {"preset": {"type": "string"}}},
-            {"required": given},
-        ]
+        schema["anyOf"] = [{"required": ["preset"], "properties": {"preset": {"type": "string"}}}, {"required": given}]
         return schema

@@ -15,14 +15,28 @@ from extrados.schema.table import key
 # Sizes inferred by fitting published results, or guessed from public facts; never the authors' own.
 VAULT_PRESETS = {
     "dejong-a": {
-        "radius": 10.0, "thickness": 1.5, "embrace": 120.0, "voussoirs": 24, "face": 8.5,
-        "buttress_width": 17.0 / 3.0, "width_from": "face", "height": 25.5, "height_to": "extrados",
+        "radius": 10.0,
+        "thickness": 1.5,
+        "embrace": 120.0,
+        "voussoirs": 24,
+        "face": 8.5,
+        "buttress_width": 17.0 / 3.0,
+        "width_from": "face",
+        "height": 25.5,
+        "height_to": "extrados",
     },
     "dejong-b": {
-        "radius": 10.0, "thickness": 1.5, "embrace": 120.0, "voussoirs": 24, "face": 8.660254037844386,
-        "buttress_width": 5.61, "width_from": "extrados", "height": 25.5, "height_to": "centre",
+        "radius": 10.0,
+        "thickness": 1.5,
+        "embrace": 120.0,
+        "voussoirs": 24,
+        "face": 8.660254037844386,
+        "buttress_width": 5.61,
+        "width_from": "extrados",
+        "height": 25.5,
+        "height_to": "centre",
     },
-}  # fmt: skip
+}
 
 
 def make_vault(
@@ -56,9 +70,7 @@ def make_vault(
     if base >= path[0, 1]:
         raise BadGeometry(f"buttress: the ground at {base:.4g} m is not below the springing at {path[0, 1]:.4g} m")
     if back <= path[-1, 0]:
-        raise BadGeometry(
-            f"buttress: its outer face at x = {back:.4g} m does not reach behind the springing at {path[-1, 0]:.4g} m"
-        )
+        raise BadGeometry(f"buttress: its outer face at x = {back:.4g} m does not reach behind the springing at {path[-1, 0]:.4g} m")
     right = np.concatenate([[[face, base], [back, base], [back, top]], path[::-1]])
     mirror = np.array([-1.0, 1.0])
     builder = Builder(density, depth)
@@ -78,14 +90,7 @@ class Vault(PresetStructure):
     """Barrel vault between two monolithic buttresses that are mirror images (thesis 3.4)."""
 
     presets: ClassVar = VAULT_PRESETS
-    starter: ClassVar = {
-        "radius": "5.0",
-        "thickness": "0.6",
-        "embrace": "120.0",
-        "face": "4.2",
-        "buttress_width": "2.0",
-        "height": "9.0",
-    }
+    starter: ClassVar = {"radius": "5.0", "thickness": "0.6", "embrace": "120.0", "face": "4.2", "buttress_width": "2.0", "height": "9.0"}
     word: ClassVar = "vault on its buttresses"
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
@@ -108,6 +113,15 @@ class Vault(PresetStructure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         return make_vault(
-            self.radius, self.thickness, self.embrace, self.voussoirs, self.face, self.buttress_width, self.height,
-            self.width_from, self.height_to, density, self.depth,
-        )  # fmt: skip
+            self.radius,
+            self.thickness,
+            self.embrace,
+            self.voussoirs,
+            self.face,
+            self.buttress_width,
+            self.height,
+            self.width_from,
+            self.height_to,
+            density,
+            self.depth,
+        )

@@ -24,16 +24,13 @@ class Leg(Table):
     """A straight stretch of wall, from corner to corner or to a free end."""
 
     length: Length = key(about="length over all, the corners at its ends included", gt=0, le=1e4)
-    turn: Literal["left", "right"] = key(
-        "left", "how it leaves the leg before, by a right angle; of the first, nothing"
-    )
+    turn: Literal["left", "right"] = key("left", "how it leaves the leg before, by a right angle; of the first, nothing")
     openings: list[Opening] = key([], "rectangles cut out: x along the leg from its start, y up", max_length=200)
 
 
 def make_wall(
-    bond: Bond, thickness: float, height: float, legs: list[tuple[float, bool, list[Box]]], closed: bool = False,
-    density: float = 2000.0,
-) -> SolidAssembly:  # fmt: skip
+    bond: Bond, thickness: float, height: float, legs: list[tuple[float, bool, list[Box]]], closed: bool = False, density: float = 2000.0
+) -> SolidAssembly:
     """Legs (length [m], whether it turns left, openings) of a wall of a thickness and height [m], one unit thick.
 
     The first leg runs from the origin along x with its thickness to the left. At a corner the courses of both legs pass
@@ -136,28 +133,25 @@ class Wall(Spatial):
     halved: ClassVar = {"unit_length": 0.5, "unit_height": 0.5}
     bonds: ClassVar = {"begins": ("whole", "half")}
     starter: ClassVar = {
-        "unit_length": '"40 cm"', "unit_height": '"20 cm"', "thickness": '"20 cm"', "height": "2.4",
+        "unit_length": '"40 cm"',
+        "unit_height": '"20 cm"',
+        "thickness": '"20 cm"',
+        "height": "2.4",
         "legs": "[{ length = 3.0 }, { length = 2.0 }]",
-    }  # fmt: skip
+    }
     unit_length: Length = key(about="length of a unit; twice the thickness makes half bond around corners", gt=0)
     unit_height: Length = key(about="height of a unit", gt=0)
     thickness: Length = key(about="thickness of the wall, the width of a unit", gt=0)
     height: Length = key(about="height of the wall", gt=0, le=1e3)
     legs: list[Leg] = key(
-        about="its stretches from the first end on, each at a right angle to the one before",
-        min_length=1,
-        max_length=200,
+        about="its stretches from the first end on, each at a right angle to the one before", min_length=1, max_length=200
     )
-    closed: bool = key(
-        False, "whether the last leg meets the first, as around a courtyard; then all corners are to the left"
-    )
+    closed: bool = key(False, "whether the last leg meets the first, as around a courtyard; then all corners are to the left")
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end")
     lintels: bool = key(True, "a stone over each opening")
     lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
     lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default half a unit", gt=0)
-    least_unit: float = key(
-        0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5
-    )
+    least_unit: float = key(0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5)
 
     @model_validator(mode="after")
     def _sensible(self) -> "Wall":
@@ -166,9 +160,7 @@ class Wall(Spatial):
             raise ValueError(f"{count:.0f} units are too many, expected at most {MOST_SOLIDS}")
         for i, leg in enumerate(self.legs, start=1):
             if len(self.legs) > 1 and leg.length < 2.0 * self.thickness:
-                raise ValueError(
-                    f"legs: leg {i} is {leg.length:g} m long, less than two thicknesses of {self.thickness:g} m"
-                )
+                raise ValueError(f"legs: leg {i} is {leg.length:g} m long, less than two thicknesses of {self.thickness:g} m")
             for o in leg.openings:
                 if o.x[1] <= 0 or o.x[0] >= leg.length or o.y[1] <= 0 or o.y[0] >= self.height:
                     raise ValueError(f"legs: the opening x {o.x}, y {o.y} lies outside leg {i}")
@@ -177,17 +169,6 @@ class Wall(Spatial):
         return self
 
     def solids(self, density: float) -> SolidAssembly:
-        bond = Bond(
-            self.unit_length,
-            self.unit_height,
-            self.begins,
-            self.lintels,
-            self.lintel_height,
-            self.lintel_bearing,
-            self.least_unit,
-        )
-        legs = [
-            (leg.length, leg.turn == "left", [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in leg.openings])
-            for leg in self.legs
-        ]
+        bond = Bond(self.unit_length, self.unit_height, self.begins, self.lintels, self.lintel_height, self.lintel_bearing, self.least_unit)
+        legs = [(leg.length, leg.turn == "left", [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in leg.openings]) for leg in self.legs]
         return make_wall(bond, self.thickness, self.height, legs, self.closed, density)

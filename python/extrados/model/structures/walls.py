@@ -51,9 +51,7 @@ class Bar(Table):
     end: list[Length] = key(about="[x, y] of the other end", min_length=2, max_length=2)
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
     material: str = key(about="a name of [materials]")
-    bonded: bool = key(
-        False, "embedded: it moves with every element that it runs through; else it is held at its ends alone"
-    )
+    bonded: bool = key(False, "embedded: it moves with every element that it runs through; else it is held at its ends alone")
     yield_strength: Stress | None = key(
         None, "stress at which it yields in tension and compression, in place of the strengths of its material", gt=0
     )
@@ -79,19 +77,12 @@ class Panel(Laid, MeshedWall):
     kind: Literal["panel"]
     rocks_as: ClassVar[RocksAs] = "piers"
     starter_analysis: ClassVar = "sla"
-    starter: ClassVar = {
-        "thickness": '"30 cm"',
-        "width": "3.0",
-        "height": "3.0",
-        "openings": "[{ x = [1.05, 1.95], y = [0.9, 2.1] }]",
-    }
+    starter: ClassVar = {"thickness": '"30 cm"', "width": "3.0", "height": "3.0", "openings": "[{ x = [1.05, 1.95], y = [0.9, 2.1] }]"}
     width: Length | None = key(None, "length along x; needed unless an outline is given", gt=0)
     height: Length | None = key(None, "length along y; needed unless an outline is given", gt=0)
     unit_length: Length | None = key(None, "length of a unit of its masonry, for analyses of stones", gt=0)
     unit_height: Length | None = key(None, "height of a unit of its masonry", gt=0)
-    outline: str | None = key(
-        None, "DXF file of closed polylines: the outer one and the openings; replaces width, height, openings"
-    )
+    outline: str | None = key(None, "DXF file of closed polylines: the outer one and the openings; replaces width, height, openings")
     outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing, if it names none")
 
     @model_validator(mode="after")
@@ -117,27 +108,18 @@ class Panel(Laid, MeshedWall):
 
     def pier_assembly(self, density: float) -> Assembly:
         if self.outline:
-            raise NoView(
-                "the piers of a panel are found between rectangular openings, not in an outline",
-                ("structure", "outline"),
-            )
+            raise NoView("the piers of a panel are found between rectangular openings, not in an outline", ("structure", "outline"))
         if any(region.material or region.thickness for region in self.regions):
             raise NoView(
-                "the piers of a panel weigh the same everywhere; it has regions of another material or thickness",
-                ("structure", "regions"),
+                "the piers of a panel weigh the same everywhere; it has regions of another material or thickness", ("structure", "regions")
             )
         return make_piers(*self.size, self.holes, density, self.thickness)
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.outline:
-            raise NoView(
-                "a panel of an outline has no stones: draw them and read the drawing as kind `blocks`",
-                ("structure", "outline"),
-            )
+            raise NoView("a panel of an outline has no stones: draw them and read the drawing as kind `blocks`", ("structure", "outline"))
         if self.unit_length is None or self.unit_height is None:
-            raise NoView(
-                "the stones of the panel are not known: give unit_length and unit_height", ("structure", "unit_length")
-            )
+            raise NoView("the stones of the panel are not known: give unit_length and unit_height", ("structure", "unit_length"))
         bond = self.bond(self.unit_length, self.unit_height)
         return make_brickwork(bond, *self.size, self.holes, density, self.thickness)
 
@@ -194,7 +176,8 @@ class MeshFile(MeshedWall):
         max_length=1000,
     )
     groups: list[MeshGroup] = key(
-        [], "of shells in space: properties of the groups of the file, [[structure.groups]]; a later one overrides an earlier",
+        [],
+        "of shells in space: properties of the groups of the file, [[structure.groups]]; a later one overrides an earlier",
         max_length=1000,
-    )  # fmt: skip
+    )
     scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)

@@ -47,40 +47,25 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
     timed = width > 1 and (_called_time(names[:1]) or _ascends(table[:, 0], 3) or _is_time(table[:, 0], rounded))
     names = names if sure or not timed else []  # words of a sentence
     counted = _counted(said)
-    if (
-        columns == "series"
-        or width == 1
-        or (not timed and columns is None and _said_series(said, width, counted, rows))
-    ):
+    if columns == "series" or width == 1 or (not timed and columns is None and _said_series(said, width, counted, rows)):
         values = np.append(table.ravel(), text.numbers(rows[-1:])) if short else table.ravel()
         step, rounded, notes, data, names = _stated_step(text, said), 0.0, [], values[:, None], []
         for stride in range(1, max(4, width) + 1):
             if _ascends(values[::stride]):
-                what = (
-                    "the values ascend as a time does"
-                    if stride == 1
-                    else f"every value {stride} further on ascends as a time does"
-                )
+                what = "the values ascend as a time does" if stride == 1 else f"every value {stride} further on ascends as a time does"
                 raise text.error(rows[0][0], f"{what}; give time and acceleration in two columns")
     elif short:
-        raise text.error(
-            rows[-1][0],
-            f"{len(rows[-1][1])} columns where {width} stood before: the file is cut off{_or_series(timed)}",
-        )
+        raise text.error(rows[-1][0], f"{len(rows[-1][1])} columns where {width} stood before: the file is cut off{_or_series(timed)}")
     elif timed:
         given = time_unit_in(names[0]) if names else None
         per = TIME[given or "s"]
         step, uneven = _step(text, rows, table[:, 0], rounded, given)
         stated = _stated_step(text, said)
         if stated is not None and abs(stated - step) > 0.02 * step:
-            raise text.error(
-                rows[0][0], f"the header says a step of {stated:g} s, the times {step:g} s; delete the wrong one"
-            )
+            raise text.error(rows[0][0], f"the header says a step of {stated:g} s, the times {step:g} s; delete the wrong one")
         notes = [f"times of {text.path.name} are in {given}"] if given not in (None, "s") else []
         if uneven:
-            notes.append(
-                f"times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; their mean step is taken"
-            )
+            notes.append(f"times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; their mean step is taken")
         data, names, rounded = table[:, 1:], names[1:] or [f"column {k + 2}" for k in range(width - 1)], per * rounded
     elif columns == "components" or names:
         step, rounded, notes, data = _stated_step(text, said), 0.0, [], table
@@ -95,8 +80,7 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
         _refuse_header_numbers(text, rows, data)
     if counted is not None and counted not in (len(table), data.size):
         raise text.error(
-            len(text) - 1,
-            f"{data.size} values follow where the header says {counted}: the file is cut off or its header is wrong",
+            len(text) - 1, f"{data.size} values follow where the header says {counted}: the file is cut off or its header is wrong"
         )
     title = next((line.strip() for line in header if _is_title(line)), "")
     found = []
@@ -107,10 +91,17 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
         quantity = _quantity(text, name if sure else "", said)
         found.append(
             Record(
-                text.path.stem, data[:, k].copy(), step, (unit_in(name, quantity) if sure else None) or unit_in(said, quantity), quantity,
-                component=name if data.shape[1] > 1 else "", notes=list(notes), title=title, rounded=rounded,
+                text.path.stem,
+                data[:, k].copy(),
+                step,
+                (unit_in(name, quantity) if sure else None) or unit_in(said, quantity),
+                quantity,
+                component=name if data.shape[1] > 1 else "",
+                notes=list(notes),
+                title=title,
+                rounded=rounded,
             )
-        )  # fmt: skip
+        )
     return found
 
 
@@ -146,9 +137,7 @@ def _ascends(column: np.ndarray, fewest: int = FEWEST) -> bool:
 def _stated_step(text: Lines, said: str) -> float | None:
     """The step that the words of a header state [s]."""
     found = re.search(
-        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d+\.?\d*|\.\d+)\s*(ms|s)",
-        said,
-        re.I,
+        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d+\.?\d*|\.\d+)\s*(ms|s)", said, re.I
     )
     return text.step(repr(float(found[1]) * TIME[found[2].lower()]), 0) if found else None
 
@@ -169,9 +158,7 @@ def _said_series(said: str, width: int, counted: int | None, rows: list[tuple[in
 def _refuse_factor(text: Lines, said: str) -> None:
     """A factor that the header states and that the numbers are without."""
     found = re.search(
-        r"\b(?:scal\w*|conversion|multipl\w*)\s*(?:factor|by)?\s*(?:=|:|of|is|by)?\s*(\d+\.?\d*(?:e[+-]?\d+)?|\.\d+)",
-        said,
-        re.I,
+        r"\b(?:scal\w*|conversion|multipl\w*)\s*(?:factor|by)?\s*(?:=|:|of|is|by)?\s*(\d+\.?\d*(?:e[+-]?\d+)?|\.\d+)", said, re.I
     )
     if found and float(found[1]) != 1.0:
         raise text.error(
@@ -188,28 +175,19 @@ def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data:
     digits = [any(token.strip("+-0") for token in row) for _, row in rows[:first]]
     if 0 < first < len(rows) and any(digits) and np.mean(whole[first:]) < 0.1:
         at = rows[digits.index(True)][0]
-        raise text.error(
-            at,
-            f"'{text[at].strip()[:40]}' holds whole numbers and the samples decimals, as if a header stood here; {hint}",
-        )
+        raise text.error(at, f"'{text[at].strip()[:40]}' holds whole numbers and the samples decimals, as if a header stood here; {hint}")
     left = sum(len(row) for _, row in rows)
     for k, (at, row) in enumerate(rows[:HEAD]):
         left -= len(row)
-        if any(
-            re.fullmatch(r"\d{2,9}", token) and int(token) in (left, left + len(row) - 1, len(rows) - k - 1)
-            for token in row
-        ):
-            raise text.error(
-                at, f"'{text[at].strip()[:40]}' holds the number of the values behind it, as a header does; {hint}"
-            )
+        if any(re.fullmatch(r"\d{2,9}", token) and int(token) in (left, left + len(row) - 1, len(rows) - k - 1) for token in row):
+            raise text.error(at, f"'{text[at].strip()[:40]}' holds the number of the values behind it, as a header does; {hint}")
     per = max(1, data.size // max(len(rows), 1)) if data.shape[1] == 1 else 1
     if len(data) >= 6 * HEAD * per:
         peaks = np.abs(data[: HEAD * per]).max(axis=1), np.abs(data[HEAD * per :]).max()
         if peaks[0].max() > 2.0 * peaks[1] and peaks[1] > 0.0:
             at = rows[int(peaks[0].argmax()) // per][0]
             raise text.error(
-                at,
-                f"'{text[at].strip()[:40]}' exceeds twice all values below the first {HEAD} rows, as numbers of a header do; {hint}",
+                at, f"'{text[at].strip()[:40]}' exceeds twice all values below the first {HEAD} rows, as numbers of a header do; {hint}"
             )
 
 
@@ -232,9 +210,7 @@ def _split(text: Lines) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 def _wordy(tokens: list[str]) -> bool:
     """True for a header line that begins with a number, such as '1559 points at equal spacing'."""
-    return any(
-        re.fullmatch(r"[A-Za-z]{3,}.*", token) and token.lower() not in ("nan", "inf", "infinity") for token in tokens
-    )
+    return any(re.fullmatch(r"[A-Za-z]{3,}.*", token) and token.lower() not in ("nan", "inf", "infinity") for token in tokens)
 
 
 def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:
@@ -246,8 +222,7 @@ def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:
             raise text.error(at, f"'{text[at].strip()[:40]}' holds decimal commas; the decimal sign is a point")
     parts = [line.replace(" ", "").split(",") for line in bare.values()]
     if len(bare) == len(lines) and all(
-        len(row) % 2 == 0 and all(re.fullmatch(r"[+-]?\d+", w) for w in row[::2]) and all(map(_fraction, row[1::2]))
-        for row in parts
+        len(row) % 2 == 0 and all(re.fullmatch(r"[+-]?\d+", w) for w in row[::2]) and all(map(_fraction, row[1::2])) for row in parts
     ):
         raise text.error(lines[0], f"'{bare[lines[0]].strip()[:40]}' holds decimal commas; the decimal sign is a point")
 
@@ -295,9 +270,7 @@ def _median(values: np.ndarray) -> float:
     return float(ordered[half] if len(ordered) % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
 
 
-def _step(
-    text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, rounded: float, given: str | None
-) -> tuple[float, bool]:
+def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, rounded: float, given: str | None) -> tuple[float, bool]:
     """The step [s] of a time column in a unit (seconds where none is given), and whether only rounding makes it uneven."""
     if len(time) < 3:
         raise text.error(rows[-1][0], f"only {len(time)} samples; a record has at least three")
@@ -309,9 +282,7 @@ def _step(
     uneven = bool(off.size) and _even(time, rounded)
     if off.size and not uneven:
         k = int(off[0])
-        raise text.error(
-            rows[k + 1][0], f"the time step is {steps[k]:g} s here and {step:g} s elsewhere; resample to equal steps"
-        )
+        raise text.error(rows[k + 1][0], f"the time step is {steps[k]:g} s here and {step:g} s elsewhere; resample to equal steps")
     step = TIME[given or "s"] * (time[-1] - time[0]) / (len(time) - 1)
     if not SHORTEST_STEP <= step < LONGEST_STEP:
         raise text.error(

@@ -39,10 +39,7 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
     first = at
     at += int(found[1]) if found else 13
     event, station = said_in(text.lines[first : min(at, len(text))])
-    name = next(
-        (text[k] for k in range(first, min(at, len(text))) if re.match(r"\s*sta(?:tn)?\s+chan", text.words(k), re.I)),
-        "",
-    )
+    name = next((text[k] for k in range(first, min(at, len(text))) if re.match(r"\s*sta(?:tn)?\s+chan", text.words(k), re.I)), "")
     for _ in range(4):  # some files count the line after the text lines in, some do not
         if re.search(r"integer-header", text.words(at), re.I):
             break
@@ -85,9 +82,7 @@ def _block(text: Lines, at: int, step: float, name: str) -> tuple[int, Record]:
     code = re.search(r"units?\s*=\s*[^(]*\(\s*(\d+)\s*\)", line, re.I)
     shape = fortran_columns(line)
     if not found or not code or not shape:
-        raise text.error(
-            at, "expected the line 'n acceleration pts, approx x secs, units=cm/sec2(04), Format=(8F10.5)'"
-        )
+        raise text.error(at, "expected the line 'n acceleration pts, approx x secs, units=cm/sec2(04), Format=(8F10.5)'")
     unit = _UNITS.get(int(code[1]))
     if unit == "counts":
         raise text.error(at, "holds raw counts (V0), which need the instrument's response: take the V1 or V2 file")

@@ -10,10 +10,7 @@ import re
 from extrados.motions.formats.record import Lines, Record, fortran_columns, said_in, unit_in
 
 HEADER = 12  # the first lines, which speak of event and station
-_BLOCK = re.compile(
-    r"\s*(\d+)\s+points\s+of\s+(?:\w+[\s-]+)*?(accel|veloc|displ)\w*\s+data\s+equally\s+spaced\s+at\s+([\d.]+)\s*sec",
-    re.I,
-)
+_BLOCK = re.compile(r"\s*(\d+)\s+points\s+of\s+(?:\w+[\s-]+)*?(accel|veloc|displ)\w*\s+data\s+equally\s+spaced\s+at\s+([\d.]+)\s*sec", re.I)
 _TITLE = re.compile(r"(?:un)?corrected accelerogram", re.I)
 _QUANTITY = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
 
@@ -43,14 +40,11 @@ def read(text: Lines) -> list[Record]:
         # volume 1 states no format: eight columns of nine
         columns, width = fortran_columns(line) or (8, _width(text[at + 1]))
         values, end = text.fixed(at + 1, count, width, columns)
-        records.append(
-            Record(text.path.stem, values, step, unit_in(line, quantity), quantity, name, title=event, station=station)
-        )
+        records.append(Record(text.path.stem, values, step, unit_in(line, quantity), quantity, name, title=event, station=station))
         at = end
     if not records:
         raise text.error(
-            len(text) - 1,
-            "no line '... points of accel data equally spaced at ... sec': the file is cut off or of another kind",
+            len(text) - 1, "no line '... points of accel data equally spaced at ... sec': the file is cut off or of another kind"
         )
     return records
 

@@ -44,7 +44,14 @@ def read(text: Lines) -> list[Record]:
 
     return [
         Record(
-            text.path.stem, values, step, unit or default, quantity, told("STREAM"), notes,
-            title=told("EVENT_NAME", "EVENT_DATE_YYYYMMDD"), station=told("NETWORK", "STATION_CODE", "STATION_NAME"),
+            text.path.stem,
+            values,
+            step,
+            unit or default,
+            quantity,
+            told("STREAM"),
+            notes,
+            title=told("EVENT_NAME", "EVENT_DATE_YYYYMMDD"),
+            station=told("NETWORK", "STATION_CODE", "STATION_NAME"),
         )
-    ]  # fmt: skip
+    ]

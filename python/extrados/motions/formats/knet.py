@@ -21,9 +21,7 @@ def read(text: Lines) -> list[Record]:
 
     def value(key: str) -> tuple[int, str]:
         if key not in keys:
-            raise text.error(
-                HEADER - 1, f"'{key}' is missing in the first {HEADER} lines: the file is cut off or of another kind"
-            )
+            raise text.error(HEADER - 1, f"'{key}' is missing in the first {HEADER} lines: the file is cut off or of another kind")
         return keys[key]
 
     at, said = value("Sampling Freq(Hz)")
@@ -48,6 +46,15 @@ def read(text: Lines) -> list[Record]:
     if len(counts) < 3:
         raise text.error(HEADER, f"only {len(counts)} samples; a record has at least three")
     counts = counts - counts.mean()
-    return [Record(text.path.stem, counts * factor, 1.0 / rate, "gal", component=keys.get("Dir.", (0, ""))[1],
-                   notes=["mean taken off"], title=keys.get("Origin Time", (0, ""))[1],
-                   station=keys.get("Station Code", (0, ""))[1])]  # fmt: skip
+    return [
+        Record(
+            text.path.stem,
+            counts * factor,
+            1.0 / rate,
+            "gal",
+            component=keys.get("Dir.", (0, ""))[1],
+            notes=["mean taken off"],
+            title=keys.get("Origin Time", (0, ""))[1],
+            station=keys.get("Station Code", (0, ""))[1],
+        )
+    ]

@@ -34,14 +34,10 @@ def read(text: Lines) -> list[Record]:
     if quantity is None:
         said = quantities_in(header) or ["acceleration"]
         if len(said) > 1:
-            raise text.error(
-                0, f"the header names {' and '.join(said)}; expected 'ACCELERATION TIME SERIES' or one other"
-            )
+            raise text.error(0, f"the header names {' and '.join(said)}; expected 'ACCELERATION TIME SERIES' or one other")
         quantity = said[0]
     if (other := SUFFIXES.get(text.path.suffix.lower(), quantity)) != quantity:
-        raise text.error(
-            0, f"the header names {quantity}, the suffix {text.path.suffix} is that of {other}; rename the file"
-        )
+        raise text.error(0, f"the header names {quantity}, the suffix {text.path.suffix} is that of {other}; rename the file")
     rows: list[tuple[int, list[str]]] = []
     have = 0
     for number, row in text.blanks(at + 1):
@@ -53,11 +49,7 @@ def read(text: Lines) -> list[Record]:
     if count < 3:
         raise text.error(at, f"NPTS is {count}; a record has at least three samples")
     title, station = _said(text[1])
-    return [
-        Record(
-            text.path.stem, values, step, unit_in(header, quantity), quantity, notes=notes, title=title, station=station
-        )
-    ]  # fmt: skip
+    return [Record(text.path.stem, values, step, unit_in(header, quantity), quantity, notes=notes, title=title, station=station)]
 
 
 def _said(line: str) -> tuple[str, str]:

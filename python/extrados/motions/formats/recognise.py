@@ -48,9 +48,7 @@ def read_record(source: File | Path, channel: str | int | None = None, columns: 
             raise RecordError(f"{path}: {len(found)} channels are called '{channel}'; there are {_names(wanted)}")
         return found[0]
     if len(wanted) > 1:
-        raise RecordError(
-            f"{path}: holds {len(wanted)} channels; name one with channel = 1 to {len(wanted)}: {_names(wanted)}"
-        )
+        raise RecordError(f"{path}: holds {len(wanted)} channels; name one with channel = 1 to {len(wanted)}: {_names(wanted)}")
     return wanted[0]
 
 

@@ -17,8 +17,7 @@ ALIKE = 20  # numbers of equally many decimals by which a last one with fewer is
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.5  # s: sampling steps that a file of a strong motion may have
 
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
-ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254,
-                "mg": 9.80665e-3}  # fmt: skip
+ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "mg": 9.80665e-3}
 VELOCITY = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "in/s": 0.0254}
 DISPLACEMENT = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 QUANTITIES = {"acceleration": ACCELERATION, "velocity": VELOCITY, "displacement": DISPLACEMENT}
@@ -75,9 +74,7 @@ class Lines:
 
     def cut(self, have: int, want: int) -> RecordError:
         """The complaint of a file that ends too early."""
-        return self.error(
-            len(self.lines) - 1, f"ends after {have} of {want} values: the file is cut off or its header is wrong"
-        )
+        return self.error(len(self.lines) - 1, f"ends after {have} of {want} values: the file is cut off or its header is wrong")
 
     def number(self, token: str, at: int) -> float:
         """A token as a finite number, no NaN, no decimal comma, no Python spelling."""
@@ -102,9 +99,7 @@ class Lines:
         """A token as a time step [s]."""
         value = self.number(token, at)
         if not SHORTEST_STEP <= value < LONGEST_STEP:
-            raise self.error(
-                at, f"the time step is {value:g} s, expected {SHORTEST_STEP:g} s to less than {LONGEST_STEP:g} s"
-            )
+            raise self.error(at, f"the time step is {value:g} s, expected {SHORTEST_STEP:g} s to less than {LONGEST_STEP:g} s")
         return value
 
     def numbers(self, rows: list[tuple[int, list[str]]]) -> np.ndarray:
@@ -153,9 +148,7 @@ class Lines:
                 raise (
                     self.cut(have + len(row), count)
                     if at >= len(self.lines) - 1
-                    else self.error(
-                        at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters"
-                    )
+                    else self.error(at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters")
                 )
             if len(row[-1]) < width and at == len(self.lines) - 1 and have + len(row) == count and len(line) % width:
                 raise self.error(at, "the last value is cut off")
@@ -172,9 +165,7 @@ class Lines:
             return values, []
         if len(values) - count > max(8, count // 100):
             raise self.error(at, f"the header says {count} values but {len(values)} follow")
-        return values[:count], [
-            f"{self.path.name}: {len(values)} values where the header says {count}; the rest is ignored"
-        ]
+        return values[:count], [f"{self.path.name}: {len(values)} values where the header says {count}; the rest is ignored"]
 
 
 def tidy(text: str) -> str:
@@ -215,8 +206,9 @@ def said_in(lines: list[str]) -> tuple[str, str]:
     event = next((line.strip() for line in lines if re.search(r"\bearthquake\b", line, re.I)), "")
     found = (
         re.search(r"\bsta(?:tion|tn|\b)\s*(?:no\b\.?)?\s*[:=.]?\s+(?=\S)(.+?)\s*(?:\bcomponent\s*=.*)?$", line, re.I)
-        for line in lines if not re.search(r"\bsta(?:tion|tn)?\s+chan", line, re.I)
-    )  # fmt: skip
+        for line in lines
+        if not re.search(r"\bsta(?:tion|tn)?\s+chan", line, re.I)
+    )
     station = next((match[1] for match in found if match), "")
     return " ".join(re.sub(r"(?i)^(?:record|rcrd) of ", "", event).split()), " ".join(station.split())
 
@@ -230,9 +222,11 @@ def fortran_columns(text: str) -> tuple[int, int] | None:
 #: Units of time that a column may be in, in seconds
 TIME = {"ms": 1e-3, "us": 1e-6, "min": 60.0, "s": 1.0}
 _TIMES = (
-    ("ms", r"m(?:illi)?s(?:ec(?:ond)?s?)?"), ("us", r"[uµμ]s(?:ec)?|microsec(?:ond)?s?"), ("min", r"min(?:ute)?s?"),
+    ("ms", r"m(?:illi)?s(?:ec(?:ond)?s?)?"),
+    ("us", r"[uµμ]s(?:ec)?|microsec(?:ond)?s?"),
+    ("min", r"min(?:ute)?s?"),
     ("s", r"s(?:ec(?:ond)?s?)?"),
-)  # fmt: skip
+)
 
 
 def time_unit_in(name: str) -> str | None:
@@ -260,9 +254,7 @@ def units_in(text: str, quantity: str = "acceleration") -> list[str]:
     """All units of a quantity that a header text names; a value with its unit, such as a peak, names none."""
     low = re.sub(_VALUE, " ", tidy(text).lower())
     if quantity == "acceleration":
-        found = [
-            f"{length}/s^2" for length in ("cm", "mm", "in", "m") if re.search(rf"(?<![a-z]){length}{_SECOND}", low)
-        ]
+        found = [f"{length}/s^2" for length in ("cm", "mm", "in", "m") if re.search(rf"(?<![a-z]){length}{_SECOND}", low)]
         found += ["gal"] if re.search(r"(?<![a-z])gals?(?![a-z])", low) else []
         return found + [unit for unit in ("mg", "g") if _gravities(low, unit)]
     found = []
@@ -281,19 +273,16 @@ def unit_in(text: str, quantity: str = "acceleration") -> str | None:
 
 
 _WORDS = {
-    "acceleration": r"(?<![a-z])acc(?![io])", "velocity": r"(?<![a-z])vel(?:oc\w*)?(?![a-z])",
+    "acceleration": r"(?<![a-z])acc(?![io])",
+    "velocity": r"(?<![a-z])vel(?:oc\w*)?(?![a-z])",
     "displacement": r"(?<![a-z])displ?(?:acem\w*)?(?![a-z])",
-}  # fmt: skip
+}
 _WAVES = r"(?:shear|s|p|secondary|primary)[\s-]+(?:wave\s+)?velocity|velocity\s+(?:model|structure)|vs_?30"
 
 
 def quantities_in(text: str) -> list[str]:
     """What a header says that its numbers are, by its words and units: none, one, or several of QUANTITIES."""
     low = re.sub(_WAVES, "", tidy(text).lower())
-    found = [
-        name
-        for name, word in _WORDS.items()
-        if re.search(word, low) or (name != "displacement" and units_in(low, name))
-    ]
+    found = [name for name, word in _WORDS.items() if re.search(word, low) or (name != "displacement" and units_in(low, name))]
     sure = [name for name in found if units_in(low, name)]
     return sure if len(sure) == 1 else found

@@ -35,10 +35,16 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         section.stone(ax, blocks)
         for i, link in enumerate(links):
             rows = envelope[:, link]
-            ax.add_collection(LineCollection(
-                rows[np.isfinite(rows).all(axis=(1, 2))], colors=style.EDGE, linewidths=0.25, alpha=0.5, zorder=2.2,
-                label="thrust lines, all places" if i == 0 else "_",
-            ))  # fmt: skip
+            ax.add_collection(
+                LineCollection(
+                    rows[np.isfinite(rows).all(axis=(1, 2))],
+                    colors=style.EDGE,
+                    linewidths=0.25,
+                    alpha=0.5,
+                    zorder=2.2,
+                    label="thrust lines, all places" if i == 0 else "_",
+                )
+            )
         section.thrust_lines(ax, run, name, "collapse", style.THRUST, "thrust line")
         _zones(ax, run, name, links)
         _pushes(ax, run, name, size)
@@ -60,13 +66,13 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for drawn in (ax, moved):
             drawn.set_ylim(top=road + (0.15 if len(run.array(name, "axle")) else 0.06) * size)
             style.section_axes(drawn)
-        letters = "; ".join(
-            f"{f'{chr(65 + i)} ' if lettered else ''}{h.side} of {h.name}" for i, h in enumerate(r.hinges[:26])
-        )
-        found = [(
-            style.save(fig, folder, f"{name}-worst"),
-            f"The most dangerous place: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
-        )]  # fmt: skip
+        letters = "; ".join(f"{f'{chr(65 + i)} ' if lettered else ''}{h.side} of {h.name}" for i, h in enumerate(r.hinges[:26]))
+        found = [
+            (
+                style.save(fig, folder, f"{name}-worst"),
+                f"The most dangerous place: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
+            )
+        ]
     if len(place) == 1:
         return found
     adequacy = "adequacy" in run.arrays[name]
@@ -75,9 +81,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     with style.figure(7.5, 3.6) as (fig, (curve,)):
         for sense, colour, label in ((1, style.THRUST, "heading to +x"), (-1, style.HINGE, "heading to -x")):
             if (way == sense).any():
-                curve.plot(
-                    place[way == sense], value[way == sense], color=colour, marker=".", markersize=3, label=label
-                )
+                curve.plot(place[way == sense], value[way == sense], color=colour, marker=".", markersize=3, label=label)
         if (way < 0).any():
             curve.legend()
         if adequacy:
@@ -118,16 +122,7 @@ def _load_marks(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray], size
     for i, (start, stop) in enumerate(run.array(name, "even_load")):
         x = np.linspace(start, stop, 60)
         top = np.full(len(x), road) if paved else np.array([_surface(blocks, float(one), road) for one in x])
-        ax.fill_between(
-            x,
-            top,
-            top + 0.03 * size,
-            color=EVEN,
-            alpha=0.7,
-            linewidth=0.0,
-            zorder=4,
-            label="even load" if i == 0 else "_",
-        )
+        ax.fill_between(x, top, top + 0.03 * size, color=EVEN, alpha=0.7, linewidth=0.0, zorder=4, label="even load" if i == 0 else "_")
 
 
 def _surface(blocks: list[np.ndarray], x: float, otherwise: float) -> float:
@@ -150,9 +145,12 @@ def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
     for (x, y), f in zip(at, force, strict=True):
         if abs(f) > 0.01 * greatest:
             ax.annotate(
-                "", (x, y), (x - 0.08 * size * f / greatest, y), zorder=5,
+                "",
+                (x, y),
+                (x - 0.08 * size * f / greatest, y),
+                zorder=5,
                 arrowprops={"arrowstyle": "->", "color": style.GROUND, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0},
-            )  # fmt: skip
+            )
     ax.plot([], [], color=style.GROUND, label="passive pressure")
 
 
@@ -163,11 +161,4 @@ def _zones(ax: Axes, run: Stored, name: str, links: list[np.ndarray]) -> None:
     inner, outer = run.array(name, "zone_inner"), run.array(name, "zone_outer")
     for i, joints in enumerate(links):
         band = np.concatenate([inner[joints], outer[joints][::-1]])
-        ax.fill(
-            *band.T,
-            color=style.THRUST,
-            alpha=0.35,
-            linewidth=0.0,
-            zorder=2.5,
-            label="zone of thrust" if i == 0 else "_",
-        )
+        ax.fill(*band.T, color=style.THRUST, alpha=0.35, linewidth=0.0, zorder=2.5, label="zone of thrust" if i == 0 else "_")

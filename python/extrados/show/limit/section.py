@@ -35,17 +35,11 @@ def carried(blocks: list[np.ndarray], centroid: np.ndarray, pose: np.ndarray) ->
 def stone(ax: Axes, blocks: list[np.ndarray], *, ghost: bool = False) -> None:
     """Blocks as hatched stone, or as dotted outlines where only their former place is meant."""
     if ghost:
-        ax.add_collection(
-            PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=0.4, linestyles=":")
-        )
+        ax.add_collection(PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=0.4, linestyles=":"))
     else:
-        ax.add_collection(
-            PolyCollection(blocks, facecolors=style.STONE, edgecolors=HATCH, hatch="////", linewidths=0.0, zorder=1)
-        )
+        ax.add_collection(PolyCollection(blocks, facecolors=style.STONE, edgecolors=HATCH, hatch="////", linewidths=0.0, zorder=1))
         width = 0.6 if len(blocks) < 200 else 0.25
-        ax.add_collection(
-            PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=width, zorder=1.5)
-        )
+        ax.add_collection(PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=width, zorder=1.5))
     ax.autoscale_view()
 
 
@@ -85,9 +79,8 @@ def resting(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray]) -> None:
         tails = heads - length * whole / len(heads)
         for head, tail in zip(heads, tails, strict=True):
             ax.annotate(
-                "", head, tail, zorder=6,
-                arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0},
-            )  # fmt: skip
+                "", head, tail, zorder=6, arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+            )
         ax.plot(*tails.T, color=LOAD, linewidth=0.8, zorder=6)
         ax.update_datalim(tails)
         style.letters(ax, tails[[len(tails) // 2]], [f"{np.hypot(*whole) / 1e3:.3g} kN"], LOAD)
@@ -104,15 +97,18 @@ def ties(ax: Axes, run: Stored, name: str, state: str, pose: np.ndarray | None =
         return
     ends, force = run.array(name, "tie_point"), run.array(name, forces)
     if pose is not None:
-        ends = np.stack(
-            [_moved(run, name, ends[:, k], run.array(name, "tie_block")[:, k], pose) for k in (0, 1)], axis=1
-        )
+        ends = np.stack([_moved(run, name, ends[:, k], run.array(name, "tie_block")[:, k], pose) for k in (0, 1)], axis=1)
     taut = np.abs(force) > 1e-6 * max(float(np.abs(force).max(initial=0.0)), 1e-300)
     for k, (one, two) in enumerate(ends):
         ax.plot(
-            *np.array([one, two]).T, "-o" if taut[k] else "--o", color=TIE, linewidth=1.3, markersize=3, zorder=4,
+            *np.array([one, two]).T,
+            "-o" if taut[k] else "--o",
+            color=TIE,
+            linewidth=1.3,
+            markersize=3,
+            zorder=4,
             label="tie" if k == 0 else "_",
-        )  # fmt: skip
+        )
     if pose is not None:
         return
     shown = ends[:MOST_TIES_TOLD].mean(axis=1)
@@ -135,18 +131,19 @@ def _pull(force: float) -> str:
 
 def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text: str) -> None:
     """A dimension line with arrows at both ends and its length beside it."""
-    ax.annotate(
-        "",
-        one,
-        two,
-        arrowprops={"arrowstyle": "<->", "linewidth": 0.7, "color": style.EDGE, "shrinkA": 0, "shrinkB": 0},
-    )
+    ax.annotate("", one, two, arrowprops={"arrowstyle": "<->", "linewidth": 0.7, "color": style.EDGE, "shrinkA": 0, "shrinkB": 0})
     upright = abs(one[0] - two[0]) < abs(one[1] - two[1])
     ax.annotate(
-        text, (0.5 * (one[0] + two[0]), 0.5 * (one[1] + two[1])), textcoords="offset points",
-        xytext=(-5, 0) if upright else (0, 3), ha="right" if upright else "center", va="center" if upright else "bottom",
-        fontsize=7, color=style.EDGE, rotation=90 if upright else 0,
-    )  # fmt: skip
+        text,
+        (0.5 * (one[0] + two[0]), 0.5 * (one[1] + two[1])),
+        textcoords="offset points",
+        xytext=(-5, 0) if upright else (0, 3),
+        ha="right" if upright else "center",
+        va="center" if upright else "bottom",
+        fontsize=7,
+        color=style.EDGE,
+        rotation=90 if upright else 0,
+    )
 
 
 def beside(run: Stored, name: str, ax: Axes) -> np.ndarray:
@@ -162,9 +159,7 @@ def overall_dimensions(ax: Axes, blocks: list[np.ndarray], others: np.ndarray) -
     away = 0.07 * max(right - left, high - low)
     dimension(ax, (left, low - away), (right, low - away), f"{right - left:.2f} m")
     dimension(ax, (left - away, low), (left - away, high), f"{high - low:.2f} m")
-    (most_left, lowest), (most_right, highest) = (
-        getattr(np.concatenate([points, others]), end)(axis=0) for end in ("min", "max")
-    )
+    (most_left, lowest), (most_right, highest) = (getattr(np.concatenate([points, others]), end)(axis=0) for end in ("min", "max"))
     ax.set_xlim(min(left - 2.6 * away, most_left - away), max(right, most_right) + 1.2 * away)
     ax.set_ylim(min(low - 2.0 * away, lowest - away), max(high, highest) + 1.2 * away)
 
@@ -185,9 +180,7 @@ def thrust_lines(ax: Axes, run: Stored, name: str, state: str, colour: str, labe
         width = MOST_FLOW * force / max(float(force.max(initial=0.0)), 1e-300)
         shown = np.flatnonzero(width > 0.01 * MOST_FLOW)
     ax.add_collection(
-        LineCollection(
-            [lines[k] for k in shown], linewidths=width[shown], colors=colour, capstyle="round", zorder=3, label=label
-        )
+        LineCollection([lines[k] for k in shown], linewidths=width[shown], colors=colour, capstyle="round", zorder=3, label=label)
     )
 
 

@@ -20,8 +20,7 @@ def draw_self_weight(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     corners = np.concatenate(blocks)
     size = float(np.ptp(corners, axis=0).max())
     speed = [
-        np.hypot(v[0] - v[2] * (o - c)[:, 1], v[1] + v[2] * (o - c)[:, 0]).max()
-        for o, c, v in zip(blocks, centroid, velocity, strict=True)
+        np.hypot(v[0] - v[2] * (o - c)[:, 1], v[1] + v[2] * (o - c)[:, 0]).max() for o, c, v in zip(blocks, centroid, velocity, strict=True)
     ]
     step = SHOWN * size / max(speed)
     pose = np.column_stack([centroid + step * velocity[:, :2], step * velocity[:, 2]])
@@ -31,9 +30,7 @@ def draw_self_weight(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         section.stone(ax, section.carried(blocks, centroid, pose))
         section.stone(ax, blocks, ghost=True)
         head = pose[fastest, :2]
-        ax.annotate(
-            "", head, centroid[fastest], zorder=6, arrowprops={"arrowstyle": "-|>", "color": style.THRUST, "linewidth": 1.6}
-        )  # fmt: skip
+        ax.annotate("", head, centroid[fastest], zorder=6, arrowprops={"arrowstyle": "-|>", "color": style.THRUST, "linewidth": 1.6})
         ax.set_title(title)
         style.section_axes(ax)
         style.save(fig, folder, f"{name}-self-weight")

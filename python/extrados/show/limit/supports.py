@@ -44,18 +44,11 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlabel("movement of the right support [m]")
         ax.set_ylabel("force on it [kN]")
         ax.legend()
-        found.append(
-            (
-                style.save(fig, folder, f"{name}-thrust"),
-                "Force of the arch on the moving support; dotted: a hinge moves.",
-            )
-        )
+        found.append((style.save(fig, folder, f"{name}-thrust"), "Force of the arch on the moving support; dotted: a hinge moves."))
     return found
 
 
-def _draw_settled(
-    run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray
-) -> tuple[str, str]:
+def _draw_settled(run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray) -> tuple[str, str]:
     """The structure before and after its supports gave way, magnified, with the widest openings in mm."""
     r, pose = run.results_of(name, MovingSupports), run.array(name, "settled_pose")
     place = np.column_stack([centroid, np.zeros(len(centroid))])
@@ -80,10 +73,16 @@ def _draw_settled(
             other = (q if end is p[o.joint] or np.array_equal(end, p[o.joint]) else p)[o.joint]
             away = (end - other) / max(float(np.hypot(*(end - other))), 1e-300)
             ax.annotate(
-                f"{o.opening_mm:.3g} mm", at, textcoords="offset points", xytext=tuple(22.0 * away), ha="center",
-                va="center", fontsize=7, color=style.HINGE,
+                f"{o.opening_mm:.3g} mm",
+                at,
+                textcoords="offset points",
+                xytext=tuple(22.0 * away),
+                ha="center",
+                va="center",
+                fontsize=7,
+                color=style.HINGE,
                 arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": style.HINGE},
-            )  # fmt: skip
+            )
         ax.set_title(f"Settlement of supports: movements and openings {factor:g} times as large")
         style.section_axes(ax)
         ax.margins(0.12)  # room for the openings beside the outermost stones
@@ -132,11 +131,7 @@ def film_supports(run: Stored, name: str, folder: Path) -> None:
             if follows:
                 thrust.set_data(*run.array(name, "film_line")[k].T)
             cursor.set_xdata([movement[k], movement[k]])
-            title.set_text(
-                f"support moved by {movement[k]:.1f} mm" if follows else f"{movement[k]:.0f} % of the movement"
-            )
+            title.set_text(f"support moved by {movement[k]:.1f} mm" if follows else f"{movement[k]:.0f} % of the movement")
 
         frames, rate = film.pictures(np.linspace(0.0, film.LASTS, len(movement)), kind, speed)
-        film.write(
-            fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [stones.drawn, thrust, cursor, title]
-        )
+        film.write(fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [stones.drawn, thrust, cursor, title])

@@ -45,26 +45,30 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 continue
             shown = change.value
             ax.annotate(
-                f"{change.before or 'falls'}|{change.after or 'falls'}", (change.value, 1.0), xycoords=("data", "axes fraction"),
-                ha="center", va="bottom", fontsize=7,
-            )  # fmt: skip
+                f"{change.before or 'falls'}|{change.after or 'falls'}",
+                (change.value, 1.0),
+                xycoords=("data", "axes fraction"),
+                ha="center",
+                va="bottom",
+                fontsize=7,
+            )
         ax.plot(
-            r.optimum_value,
-            r.optimum_tilt_angle_deg,
-            "*",
-            color="black",
-            markersize=9,
-            zorder=4,
-            label=f"greatest: {r.optimum_value:.4g}",
+            r.optimum_value, r.optimum_tilt_angle_deg, "*", color="black", markersize=9, zorder=4, label=f"greatest: {r.optimum_value:.4g}"
         )
         for gap in r.gaps:
             ax.plot(gap.value, 0.0, "x" if gap.status == "cannot-stand" else ".", color=style.THRUST, markersize=4)
         if r.upper_bound_values:
             bounded = np.isin(value, r.upper_bound_values)
             ax.plot(
-                value[bounded], tilt[bounded], "v", markersize=6, fillstyle="none", color=style.HINGE, zorder=4,
+                value[bounded],
+                tilt[bounded],
+                "v",
+                markersize=6,
+                fillstyle="none",
+                color=style.HINGE,
+                zorder=4,
                 label="upper bound (dilatant friction)",
-            )  # fmt: skip
+            )
         ax.set_ylim(bottom=0.0)
         ax.set_xlabel(f"{spoken(r.vary)} [{r.unit}]" if r.unit else spoken(r.vary))
         ax.set_ylabel("tilt at collapse [deg]")
@@ -86,12 +90,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 section.stone(ax, [moved[i] for i in np.flatnonzero(of == k)])
                 ax.set_title(f"Mechanism {k}")
                 style.section_axes(ax)
-            found.append(
-                (
-                    style.save(fig, folder, f"{name}-mechanisms"),
-                    "; ".join(f"{m.number}: {m.hinges}" for m in r.mechanisms[:6]),
-                )
-            )
+            found.append((style.save(fig, folder, f"{name}-mechanisms"), "; ".join(f"{m.number}: {m.hinges}" for m in r.mechanisms[:6])))
     return found
 
 
@@ -138,16 +137,13 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
     with style.figure(7.5, 3.8) as (fig, (ax,)):
         share = np.arange(1, len(lesser) + 1) / len(lesser)
         ax.axvspan(
-            r.low_collapse_acceleration_g, r.high_collapse_acceleration_g, color=style.STONE, zorder=0,
+            r.low_collapse_acceleration_g,
+            r.high_collapse_acceleration_g,
+            color=style.STONE,
+            zorder=0,
             label=f"nine in ten: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
-        )  # fmt: skip
-        ax.step(
-            lesser,
-            share,
-            where="post",
-            color=style.THRUST,
-            label=f"{r.count} surveys within {1e3 * r.deviation_m:.3g} mm",
         )
+        ax.step(lesser, share, where="post", color=style.THRUST, label=f"{r.count} surveys within {1e3 * r.deviation_m:.3g} mm")
         given = r.given_collapse_acceleration_g
         ax.axvline(given, color=style.HINGE, linestyle="--", label=f"as given: {given:.4f} g")
         ax.set_xlabel("collapse acceleration, the lesser of both senses [g]")

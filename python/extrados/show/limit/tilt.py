@@ -55,10 +55,14 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
             first = next(iter(r.thrusts))
-            section.polygon(forces, {
-                f"least, {first}": section.paths(run, name, "least_polygon")[first],
-                f"greatest, {first}": section.paths(run, name, "most_polygon")[first],
-            }, (style.THRUST, style.HINGE))  # fmt: skip
+            section.polygon(
+                forces,
+                {
+                    f"least, {first}": section.paths(run, name, "least_polygon")[first],
+                    f"greatest, {first}": section.paths(run, name, "most_polygon")[first],
+                },
+                (style.THRUST, style.HINGE),
+            )
             forces.set_title("Force polygons upright")
             found.append(
                 (
@@ -77,20 +81,14 @@ def _per_metre(r: Tilt, force: float) -> str:
 
 def _caption(r: Tilt) -> str:
     letters = "; ".join(f"{chr(65 + i)} {h.told()}" for i, h in enumerate(r.hinges[: section.MOST_LETTERED]))
-    free = (
-        " Where the line is not fixed by the mechanism its most central course is drawn."
-        if len(r.thrusts or {}) > 1
-        else ""
-    )
+    free = " Where the line is not fixed by the mechanism its most central course is drawn." if len(r.thrusts or {}) > 1 else ""
     slides = f" Joints slide: {DILATANT}." if r.dilating_joints else ""
     least = r.collapse_acceleration_non_associated_g if r.dilating_joints else None
     if least is not None:
         slides += f" Without dilatancy collapse is possible at {least:.4f} g (not drawn)."
         if r.collapse_acceleration_load_path_g is not None:
             slides += f" Load paths give the design value {r.collapse_acceleration_load_path_g:.4f} g."
-    return (
-        f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}{slides}"
-    )
+    return f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}{slides}"
 
 
 def _title(r: Tilt) -> str:
@@ -104,9 +102,7 @@ def _title(r: Tilt) -> str:
     return f"Collapse to +x at {r.collapse_acceleration_g:.4f} g at most (dilatant friction){without}"
 
 
-def _draw_fracture(
-    run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray, height: float
-) -> tuple[str, str]:
+def _draw_fracture(run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray, height: float) -> tuple[str, str]:
     r = run.results_of(name, Tilt)
     f = r.fracture
     with style.figure(9.5, height, columns=2) as (fig, (whole, cracked)):
@@ -115,16 +111,9 @@ def _draw_fracture(
         whole.set_title(f"Monolithic: {r.collapse_acceleration_g:.4f} g ({r.tilt_angle_deg:.2f} deg)")
         section.stone(cracked, blocks, ghost=True)
         section.stone(
-            cracked,
-            section.carried(
-                outlines(run, name, "crack_outline"),
-                run.array(name, "crack_centroid"),
-                run.array(name, "crack_pose"),
-            ),
+            cracked, section.carried(outlines(run, name, "crack_outline"), run.array(name, "crack_centroid"), run.array(name, "crack_pose"))
         )
-        cracked.plot(
-            *run.array(name, "crack").T, "--", color=style.HINGE, linewidth=1.4, zorder=4, label="fracture line"
-        )
+        cracked.plot(*run.array(name, "crack").T, "--", color=style.HINGE, linewidth=1.4, zorder=4, label="fracture line")
         cracked.legend(loc="lower center")
         cracked.set_title(f"Buttress cracked: {f.collapse_acceleration_g:.4f} g ({f.tilt_angle_deg:.2f} deg)")
         for ax in (whole, cracked):
@@ -167,9 +156,7 @@ def film_tilt(run: Stored, name: str, folder: Path) -> None:
                 ("least", "film_thrust_min", "--", style.HINGE),
                 ("greatest", "film_thrust_max", ":", style.GROUND),
             ):
-                chart.plot(
-                    np.degrees(tilt), run.array(name, key_of) / 1e3, style_of, color=colour, label=f"{word} thrust"
-                )
+                chart.plot(np.degrees(tilt), run.array(name, key_of) / 1e3, style_of, color=colour, label=f"{word} thrust")
             chart.set_ylabel("horizontal thrust [kN]")
             chart.legend()
         else:
@@ -197,11 +184,5 @@ def film_tilt(run: Stored, name: str, folder: Path) -> None:
         time = np.linspace(0.0, film.LASTS, count)
         frames, rate = film.pictures(time, kind, speed)
         film.write(
-            fig,
-            folder / "figures" / f"{name}.{kind}",
-            kind,
-            rate,
-            frames,
-            draw,
-            [ground, stones.drawn, *drawn.values(), cursor, title],
+            fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [ground, stones.drawn, *drawn.values(), cursor, title]
         )

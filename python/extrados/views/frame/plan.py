@@ -14,16 +14,7 @@ from extrados.core.frame import UNLIMITED, Frame, Link, MacroElement
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.properties import Material
-from extrados.model.structures.plan import (
-    MEETS,
-    PARALLEL,
-    Plan,
-    PlanWall,
-    StoreyFloor,
-    WallOpening,
-    meeting,
-    nearly_meeting,
-)
+from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, StoreyFloor, WallOpening, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.rules import Side, deformable
@@ -164,9 +155,7 @@ class _Maker:
                 )
         for k, corner in enumerate(plan.corners):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
-                raise BadGeometry(
-                    f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k)
-                )
+                raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
         if plan.beds:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own strength.")
         for w, wall in enumerate(plan.walls):
@@ -193,17 +182,25 @@ class _Maker:
             self._load(w, load.level or plan.reach(plan.walls[w])[1], 0.0, plan.walls[w].length, load.force, False)
         for prop in plan.props:
             w = self._named(prop.wall)
-            row = self._vector(w, 0.5 * plan.walls[w].length, prop.storey)[
-                int(np.abs(plan.walls[w].direction).argmin())
-            ]
+            row = self._vector(w, 0.5 * plan.walls[w].length, prop.storey)[int(np.abs(plan.walls[w].direction).argmin())]
             self.linear += HELD * np.outer(row, row)
         if plan.foundation_stiffness is not None:
             self._ground(plan.foundation_stiffness)
         elements = [self._element(strip) for strip in self.strips]
         return EquivalentFrame(
-            plan, self.nodes, self.strips, elements, [*self._corners(), *self._rods()], self.linear, self.weight, self.masses, self.inertia,
-            self.total, self.remarks, self.along,
-        )  # fmt: skip
+            plan,
+            self.nodes,
+            self.strips,
+            elements,
+            [*self._corners(), *self._rods()],
+            self.linear,
+            self.weight,
+            self.masses,
+            self.inertia,
+            self.total,
+            self.remarks,
+            self.along,
+        )
 
     def _named(self, name: str) -> int:
         return next(w for w, wall in enumerate(self.plan.walls) if wall.name == name)
@@ -241,11 +238,16 @@ class _Maker:
                 s = 0.5 * (start + end)
                 self.strips.append(
                     Strip(
-                        "pier", f"{wall.name}, storey {storey}, pier {k + 1}", w, storey, (start, end, foot, foot + tall),
-                        (start, end, foot + low, foot + low + height), _thickness(plan, wall, storey),
+                        "pier",
+                        f"{wall.name}, storey {storey}, pier {k + 1}",
+                        w,
+                        storey,
+                        (start, end, foot, foot + tall),
+                        (start, end, foot + low, foot + low + height),
+                        _thickness(plan, wall, storey),
                         (self._node(w, storey - 1, s), self._node(w, storey, s)),
                     )
-                )  # fmt: skip
+                )
         for level in range(1, last + 1):
             own = self.at[w, level]
             for k, (i, j) in enumerate(itertools.pairwise(own)):
@@ -259,9 +261,7 @@ class _Maker:
         plan = self.plan
         gap = (self.nodes[i].end, self.nodes[j].start)
         below = [o for o in wall.openings if o.storey == level and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
-        above = [
-            o for o in wall.openings if o.storey == level + 1 and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS
-        ]
+        above = [o for o in wall.openings if o.storey == level + 1 and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
         z = float(plan.levels[level])
         low = max((float(plan.levels[level - 1]) + o.z[1] for o in below), default=z)
         high = min((z + o.z[0] for o in above), default=z)
@@ -274,10 +274,16 @@ class _Maker:
         start, end = (float(np.mean([edge[side] for edge in edges])) for side in (0, 1))
         self.strips.append(
             Strip(
-                "spandrel", f"{wall.name}, level {level}, spandrel {k + 1}", w, level, (*gap, low, high), (start, end, low, high),
-                _thickness(plan, wall, level), (i, j),
+                "spandrel",
+                f"{wall.name}, level {level}, spandrel {k + 1}",
+                w,
+                level,
+                (*gap, low, high),
+                (start, end, low, high),
+                _thickness(plan, wall, level),
+                (i, j),
             )
-        )  # fmt: skip
+        )
 
     # Freedoms
 
@@ -290,15 +296,14 @@ class _Maker:
                 old, new = line[b], line[a]
                 line = [new if k == old else k for k in line]
         self.along: dict[tuple[int, int], int] = {}
-        self.turned = {
-            w: float(np.sign(plan.walls[w].direction @ plan.walls[line[w]].direction)) for w in range(len(line))
-        }
+        self.turned = {w: float(np.sign(plan.walls[w].direction @ plan.walls[line[w]].direction)) for w in range(len(line))}
         if any(sign < 0.0 for sign in self.turned.values()):
             w = next(w for w, sign in self.turned.items() if sign < 0.0)
             raise BadGeometry(
                 f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line and run against each other; give them one "
-                "sense", ("structure", "walls", w)
-            )  # fmt: skip
+                "sense",
+                ("structure", "walls", w),
+            )
         count = 0
         of: dict[tuple[int, int], int] = {}
         for w, wall in enumerate(plan.walls):
@@ -363,12 +368,7 @@ class _Maker:
             if level and massive:
                 x, y = np.asarray(self.plan.walls[w].start) + s * self.plan.walls[w].direction
                 self.masses.append(
-                    PointMass(
-                        share / GRAVITY,
-                        (float(x), float(y), float(self.plan.levels[level])),
-                        self._vector(w, s, level),
-                        level,
-                    )
+                    PointMass(share / GRAVITY, (float(x), float(y), float(self.plan.levels[level])), self._vector(w, s, level), level)
                 )
 
     def _weigh(self, strip: Strip) -> None:
@@ -414,9 +414,7 @@ class _Maker:
             turn = np.array([way[0] ** 2, way[1] ** 2, way[0] * way[1]])  # strain along the joists of exx, eyy, gamma
             law = floor.young * floor.joist_area / floor.joist_spacing * np.outer(turn, turn)
         else:
-            young, thickness = (
-                (RIGID_YOUNG, RIGID_THICKNESS) if floor.kind == "rigid" else (floor.young, floor.thickness)
-            )
+            young, thickness = (RIGID_YOUNG, RIGID_THICKNESS) if floor.kind == "rigid" else (floor.young, floor.thickness)
             assert young and thickness
             nu = floor.poisson
             law = young * thickness / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
@@ -472,29 +470,50 @@ class _Maker:
             depth, length = end - start, high - low
             law = _law(o.shear, cohesion, tension)
             return MacroElement(
-                freedoms, length, depth, strip.thickness, young,
-                shear * depth * strip.thickness / ((1.0 if law == "damage" else SHEAR_FACTOR) * length), pressed,
-                (s - i.s, low - float(levels[i.level]), s - j.s, high - float(levels[j.level])), shear=law, cohesion=cohesion,
-                friction=o.friction, tension=tension, slenderness=float(np.clip(length / depth, 1.0, 1.5)),
-                damage=(o.damage_compliance / shear, o.softening), drifts=(o.drift_flexure, o.drift_shear), sections=o.sections,
+                freedoms,
+                length,
+                depth,
+                strip.thickness,
+                young,
+                shear * depth * strip.thickness / ((1.0 if law == "damage" else SHEAR_FACTOR) * length),
+                pressed,
+                (s - i.s, low - float(levels[i.level]), s - j.s, high - float(levels[j.level])),
+                shear=law,
+                cohesion=cohesion,
+                friction=o.friction,
+                tension=tension,
+                slenderness=float(np.clip(length / depth, 1.0, 1.5)),
+                damage=(o.damage_compliance / shear, o.softening),
+                drifts=(o.drift_flexure, o.drift_shear),
+                sections=o.sections,
                 second_order=o.second_order,
-            )  # fmt: skip
+            )
         z = 0.5 * (low + high) - float(levels[i.level])
         depth, length = high - low, end - start
         moment, by_shear = self._spandrel_strength(strip, depth, length, cohesion, tension, pressed)
-        held = any(
-            x.lintel is not None for x in wall.openings if x.storey == strip.storey and x.x[0] < end and x.x[1] > start
-        )
+        held = any(x.lintel is not None for x in wall.openings if x.storey == strip.storey and x.x[0] < end and x.x[1] > start)
         residual = o.spandrel_residual if o.spandrel_residual is not None else 0.6 if held else 0.1
         return MacroElement(
-            freedoms, length, depth, strip.thickness, young, shear * depth * strip.thickness / (SHEAR_FACTOR * length), pressed,
-            (start - i.s, z, end - j.s, z), pier=False, upright=False, moment=moment, by_shear=by_shear,
-            drifts=(o.spandrel_drift_flexure, o.spandrel_drift_shear), kept=residual, second_order=False,
-        )  # fmt: skip
+            freedoms,
+            length,
+            depth,
+            strip.thickness,
+            young,
+            shear * depth * strip.thickness / (SHEAR_FACTOR * length),
+            pressed,
+            (start - i.s, z, end - j.s, z),
+            pier=False,
+            upright=False,
+            moment=moment,
+            by_shear=by_shear,
+            drifts=(o.spandrel_drift_flexure, o.spandrel_drift_shear),
+            kept=residual,
+            second_order=False,
+        )
 
     def _spandrel_strength(
         self, strip: Strip, depth: float, length: float, cohesion: float, tension: float, pressed: float
-    ) -> tuple[float, bool]:  # fmt: skip
+    ) -> tuple[float, bool]:
         """Moment of its hinges [N m] without a normal force, and whether shear limits it.
 
         Flexure: rectangular stress blocks, in tension f_ft = min(f_b t/2, f_v0 + mu sigma_y/phi) with sigma_y half the pressure of
@@ -536,11 +555,7 @@ class _Maker:
                 strength = f / o.confidence_factor * thin * tall if f else UNLIMITED
                 if bond is not None:
                     strength *= bond.strength
-                links.append(
-                    Link(
-                        (*p.freedoms, *q.freedoms), (1.0, s - p.s, -1.0, q.s - t), shear * tall, (strength, strength)
-                    )
-                )  # fmt: skip
+                links.append(Link((*p.freedoms, *q.freedoms), (1.0, s - p.s, -1.0, q.s - t), shear * tall, (strength, strength)))
         return links
 
     def _rods(self) -> list[Link]:
@@ -551,9 +566,7 @@ class _Maker:
             way = (ends[1] - ends[0])[:2]
             length = float(np.linalg.norm(ends[1] - ends[0]))
             if rod.material not in self.building.materials:
-                raise BadGeometry(
-                    f"rod {k + 1}: there is no [materials.{rod.material}]", ("structure", "rods", k, "material")
-                )
+                raise BadGeometry(f"rod {k + 1}: there is no [materials.{rod.material}]", ("structure", "rods", k, "material"))
             steel = self.building.materials[rod.material]
             row = np.zeros(len(self.weight))
             for sign, end in ((-1.0, ends[0]), (1.0, ends[1])):
@@ -566,29 +579,18 @@ class _Maker:
                 ]
                 if not found or min(found)[0] > 0.5:
                     raise BadGeometry(
-                        f"rod {k + 1}: its end at {', '.join(f'{v:g}' for v in end)} m is not on a wall",
-                        ("structure", "rods", k),
+                        f"rod {k + 1}: its end at {', '.join(f'{v:g}' for v in end)} m is not on a wall", ("structure", "rods", k)
                     )
                 _, w, s = min(found)
                 row += sign * way / length @ self._vector(w, s, level)
             own = np.flatnonzero(np.abs(row) > 1e-12)
             if not len(own):
-                self.remarks.append(
-                    f"Rod {k + 1} runs along a wall whose nodes move together: it has no effect on the frame."
-                )
+                self.remarks.append(f"Rod {k + 1} runs along a wall whose nodes move together: it has no effect on the frame.")
                 continue
             if len(own) > 8:
                 raise BadGeometry(f"rod {k + 1}: expected ends at corners of walls", ("structure", "rods", k))
             pull = UNLIMITED if steel.tensile_strength is None else rod.area * steel.tensile_strength
-            links.append(
-                Link(
-                    tuple(own.tolist()),
-                    tuple(row[own].tolist()),
-                    steel.young * rod.area / length,
-                    (0.0, pull),
-                    rod.prestress,
-                )
-            )
+            links.append(Link(tuple(own.tolist()), tuple(row[own].tolist()), steel.young * rod.area / length, (0.0, pull), rod.prestress))
         return links
 
 
@@ -603,10 +605,7 @@ def _law(wanted: str, cohesion: float, tension: float) -> str:
     if wanted == "least" and not tension > 0.0:
         return "mohr-coulomb"
     if not tension > 0.0:
-        raise BadGeometry(
-            f"{wanted} needs diagonal_strength",
-            ("analysis", "frame", "shear"),
-        )
+        raise BadGeometry(f"{wanted} needs diagonal_strength", ("analysis", "frame", "shear"))
     return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else wanted
 
 

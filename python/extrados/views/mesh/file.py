@@ -34,9 +34,7 @@ def open_mesh(wall: MeshFile, building: Description) -> tuple[str, ForeignMesh]:
     for cells in mesh.cells:
         data = np.asarray(cells.data)
         if data.size and (data.min() < 0 or data.max() >= len(points)):
-            raise BadGeometry(
-                f"{path.name}: a cell of kind '{cells.type}' names a node that is not there; there are {len(points)}"
-            )
+            raise BadGeometry(f"{path.name}: a cell of kind '{cells.type}' names a node that is not there; there are {len(points)}")
     return path.name, mesh
 
 
@@ -50,10 +48,7 @@ def mesh_file(building: Description, options: MeshOptions, seed: int | None = No
 def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Mesh:
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     if wall.groups:
-        raise BadGeometry(
-            "groups are of shells in space, which `pushover` analyses; a plane wall takes regions",
-            ("structure", "groups"),
-        )
+        raise BadGeometry("groups are of shells in space, which `pushover` analyses; a plane wall takes regions", ("structure", "groups"))
     name, mesh = open_mesh(wall, building)
     found: dict[str, list[np.ndarray]] = {}
     for cells in mesh.cells:
@@ -66,9 +61,7 @@ def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Me
         raise BadGeometry(f"{name}: holds plane cells of kind {kinds}; expected exactly one of {', '.join(KINDS)}")
     points = np.asarray(mesh.points, dtype=float)
     if points.shape[1] > 2 and np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2]):
-        raise BadGeometry(
-            f"{name}: the mesh is not plane: z runs from {points[:, 2].min():g} to {points[:, 2].max():g}"
-        )
+        raise BadGeometry(f"{name}: the mesh is not plane: z runs from {points[:, 2].min():g} to {points[:, 2].max():g}")
     ((word, parts),) = found.items()
     kind, connect = KINDS[word], np.concatenate(parts)
     xy = wall.scale * points[:, :2]

@@ -97,9 +97,7 @@ class Mesh:
         tolerance = 1e-6 * float(np.max(self.high - self.low))
         inside = np.ones(len(self.xy), dtype=bool)
         if place.edge is not None:
-            axis, end = {
-                "left": (0, self.low), "right": (0, self.high), "bottom": (1, self.low), "top": (1, self.high),
-            }[place.edge]  # fmt: skip
+            axis, end = {"left": (0, self.low), "right": (0, self.high), "bottom": (1, self.low), "top": (1, self.high)}[place.edge]
             inside &= np.abs(self.xy[:, axis] - end[axis]) <= tolerance
         point = [r[0] for r in (place.x, place.y) if r is not None and r[0] == r[1]]
         if len(point) == 2 and place.edge is None:
@@ -121,9 +119,7 @@ class Mesh:
                 inside &= (self.xy[:, axis] >= ends[0] - tolerance) & (self.xy[:, axis] <= ends[1] + tolerance)
         found = np.flatnonzero(inside)
         if not len(found):
-            raise BadGeometry(
-                f"{what}: no node lies on edge {place.edge}, x {place.x}, y {place.y}; a mesh line is missing"
-            )
+            raise BadGeometry(f"{what}: no node lies on edge {place.edge}, x {place.x}, y {place.y}; a mesh line is missing")
         return found
 
     def tell(self, warning: str) -> None:
@@ -206,9 +202,8 @@ def add_middles(xy: np.ndarray, kind: str, connect: np.ndarray) -> tuple[np.ndar
 
 
 def build_mesh(
-    wall: MeshedWall, building: Description, options: MeshOptions, xy: np.ndarray, kind: str, connect: np.ndarray,
-    size: float,
-) -> Mesh:  # fmt: skip
+    wall: MeshedWall, building: Description, options: MeshOptions, xy: np.ndarray, kind: str, connect: np.ndarray, size: float
+) -> Mesh:
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
         raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: leave joint_thickness out")
@@ -258,10 +253,7 @@ def build_mesh(
     for gauss in np.unique(rule, axis=0):
         mine = (rule == gauss).all(axis=1)
         groups.append(
-            ElementGroup(kind, connect[mine], (int(gauss[0]), int(gauss[1])), thickness[mine], material[mine], linear[mine],
-                  axis[mine])
-        )  # fmt: skip
+            ElementGroup(kind, connect[mine], (int(gauss[0]), int(gauss[1])), thickness[mine], material[mine], linear[mine], axis[mine])
+        )
     held = building.supports.held or [Held(edge="bottom")]
-    return Mesh(
-        xy, groups, materials, size, held, wall.ties, wall.bars, building.materials, options.selective, warnings
-    )
+    return Mesh(xy, groups, materials, size, held, wall.ties, wall.bars, building.materials, options.selective, warnings)

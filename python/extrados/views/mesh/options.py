@@ -23,9 +23,7 @@ class MeshOptions(Table):
     """Kind, size and pattern of the elements."""
 
     size: Length | None = key(
-        None,
-        "wanted size of the elements; default a twentieth of a wall's lesser side, an eighth of the median joint of stones",
-        gt=0,
+        None, "wanted size of the elements; default a twentieth of a wall's lesser side, an eighth of the median joint of stones", gt=0
     )
     joints: Literal["interfaces", "rows"] | None = key(
         None,
@@ -38,9 +36,7 @@ class MeshOptions(Table):
         "of the shortest element along a joint. The stiffness of interfaces is by default that of the stone over it",
         gt=0,
     )
-    element: Literal["T3", "T6", "Q4", "Q8"] = key(
-        "Q4", "kind of element; stones have triangles where quadrilaterals do not fit"
-    )
+    element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; stones have triangles where quadrilaterals do not fit")
     pattern: Literal["structured", "random"] = key(
         "structured", "structured grid, or triangles on randomly moved points (no mesh lines for cracks to follow)"
     )

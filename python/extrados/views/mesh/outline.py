@@ -12,9 +12,7 @@ from extrados.model.geometry.polygons import signed_area
 JITTER = 0.33  # of the spacing: Delaunay triangles stay well shaped and keep to straight edges
 
 
-def fill_outline(
-    drawing: str, unit: str | None, folder: Path, size: float, seed: int
-) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
+def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed: int) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Nodes (n, 2) [m] and triangles (m, 3) within the outline of a DXF file, about `size` [m] apart, and what is to be said of
     the file."""
     from matplotlib.path import Path as Ring

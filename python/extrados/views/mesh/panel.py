@@ -47,9 +47,7 @@ def make_panel(panel: Panel, building: Description, options: MeshOptions, seed: 
     notes: tuple[str, ...] = ()
     if panel.outline is not None:
         if options.element not in ("T3", "T6"):
-            raise BadGeometry(
-                f'an outline is filled with triangles: element is {options.element}, expected "T3" or "T6"'
-            )
+            raise BadGeometry(f'an outline is filled with triangles: element is {options.element}, expected "T3" or "T6"')
         if options.lines_x or options.lines_y or options.refine:
             raise BadGeometry("an outline takes no lines_x, lines_y or refine: its corners lead the mesh")
         if options.size is None:
@@ -62,9 +60,7 @@ def make_panel(panel: Panel, building: Description, options: MeshOptions, seed: 
         smallest = min([size, *(r.size for r in options.refine)])
         count = width * height / smallest**2
         if count > LARGEST_MESH:
-            raise BadGeometry(
-                f"about {count:.2g} elements of {smallest:g} m: the most are {LARGEST_MESH:g}; use larger elements"
-            )
+            raise BadGeometry(f"about {count:.2g} elements of {smallest:g} m: the most are {LARGEST_MESH:g}; use larger elements")
         placed = [*panel.openings, *panel.regions, *options.refine, *building.supports.held, *panel.ties]
         layout = Layout(width, height, panel.openings, placed, options, size)
         columns, rows = grid_lines(layout, 0), grid_lines(layout, 1)
@@ -131,9 +127,7 @@ def grid(columns: np.ndarray, rows: np.ndarray, layout: Layout) -> tuple[np.ndar
     return xy, np.concatenate([a[:, [0, 1, 2]], a[:, [0, 2, 3]], b[:, [0, 1, 3]], b[:, [1, 2, 3]]])
 
 
-def random_triangles(
-    columns: np.ndarray, rows: np.ndarray, layout: Layout, fixed_ranges: list, seed: int
-) -> tuple[np.ndarray, np.ndarray]:
+def random_triangles(columns: np.ndarray, rows: np.ndarray, layout: Layout, fixed_ranges: list, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Delaunay triangles on the grid's points, those inside moved at random."""
     from scipy.spatial import Delaunay
 
@@ -143,9 +137,7 @@ def random_triangles(
     hollow = np.zeros(len(xy), dtype=bool)
     fixed = np.zeros(len(xy), dtype=bool)
     # Points on the outline, on openings and on mesh lines that supports or loads need stay where they are.
-    fixed |= (np.abs(xy) <= tolerance).any(axis=1) | (np.abs(xy - [layout.width, layout.height]) <= tolerance).any(
-        axis=1
-    )
+    fixed |= (np.abs(xy) <= tolerance).any(axis=1) | (np.abs(xy - [layout.width, layout.height]) <= tolerance).any(axis=1)
     for o in layout.openings:
         near = (xy[:, 0] >= o.x[0] - tolerance) & (xy[:, 0] <= o.x[1] + tolerance)
         near &= (xy[:, 1] >= o.y[0] - tolerance) & (xy[:, 1] <= o.y[1] + tolerance)
@@ -158,10 +150,7 @@ def random_triangles(
             for end in ends or ():
                 fixed |= np.abs(xy[:, axis] - end) <= tolerance
     spacing = np.column_stack(
-        [
-            np.minimum(*_gaps(columns))[np.searchsorted(columns, xy[:, 0])],
-            np.minimum(*_gaps(rows))[np.searchsorted(rows, xy[:, 1])],
-        ]
+        [np.minimum(*_gaps(columns))[np.searchsorted(columns, xy[:, 0])], np.minimum(*_gaps(rows))[np.searchsorted(rows, xy[:, 1])]]
     )
     move = np.random.default_rng(seed).uniform(-JITTER, JITTER, xy.shape) * spacing
     xy = np.where(fixed[:, None], xy, xy + move)[~hollow]

@@ -107,9 +107,7 @@ def anchored(corners: Corners, ends: np.ndarray, among: list[np.ndarray | None])
         node, share = corners.shares(end, elements)
         nodes.append(node)
         gradient.append(sign * share[:, None] * along / length**2)
-    return Rod(
-        np.concatenate(nodes)[None], np.concatenate(gradient)[None], np.array([length]), np.array([0.5 * length])
-    )
+    return Rod(np.concatenate(nodes)[None], np.concatenate(gradient)[None], np.array([length]), np.array([0.5 * length]))
 
 
 def bonded(corners: Corners, ends: np.ndarray, what: str) -> Rod:

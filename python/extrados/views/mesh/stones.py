@@ -74,8 +74,7 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     thickness = options.joint_thickness or min(THICKNESS * size, THICKNESS_OF_SIDE * shortest)
     if thickness > 0.5 * shortest:
         raise BadGeometry(
-            f"joint_thickness {thickness:g} m is too large for joint elements {shortest:g} m long; at most "
-            f"{0.5 * shortest:g} m"
+            f"joint_thickness {thickness:g} m is too large for joint elements {shortest:g} m long; at most {0.5 * shortest:g} m"
         )
     snap = max(1e-7 * assembly.size, 10.0 * assembly.tolerance)
     triangles_only = options.element == "T3"
@@ -106,10 +105,11 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
         parts = [first[i] + (s.quads if kind == "Q4" else s.triangles) for i, s in enumerate(stones)]
         if len(connect := np.concatenate(parts)):
             n = len(connect)
-            groups.append(ElementGroup(
-                kind, connect, gauss, np.full(n, assembly.depth), np.zeros(n, dtype=int), np.zeros(n, dtype=bool),
-                np.full(n, np.nan),
-            ))  # fmt: skip
+            groups.append(
+                ElementGroup(
+                    kind, connect, gauss, np.full(n, assembly.depth), np.zeros(n, dtype=int), np.zeros(n, dtype=bool), np.full(n, np.nan)
+                )
+            )
     building.refuse_mixture()
     if rows_of_elements:
         materials, group = _rows(building, assembly, thickness, nodes, row, joint)
@@ -120,11 +120,21 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     stone_of = np.repeat([*range(len(stones)), -1], [*(len(s.xy) for s in stones), free - first[-1]])
     walled = building.structure if isinstance(building.structure, MeshedWall) else None
     return Mesh(
-        nodes, groups, [building.material, *materials], size, building.supports.held, walled.ties if walled else [],
-        walled.bars if walled else [], building.materials, options.selective,
-        mass=mass, stone=stone_of, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
+        nodes,
+        groups,
+        [building.material, *materials],
+        size,
+        building.supports.held,
+        walled.ties if walled else [],
+        walled.bars if walled else [],
+        building.materials,
+        options.selective,
+        mass=mass,
+        stone=stone_of,
+        ground=None if building.supports.held else np.concatenate(ground),
+        joint_names=assembly.joint_names,
         warnings=passive_left_out(assembly.earth),
-    )  # fmt: skip
+    )
 
 
 def _rows(
@@ -135,42 +145,37 @@ def _rows(
     row[turned] = row[turned][:, [1, 0, 3, 2]]  # the first side stays along the joint
     bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
     if len(bad):
-        raise BadGeometry(
-            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' folds: use a smaller joint_thickness"
-        )
+        raise BadGeometry(f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' folds: use a smaller joint_thickness")
     materials, index, dry = _joint_materials(building, assembly, thickness)
     normal = assembly.normal[joint]
     n = len(row)
     return materials, ElementGroup(
-        "Q4", row, ROW_POINTS, np.full(n, assembly.depth), 1 + index[joint], np.zeros(n, dtype=bool),
-        np.arctan2(normal[:, 1], normal[:, 0]), band=thickness, joint=joint, dry=dry[joint],
-    )  # fmt: skip
+        "Q4",
+        row,
+        ROW_POINTS,
+        np.full(n, assembly.depth),
+        1 + index[joint],
+        np.zeros(n, dtype=bool),
+        np.arctan2(normal[:, 1], normal[:, 0]),
+        band=thickness,
+        joint=joint,
+        dry=dry[joint],
+    )
 
 
 def _interfaces(
     building: Masonry, assembly: Assembly, thickness: float, nodes: np.ndarray, row: np.ndarray, joint: np.ndarray
 ) -> tuple[list[Material], ElementGroup]:
     """Joints of no thickness. Their stiffness is the joint's, or that of a layer of stone of `thickness`."""
-    names = (
-        "tension",
-        "fracture_energy",
-        "friction",
-        "cohesion",
-        "shear_energy",
-        "compressive_strength",
-        "crushing_energy",
-    )
+    names = ("tension", "fracture_energy", "friction", "cohesion", "shear_energy", "compressive_strength", "crushing_energy")
     value = {name: building.joint_property(name) for name in names}
     for strength, energy in (("tension", "fracture_energy"), ("cohesion", "shear_energy")):
         if (missing := np.flatnonzero((value[strength] > 0.0) & np.isnan(value[energy]))).size:
             raise BadGeometry(
-                f"joint '{assembly.joint_names[missing[0]]}' has a {strength} but no {energy}: give joints.{energy}, or "
-                f"{strength} = 0"
+                f"joint '{assembly.joint_names[missing[0]]}' has a {strength} but no {energy}: give joints.{energy}, or {strength} = 0"
             )
     if (missing := np.flatnonzero(np.isnan(value["compressive_strength"]) != np.isnan(value["crushing_energy"]))).size:
-        raise BadGeometry(
-            f"joint '{assembly.joint_names[missing[0]]}': compressive_strength and crushing_energy go together"
-        )
+        raise BadGeometry(f"joint '{assembly.joint_names[missing[0]]}': compressive_strength and crushing_energy go together")
     stiffness = _in_series(building, assembly, 1.0 / thickness)
     joints = building.joints
     shear = np.full(len(stiffness), joints.shear_stiffness or np.nan)
@@ -184,16 +189,29 @@ def _interfaces(
     area = np.column_stack([np.where(begins, half, 0.0), half + np.where(ends, 0.0, np.roll(half, -1))])
     value["friction"][value["friction"] >= NO_SLIDING_COEFFICIENT] = np.nan
     law = JointLaw(
-        normal=assembly.normal[joint], area=area, normal_stiffness=stiffness[joint], shear_stiffness=shear[joint],
-        **{name: values[joint] for name, values in value.items()}, small=_small_stress(assembly),
+        normal=assembly.normal[joint],
+        area=area,
+        normal_stiffness=stiffness[joint],
+        shear_stiffness=shear[joint],
+        **{name: values[joint] for name, values in value.items()},
+        small=_small_stress(assembly),
         softening=joints.softening,
-    )  # fmt: skip
+    )
     # Of joints a material holds only the stiffness: their strain is the jump, over a band of 1 m
     materials = [Material(density=0.0, young=float(k), poisson=0.0) for k in found]
     return materials, ElementGroup(
-        "Q4", row, (2, 1), np.full(n, assembly.depth), 1 + index[joint], np.zeros(n, dtype=bool),
-        np.arctan2(law.normal[:, 1], law.normal[:, 0]), band=1.0, joint=joint, dry=dry[joint], law=law,
-    )  # fmt: skip
+        "Q4",
+        row,
+        (2, 1),
+        np.full(n, assembly.depth),
+        1 + index[joint],
+        np.zeros(n, dtype=bool),
+        np.arctan2(law.normal[:, 1], law.normal[:, 0]),
+        band=1.0,
+        joint=joint,
+        dry=dry[joint],
+        law=law,
+    )
 
 
 def _in_series(building: Masonry, assembly: Assembly, per_length: float) -> np.ndarray:
@@ -222,9 +240,7 @@ def _refuse(options: MeshOptions) -> None:
         raise BadGeometry("stones take no refine, lines_x or lines_y: their joints lead the mesh")
 
 
-def _joint_materials(
-    building: Masonry, assembly: Assembly, thickness: float
-) -> tuple[list[Material], np.ndarray, np.ndarray]:
+def _joint_materials(building: Masonry, assembly: Assembly, thickness: float) -> tuple[list[Material], np.ndarray, np.ndarray]:
     """Materials of the rows, the index of each joint's, and which joints are dry.
 
     The modulus gives the row the normal stiffness of the joint, in series with that of the ground, or that of the
@@ -244,16 +260,11 @@ def _joint_materials(
     # Far from the snap-back of the row itself, 2 E Gf / ft^2 > thickness; without meaning in a dry joint
     energy = np.where(dry, 5.0 * small**2 * thickness / young, energy)
     found: dict[tuple[float, float, float], int] = {}
-    index = np.array(
-        [found.setdefault(values, len(found)) for values in zip(young, strength, energy, strict=True)], dtype=int
-    )
+    index = np.array([found.setdefault(values, len(found)) for values in zip(young, strength, energy, strict=True)], dtype=int)
     materials = [
-        Material(
-            density=0.0, young=float(e), poisson=0.0, tensile_strength=float(f), fracture_energy=float(g),
-            softening=stone.softening,
-        )
+        Material(density=0.0, young=float(e), poisson=0.0, tensile_strength=float(f), fracture_energy=float(g), softening=stone.softening)
         for e, f, g in found
-    ]  # fmt: skip
+    ]
     return materials, index, dry
 
 
@@ -286,9 +297,8 @@ def _divided(p: np.ndarray, q: np.ndarray, size: float, most: int) -> np.ndarray
 
 
 def _stone(
-    assembly: Assembly, block: int, lines: list[np.ndarray], size: float, thickness: float, snap: float,
-    triangles_only: bool,
-) -> Stone:  # fmt: skip
+    assembly: Assembly, block: int, lines: list[np.ndarray], size: float, thickness: float, snap: float, triangles_only: bool
+) -> Stone:
     pieces = _outline_pieces(assembly, block, lines, snap)
     name = assembly.block_names[block]
     sides = None if triangles_only else _four_sides(pieces, size)
@@ -338,10 +348,7 @@ def _outline_pieces(assembly: Assembly, block: int, lines: list[np.ndarray], sna
             gap = np.where(edge @ t > 0.9 * length, gap, np.inf)
             k = int(gap.argmin())
             if gap[k] > max(snap, 1e-3 * assembly.length[j]):
-                raise BadGeometry(
-                    f"joint '{assembly.joint_names[j]}' does not lie on the outline of block "
-                    f"'{assembly.block_names[block]}'"
-                )
+                raise BadGeometry(f"joint '{assembly.joint_names[j]}' does not lie on the outline of block '{assembly.block_names[block]}'")
             ends.append(at[k] + run[k] * length[k])
         begin, end = ends
         found.append((begin, end if end > begin else end + around, int(j), line))
@@ -415,8 +422,9 @@ def _four_sides(pieces: list[Piece], size: float) -> list[list[Piece]] | None:
         loose = [[k for k, p in enumerate(side) if p.joint < 0] for side in pair]
         least = [f + len(w) for f, w in zip(fixed, loose, strict=True)]
         if loose[0] and loose[1]:
-            wanted = round(np.mean([f + sum(_count(side[k].points, size) for k in w)
-                                    for f, w, side in zip(fixed, loose, pair, strict=True)]))  # fmt: skip
+            wanted = round(
+                np.mean([f + sum(_count(side[k].points, size) for k in w) for f, w, side in zip(fixed, loose, pair, strict=True)])
+            )
             wanted = max(wanted, *least)
         else:
             wanted = fixed[1] if loose[0] else fixed[0]
@@ -459,11 +467,7 @@ def _withdrawal(assembly: Assembly, block: int, pieces: list[Piece], thickness: 
             move = free * width / slope if abs(slope) > 0.3 else normal * width
         else:
             move = np.zeros(2)
-        inner = (
-            np.zeros((len(piece.points) - 2, 2))
-            if there is None
-            else np.tile(there[0] * there[1], (len(piece.points) - 2, 1))
-        )
+        inner = np.zeros((len(piece.points) - 2, 2)) if there is None else np.tile(there[0] * there[1], (len(piece.points) - 2, 1))
         moves += [move[None], inner]
     return np.concatenate(moves)
 

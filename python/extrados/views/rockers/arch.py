@@ -108,9 +108,7 @@ class ArchModel:
         try:
             state, mechanism = self.limit.collapse(1)
         except Immovable:
-            raise NoView(
-                "no horizontal load makes a mechanism of this arch: its joints restrain it on all sides", WHOLE
-            ) from None
+            raise NoView("no horizontal load makes a mechanism of this arch: its joints restrain it on all sides", WHOLE) from None
         except NoEquilibrium:
             state = None
         if state is None or state.gamma <= 0.0:
@@ -149,11 +147,7 @@ class ArchModel:
     def impacts(self) -> Impacts:
         """c_v by each rule."""
         a, m = self.arch, self.four_hinge
-        opposite = np.where(
-            np.isclose(m.hinge, a.intrados[m.joint]).all(axis=1)[:, None],
-            a.extrados[m.joint],
-            a.intrados[m.joint],
-        )
+        opposite = np.where(np.isclose(m.hinge, a.intrados[m.joint]).all(axis=1)[:, None], a.extrados[m.joint], a.intrados[m.joint])
         thesis, projection = core_arch.restitution(a.mass, a.centroid, a.inertia, m.joint, m.hinge, opposite)
         one, _ = self.linkages
         opening = one.velocities(a.centroid, core_mechanism.follow(one, [0.0])[1][0])

@@ -77,14 +77,7 @@ class BlockModel:
         """The structure with c_v times a factor, at most 1."""
         b, (right, left) = self.block, np.minimum(1.0, factor * self.restitution)
         return block_body(
-            float(b.mass[0]),
-            float(b.inertia[0]),
-            b.centre_height,
-            b.toe_right,
-            b.toe_left,
-            (right, left),
-            self.linear,
-            b.slope,
+            float(b.mass[0]), float(b.inertia[0]), b.centre_height, b.toe_right, b.toe_left, (right, left), self.linear, b.slope
         )
 
 

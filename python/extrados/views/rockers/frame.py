@@ -46,10 +46,19 @@ class FrameModel(MechanismModel):
             rows += [(n + 1 + k, 1) for k in range(1, n)]
             made.append(
                 Linkage(
-                    side, np.arange(n + 1) + 1, a.mass, a.centroid, a.inertia, np.arange(2 * n), joined, point,
-                    np.array(rows[: 3 * (n + 1) - 1]), 1, -side,
+                    side,
+                    np.arange(n + 1) + 1,
+                    a.mass,
+                    a.centroid,
+                    a.inertia,
+                    np.arange(2 * n),
+                    joined,
+                    point,
+                    np.array(rows[: 3 * (n + 1) - 1]),
+                    1,
+                    -side,
                 )
-            )  # fmt: skip
+            )
         return made[0], made[1]
 
     @cached_property
@@ -72,9 +81,7 @@ class FrameModel(MechanismModel):
         """1/p [s]."""
         a = self.assembly
         moment = (a.mass[:-1].sum() + 2.0 * a.mass[-1]) * a.radius * GRAVITY
-        return float(
-            np.sqrt((a.inertia[:-1].sum() + a.mass[:-1].sum() * a.radius**2 + 4.0 * a.mass[-1] * a.radius**2) / moment)
-        )
+        return float(np.sqrt((a.inertia[:-1].sum() + a.mass[:-1].sum() * a.radius**2 + 4.0 * a.mass[-1] * a.radius**2) / moment))
 
     @property
     def energy_kept(self) -> None:
@@ -102,11 +109,4 @@ class FrameModel(MechanismModel):
         columns, lintel = float(a.mass[:-1].sum()), float(a.mass[-1])
         inertia = float(a.inertia[:-1].sum()) + 2.0 * lintel * a.radius**2
         half = 0.5 * a.width
-        return block_body(
-            columns + 2.0 * lintel,
-            inertia,
-            0.5 * a.height,
-            half,
-            half,
-            (min(1.0, factor * right), min(1.0, factor * left)),
-        )
+        return block_body(columns + 2.0 * lintel, inertia, 0.5 * a.height, half, half, (min(1.0, factor * right), min(1.0, factor * left)))

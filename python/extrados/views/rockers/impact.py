@@ -21,9 +21,14 @@ def inelastic_impact(assembly: Assembly, velocity: np.ndarray) -> np.ndarray:
     a = assembly
     mass, centroid, inertia = laden(a)
     return inelastic_blow(
-        mass, inertia, centroid, np.stack([a.a, a.b], axis=1), np.stack([a.p, a.q], axis=1),
-        np.stack([a.normal, a.tangent], axis=1), velocity,
-    )  # fmt: skip
+        mass,
+        inertia,
+        centroid,
+        np.stack([a.a, a.b], axis=1),
+        np.stack([a.p, a.q], axis=1),
+        np.stack([a.normal, a.tangent], axis=1),
+        velocity,
+    )
 
 
 def energy_kept(assembly: Assembly, velocity: np.ndarray) -> float:

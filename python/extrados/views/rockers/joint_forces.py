@@ -101,9 +101,7 @@ class JointForces:
             lever = at[:, inside, :2] - end[:, None]
             load = needed[:, :, inside]
             force = load[..., :2].sum(axis=2)
-            moment = (load[..., 2] + lever[:, None, :, 0] * load[..., 1] - lever[:, None, :, 1] * load[..., 0]).sum(
-                axis=2
-            )
+            moment = (load[..., 2] + lever[:, None, :, 0] * load[..., 1] - lever[:, None, :, 1] * load[..., 0]).sum(axis=2)
             for h, pull in enumerate(np.moveaxis(hinge, 2, 0)):
                 ends = (a.a[one.joint[h]], a.b[one.joint[h]])
                 for block, sign in zip(ends, (1.0, -1.0), strict=True):

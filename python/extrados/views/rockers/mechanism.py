@@ -104,9 +104,7 @@ class MechanismModel:
             try:
                 table = core_mechanism.table(one)
             except CoreError as error:
-                raise NoMotion(
-                    f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}", WHOLE
-                ) from None
+                raise NoMotion(f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}", WHOLE) from None
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
                 raise NoView(
@@ -157,10 +155,7 @@ class MechanismModel:
         """Rate over rate of the impacts that start rocking to +x and to -x by workless impulses; may be negative."""
         mass, _, inertia = laden(self.assembly)
         right, left = self.fields
-        return (
-            core_mechanism.restitution(mass, inertia, left, right),
-            core_mechanism.restitution(mass, inertia, right, left),
-        )
+        return (core_mechanism.restitution(mass, inertia, left, right), core_mechanism.restitution(mass, inertia, right, left))
 
     @cached_property
     def energy_kept(self) -> tuple[float, float] | None:
@@ -192,10 +187,7 @@ class MechanismModel:
             right, left = np.sqrt(self.energy_kept)
             return float(right) * ratio, float(left) / ratio
         if isinstance(rule, str):
-            raise NoView(
-                f'the impact rule "{rule}" is not known here: "energy-safe", "inelastic", or a number',
-                ("joints", "restitution"),
-            )
+            raise NoView(f'the impact rule "{rule}" is not known here: "energy-safe", "inelastic", or a number', ("joints", "restitution"))
         return float(rule) * ratio, float(rule) / ratio
 
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
@@ -295,9 +287,14 @@ class MechanismModel:
         return out
 
     def hinge_forces(
-        self, rotation: npt.ArrayLike, rate: npt.ArrayLike, acceleration: npt.ArrayLike, horizontal: npt.ArrayLike,
-        vertical: npt.ArrayLike, held: "tuple[Restraints, np.ndarray] | None" = None,
-    ) -> HingeForces:  # fmt: skip
+        self,
+        rotation: npt.ArrayLike,
+        rate: npt.ArrayLike,
+        acceleration: npt.ArrayLike,
+        horizontal: npt.ArrayLike,
+        vertical: npt.ArrayLike,
+        held: "tuple[Restraints, np.ndarray] | None" = None,
+    ) -> HingeForces:
         """Forces at the hinges while it rocks, by the equations of motion of the parts (Newton and Euler).
 
         rotation [rad], its rate and acceleration are signed, positive to +x; horizontal, vertical: acceleration of
@@ -305,9 +302,7 @@ class MechanismModel:
         the parts are statically indeterminate.
         """
         a = self.assembly
-        given = [
-            np.atleast_1d(np.asarray(x, dtype=float)) for x in (rotation, rate, acceleration, horizontal, vertical)
-        ]
+        given = [np.atleast_1d(np.asarray(x, dtype=float)) for x in (rotation, rate, acceleration, horizontal, vertical)]
         turned_by = given[0]
         normal, shear = np.full((2, len(turned_by), len(a.a)), np.nan)
         miss = np.zeros(len(turned_by))

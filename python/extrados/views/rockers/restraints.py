@@ -87,9 +87,7 @@ class Restraints:
                 turns = [(place[:, p - 1, 2], first[:, p - 1, 2]) if p else (0.0, 0.0) for p in parts]
                 u[:, k], du[:, k] = (np.asarray(a) - b for a, b in zip(*turns, strict=True))
                 continue
-            where, moves = zip(
-                *(carried(one, place, first, p, x) for p, x in zip(parts, member.points, strict=True)), strict=True
-            )
+            where, moves = zip(*(carried(one, place, first, p, x) for p, x in zip(parts, member.points, strict=True)), strict=True)
             line = where[1] - where[0]
             length = np.hypot(*line.T)
             u[:, k] = length - np.hypot(*(member.points[1] - member.points[0]))
@@ -136,9 +134,7 @@ class Restraints:
         return out
 
 
-def carried(
-    one: Linkage, place: np.ndarray, first: np.ndarray, part: int, point: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def carried(one: Linkage, place: np.ndarray, first: np.ndarray, part: int, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where a point [m] of a part (0: the ground) lies at each state, and its derivative by q (states, 2)."""
     if not part:
         return np.broadcast_to(point, (len(place), 2)), np.zeros((len(place), 2))
@@ -155,18 +151,25 @@ def block_linkages(block: BlockModel, stones: Assembly) -> tuple[Linkage, Linkag
     if isinstance(stones, BlockAssembly):
         centre, toes = stones.centroid[0], (stones.q[0], stones.p[0])
     else:
-        foot = np.array(
-            [stones.mass @ stones.centroid[:, 0] / stones.mass.sum(), min(o[:, 1].min() for o in stones.outlines)]
-        )
+        foot = np.array([stones.mass @ stones.centroid[:, 0] / stones.mass.sum(), min(o[:, 1].min() for o in stones.outlines)])
         centre = foot + np.array([0.0, b.centre_height])
         toes = foot + np.array([b.toe_right, 0.0]), foot - np.array([b.toe_left, 0.0])
     made = [
         Linkage(
-            side, np.ones(len(stones.mass), dtype=int), b.mass, centre[None], b.inertia, _nearest(stones, toe),
-            np.array([[1, 0]]), toe[None], np.array([[1, 1], [1, 2]]), 1, -side,
+            side,
+            np.ones(len(stones.mass), dtype=int),
+            b.mass,
+            centre[None],
+            b.inertia,
+            _nearest(stones, toe),
+            np.array([[1, 0]]),
+            toe[None],
+            np.array([[1, 1], [1, 2]]),
+            1,
+            -side,
         )
         for side, toe in zip((1, -1), toes, strict=True)
-    ]  # fmt: skip
+    ]
     return made[0], made[1]
 
 
@@ -205,12 +208,9 @@ def _restraints(stones: Callable[[], Assembly], one: Tie | Damper | AddedHinge, 
     if isinstance(one, AddedHinge):
         law = _law_of_hinge(one)
         return [
-            Restraint(
-                f"{what}, {assembly.joint_names[j]}", law, TURN, (int(assembly.a[j]), int(assembly.b[j])),
-                _twice(assembly, j),
-            )
+            Restraint(f"{what}, {assembly.joint_names[j]}", law, TURN, (int(assembly.a[j]), int(assembly.b[j])), _twice(assembly, j))
             for j in joints_named(assembly, one.joints, what, (*key, "joints"))
-        ]  # fmt: skip
+        ]
     points = np.array(one.flat() if isinstance(one, Tie) else [one.start, one.far], dtype=float)
     first = stone_at(assembly, points[0], one.start_stone, f"{what}, start", key, "start")
     last = GROUND if one.end is None else stone_at(assembly, points[1], one.end_stone, f"{what}, end", key, "end")

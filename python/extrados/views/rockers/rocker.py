@@ -75,9 +75,7 @@ class Rocker:
     def rebounding(self, factor: float) -> "Rocker":
         """The same with c_v times a factor, as long as an impact creates no energy."""
         assert not isinstance(self.model, SoftBaseModel) and self.restitution is not None
-        return replace(
-            self, body=self.held(self.model.rebounding(factor)), restitution=min(1.0, factor * self.restitution)
-        )
+        return replace(self, body=self.held(self.model.rebounding(factor)), restitution=min(1.0, factor * self.restitution))
 
     @property
     def initial_ratio(self) -> float:
@@ -96,9 +94,7 @@ class Rocker:
         return self.length if isinstance(self.model, ArchModel) else GRAVITY * (2.5 * self.time_unit) ** 2
 
 
-def make_rocker(
-    building: Masonry, linear: bool = False, stones: Assembly | None = None, soft_base: bool = False
-) -> Rocker:
+def make_rocker(building: Masonry, linear: bool = False, stones: Assembly | None = None, soft_base: bool = False) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none.
 
     soft_base: also a block on a base that gives way, which only ensembles and `core.soft_base` rock.
@@ -118,10 +114,18 @@ def make_rocker(
         block = block_model(building, linear, stones)
         alpha = block.alpha
         made = Rocker(
-            structure.kind, structure.word, block, block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])),
-            float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
-            ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
-        )  # fmt: skip
+            structure.kind,
+            structure.word,
+            block,
+            block.body,
+            float(block.uplift.min()),
+            (float(alpha[0]), float(alpha[1])),
+            float(block.restitution[0]),
+            float(1.0 / block.frequency[0]),
+            float(block.block.radius[0]),
+            ratio * float(alpha[0 if ratio >= 0.0 else 1]),
+            tuple(block.warnings),
+        )
         resting = stones or _resting(building, piers)
         stones = stones or (resting if piers is None else piers)
         return _restrained(made, building) or _watched(made, building, stones, block_linkages(block, stones), resting)
@@ -132,9 +136,18 @@ def make_rocker(
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
         unit = float(np.sqrt(limits.mass * limits.critical / limits.gravity_moment))
         made = Rocker(
-            "arch", structure.word, arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
-            stones.radius, ratio * limits.critical, tuple(arch.warnings),
-        )  # fmt: skip
+            "arch",
+            structure.word,
+            arch,
+            arch.body,
+            arch.collapse[0].gamma,
+            (limits.critical, limits.critical),
+            arch.restitution,
+            unit,
+            stones.radius,
+            ratio * limits.critical,
+            tuple(arch.warnings),
+        )
         return _watched(made, building, stones, arch.linkages)
     rule = building.joints.restitution
     known = FrameModel if isinstance(stones, FrameAssembly) else MechanismModel
@@ -142,9 +155,18 @@ def make_rocker(
     critical = model.critical
     told = [OTHER_RULE] if rule == "thesis" else []
     made = Rocker(
-        structure.kind, structure.word, model, model.body, min(model.uplift), critical, model.restitution[0],
-        model.time_unit, model.length, ratio * critical[0 if ratio >= 0.0 else 1], (*model.warnings, *told),
-    )  # fmt: skip
+        structure.kind,
+        structure.word,
+        model,
+        model.body,
+        min(model.uplift),
+        critical,
+        model.restitution[0],
+        model.time_unit,
+        model.length,
+        ratio * critical[0 if ratio >= 0.0 else 1],
+        (*model.warnings, *told),
+    )
     return _restrained(made, building) or _watched(made, building, stones, model.linkages)
 
 
@@ -160,7 +182,7 @@ def _resting(building: Masonry, piers: Assembly | None) -> Assembly:
 
 def _watched(
     free: Rocker, building: Masonry, stones: Assembly, linkages: tuple[Linkage, Linkage], resting: Assembly | None = None
-) -> Rocker:  # fmt: skip
+) -> Rocker:
     """The rocker with its joints watched; CannotStand where the friction of the joints does not carry its weight.
 
     resting: the stones of which `stones` are piers; at rest these slide one by one."""
@@ -200,9 +222,19 @@ def _on_soft_base(building: Masonry, linear: bool, stones: Assembly | None) -> R
     start = model.turned(ratio)
     warnings = [*rigid.warnings] if model.core.damping else [*rigid.warnings, UNDAMPED]
     return Rocker(
-        structure.kind, structure.word, model, soft_base_body(model.core, critical), min(model.uplift(1), model.uplift(-1)),
-        critical, None, float(1.0 / rigid.frequency[0]), float(rigid.block.radius[0]), start, tuple(warnings), rest=model.rest,
-    )  # fmt: skip
+        structure.kind,
+        structure.word,
+        model,
+        soft_base_body(model.core, critical),
+        min(model.uplift(1), model.uplift(-1)),
+        critical,
+        None,
+        float(1.0 / rigid.frequency[0]),
+        float(rigid.block.radius[0]),
+        start,
+        tuple(warnings),
+        rest=model.rest,
+    )
 
 
 def _is_restrained(building: Masonry) -> bool:
@@ -246,6 +278,11 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
             "(docs/rocking.md). Give [supports] rebound if it matters",
         )
     return replace(
-        free, body=body, restraints=held, warnings=told, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
+        free,
+        body=body,
+        restraints=held,
+        warnings=told,
+        critical=critical,
+        start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
         uplift=float(uplift[list(sides)].min()),
-    )  # fmt: skip
+    )

@@ -94,12 +94,7 @@ class SoftBaseModel:
 
     @property
     def _too_soft(self) -> str:
-        least = (
-            self.core.stiffness
-            * self.weight
-            * self.core.height
-            / (self._stiffness_at_rest + self.weight * self.core.height)
-        )
+        least = self.core.stiffness * self.weight * self.core.height / (self._stiffness_at_rest + self.weight * self.core.height)
         return (
             f"the stiffness of the base, {self.core.stiffness / self.block.depth:.4g} N/m^3, is too low: below about "
             f"{least / self.block.depth:.3g} N/m^3 the block overturns under its own weight"
@@ -160,9 +155,7 @@ class SoftBaseModel:
 
         key = f"_way_{side}"
         if key not in self.__dict__:
-            tried = (
-                self.rest + (side * self.limit[0 if side > 0 else 1] - self.rest) * np.linspace(0.0, 1.0, LOOKS + 1)[1:]
-            )
+            tried = self.rest + (side * self.limit[0 if side > 0 else 1] - self.rest) * np.linspace(0.0, 1.0, LOOKS + 1)[1:]
             back = side * base_held(self.core, tried)[2]
             ends = int(np.argmax(back <= 0.0)) if (back <= 0.0).any() else len(tried)
             if ends == 0:
@@ -179,9 +172,7 @@ class SoftBaseModel:
             levers = np.array([self.lever(q) for q in tried[:ends]])
             best = int((back[:ends] / levers).argmax())
             low, high = tried[best - 1] if best else self.rest, tried[min(best + 1, len(tried) - 1)]
-            found = minimize_scalar(
-                lost, bounds=(min(low, high), max(low, high)), method="bounded", options={"xatol": 1e-13}
-            )
+            found = minimize_scalar(lost, bounds=(min(low, high), max(low, high)), method="bounded", options={"xatol": 1e-13})
             self.__dict__[key] = -min([float(found.fun), *(lost(p) for p in places)]), critical
         return self.__dict__[key]
 
@@ -201,17 +192,21 @@ def soft_base_model(building: Masonry, linear: bool = False, stones: Assembly | 
     rigid = block_model(building, linear, stones)
     block = rigid.block
     if block.slope:
-        raise NoView(
-            "a compliant base must be level: remove base_slope, or [supports] stiffness",
-            ("structure", "base_slope"),
-        )
+        raise NoView("a compliant base must be level: remove base_slope, or [supports] stiffness", ("structure", "base_slope"))
     mass, width = float(block.mass[0]), block.toe_left + block.toe_right
     stiffness = supports.stiffness * block.depth
     damping = 2.0 * (supports.damping_ratio or 0.0) * float(np.sqrt(stiffness * mass / width))
     return SoftBaseModel(
         rigid,
         SoftBase(
-            mass, float(block.inertia[0]), block.centre_height, block.toe_left, block.toe_right, stiffness, damping,
-            supports.foundation == "two-spring", linear,
+            mass,
+            float(block.inertia[0]),
+            block.centre_height,
+            block.toe_left,
+            block.toe_right,
+            stiffness,
+            damping,
+            supports.foundation == "two-spring",
+            linear,
         ),
-    )  # fmt: skip
+    )

@@ -57,9 +57,13 @@ class StackModel:
         (low, high), (inner, outer), centre = a.mass[self.order], a.inertia[self.order], a.centroid[self.order, 1]
         (foot, middle), (base, contact) = a.p[self.joints, 1], a.length[self.joints]
         return Stack(
-            (float(low), float(high)), (float(inner), float(outer)), (float(centre[0] - foot), float(centre[1] - middle)),
-            0.5 * float(base), float(middle - foot), 0.5 * float(contact),
-        )  # fmt: skip
+            (float(low), float(high)),
+            (float(inner), float(outer)),
+            (float(centre[0] - foot), float(centre[1] - middle)),
+            0.5 * float(base),
+            float(middle - foot),
+            0.5 * float(contact),
+        )
 
     @property
     def whole(self) -> tuple[float, float]:
@@ -68,9 +72,7 @@ class StackModel:
         m, c = np.array(s.mass), np.array(s.centre) + np.array([0.0, s.height])
         middle = float(m @ c / m.sum())
         inertia = sum(s.inertia) + float(m @ (c**2 + s.half_foot**2))
-        return float(np.arctan2(s.half_foot, middle)), float(
-            np.sqrt(inertia / (m.sum() * GRAVITY * np.hypot(s.half_foot, middle)))
-        )
+        return float(np.arctan2(s.half_foot, middle)), float(np.sqrt(inertia / (m.sum() * GRAVITY * np.hypot(s.half_foot, middle))))
 
     @property
     def alone(self) -> tuple[float, float]:

@@ -102,9 +102,12 @@ class Watch:
 
 
 def sliding_capacity(
-    assembly: Assembly, friction: np.ndarray, rocking: tuple[float, float], needed: tuple[np.ndarray, ...] | None,
+    assembly: Assembly,
+    friction: np.ndarray,
+    rocking: tuple[float, float],
+    needed: tuple[np.ndarray, ...] | None,
     loads: Loads | None = None,
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float]:
     """Horizontal acceleration [g] of the ground at which the resting structure slides the way it would rock to +x and to -x;
     infinite where it rocks first. CannotStand where friction does not carry its weight.
 

@@ -16,9 +16,7 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
     wall, ratio = building.supports.abutting_wall, building.initial.rotation_ratio
     assert building.structure is not None
     if building.structure.rocks_as == "stack":
-        raise NoView(
-            "two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow", ("structure", "kind")
-        )
+        raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow", ("structure", "kind"))
     if building.supports.stiffness is not None:
         raise NoView(
             "on a compliant base a building moves in more than one coordinate, which `rocking`, `fragility`, "
@@ -29,16 +27,12 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
     block = rocks_as_block(building)
     if building.joints.energy_ratio is not None and not block:
         raise NoView(
-            "the energy ratio is that of a block: give restitution, the rate after over before an impact",
-            ("joints", "energy_ratio"),
+            "the energy ratio is that of a block: give restitution, the rate after over before an impact", ("joints", "energy_ratio")
         )
     if linear and not block:
         raise NoView('form = "linear" is known of blocks and columns only', ("analysis", "form"))
     if wall is not None and not block and building.supports.rebound is None:
-        raise NoView(
-            "the rebound from a wall has a rule for blocks only: give [supports] rebound",
-            ("supports", "abutting_wall"),
-        )
+        raise NoView("the rebound from a wall has a rule for blocks only: give [supports] rebound", ("supports", "abutting_wall"))
     if wall is not None and ratio and wall == ("right" if ratio > 0.0 else "left"):
         raise NoView(f"it cannot start rotated to the {wall}, where the wall stands", ("initial", "rotation_ratio"))
 
@@ -53,10 +47,7 @@ def refuse_soft_base(building: Masonry) -> None:
             key,
         )
     if building.restraints or building.supports.abutting_wall is not None:
-        raise NoView(
-            "on a compliant base nothing but the base supports a block: remove ties, dampers, hinges and the wall",
-            key,
-        )
+        raise NoView("on a compliant base nothing but the base supports a block: remove ties, dampers, hinges and the wall", key)
     if building.joints.energy_ratio is not None or "restitution" in building.joints.model_fields_set:
         name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
         raise NoView(

@@ -19,9 +19,7 @@ def shell_of_chimney(building: Description, options: ShellOptions) -> ShellMesh:
     around, up = 4 * count_along(0.5 * np.pi * radius[0], size, 2), count_along(chimney.height, size, 2)
     share, turn = np.linspace(0.0, 1.0, up + 1), 2.0 * np.pi * np.arange(around) / around
     r = np.interp(share, [0.0, 1.0], radius)
-    xyz = np.column_stack(
-        [np.outer(r, np.cos(turn)).ravel(), np.outer(r, np.sin(turn)).ravel(), np.repeat(share * chimney.height, around)]
-    )  # fmt: skip
+    xyz = np.column_stack([np.outer(r, np.cos(turn)).ravel(), np.outer(r, np.sin(turn)).ravel(), np.repeat(share * chimney.height, around)])
     k = np.arange(around)
     parts: list[ShellPart] = []
     for ring in range(up):

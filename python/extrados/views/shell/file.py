@@ -49,9 +49,7 @@ def read_shell(structure: MeshFile, building: Description, options: ShellOptions
             raise BadGeometry(f"{name} are of a wall in a plane; shells in space take groups", ("structure", name))
     file, mesh = open_mesh(structure, building)
     if options.size is not None:
-        raise BadGeometry(
-            f"{file}: the elements are those of the file; leave mesh.size out", ("analysis", "mesh", "size")
-        )
+        raise BadGeometry(f"{file}: the elements are those of the file; leave mesh.size out", ("analysis", "mesh", "size"))
     xyz = structure.scale * np.asarray(mesh.points, dtype=float)
     if xyz.shape[1] != 3:
         raise BadGeometry(f"{file}: its points have {xyz.shape[1]} coordinates; shells in space need 3")
@@ -117,10 +115,16 @@ def read_shell(structure: MeshFile, building: Description, options: ShellOptions
                 if len(rows):
                     parts.append(
                         ShellPart(
-                            structure.groups[g].name if g >= 0 else "shell", KINDS[mesh.cells[b].type], connect[rows],
-                            thickness[b][rows], material[b][rows], linear[b][rows], np.ones(len(rows)), bends=bent,
+                            structure.groups[g].name if g >= 0 else "shell",
+                            KINDS[mesh.cells[b].type],
+                            connect[rows],
+                            thickness[b][rows],
+                            material[b][rows],
+                            linear[b][rows],
+                            np.ones(len(rows)),
+                            bends=bent,
                         )
-                    )  # fmt: skip
+                    )
     return _mesh(building, xyz, parts, held, feet, push, warnings, file)
 
 
@@ -129,9 +133,7 @@ def _groups(mesh: "meshio.Mesh") -> dict[str, tuple[dict[int, np.ndarray], np.nd
     cells: dict[str, dict[int, np.ndarray]] = {}
     for name, sets in mesh.cell_sets.items():
         if not name.startswith("gmsh:"):
-            cells[name] = {
-                b: np.asarray(rows, dtype=int) for b, rows in enumerate(sets) if rows is not None and len(rows)
-            }
+            cells[name] = {b: np.asarray(rows, dtype=int) for b, rows in enumerate(sets) if rows is not None and len(rows)}
     # Names of numbers, each of one dimension
     words = {(int(v[0]), int(v[1])): name for name, v in mesh.field_data.items() if np.size(v) == 2}
     for field in NUMBERED:
@@ -158,14 +160,9 @@ def _check(group: MeshGroup, what: str, elements: bool, key: Key) -> None:
     """BadGeometry where a group of lines or points is told what only elements have, or nothing is said."""
     told = [key for key in ("thickness", "material", "linear", "membrane", "pressure") if getattr(group, key)]
     if told and not elements:
-        raise BadGeometry(
-            f"{what}: {told[0]} is of elements, and the group has none; it takes support and force", (*key, told[0])
-        )
+        raise BadGeometry(f"{what}: {told[0]} is of elements, and the group has none; it takes support and force", (*key, told[0]))
     if not (told or group.support or group.force):
-        raise BadGeometry(
-            f"{what}: nothing is said of it: expected thickness, material, linear, membrane, support, pressure or force",
-            key,
-        )
+        raise BadGeometry(f"{what}: nothing is said of it: expected thickness, material, linear, membrane, support, pressure or force", key)
 
 
 def _foot(name: str, nodes: np.ndarray, xyz: np.ndarray, middle: np.ndarray) -> Foot:
@@ -196,18 +193,13 @@ def _check_corners(xyz: np.ndarray, connect: np.ndarray, file: str) -> None:
     for wrong, what in (
         (twice, f"names a node twice; expected {connect.shape[1]} different ones"),
         (flat, "has no area"),
-        (
-            inward,
-            "folds over itself, or has an angle of 180 degrees or more at a corner; expected its corners in order, all convex",
-        ),
+        (inward, "folds over itself, or has an angle of 180 degrees or more at a corner; expected its corners in order, all convex"),
     ):
         if wrong.any():
             e = int(wrong.argmax())
             x, y, z = c[e].mean(axis=0)
             more = f" ({int(wrong.sum())} such elements)" if wrong.sum() > 1 else ""
-            raise BadGeometry(
-                f"{file}: a {word} of nodes {_nodes_told(connect[e])}, at x {x:.4g}, y {y:.4g}, z {z:.4g} m, {what}{more}"
-            )
+            raise BadGeometry(f"{file}: a {word} of nodes {_nodes_told(connect[e])}, at x {x:.4g}, y {y:.4g}, z {z:.4g} m, {what}{more}")
 
 
 def _check_overlaps(xyz: np.ndarray, shells: list[np.ndarray], file: str) -> None:
@@ -239,9 +231,7 @@ def _unjoined(xyz: np.ndarray, parts: list[ShellPart], size: float) -> list[str]
     """What to tell of nodes at which elements touch and do not hang together."""
     from scipy.spatial import cKDTree
 
-    edges = np.concatenate(
-        [np.stack([p.connect, np.roll(p.connect, -1, axis=1)], axis=-1).reshape(-1, 2) for p in parts]
-    )
+    edges = np.concatenate([np.stack([p.connect, np.roll(p.connect, -1, axis=1)], axis=-1).reshape(-1, 2) for p in parts])
     each, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     free = each[count == 1]
     if not len(free):
@@ -264,14 +254,12 @@ def _unjoined(xyz: np.ndarray, parts: list[ShellPart], size: float) -> list[str]
     if between:
         node = between[0][1]
         nodes = len({n for _, n in between})
-        told.append(
-            (f"node {node + 1}", xyz[node], "lies on the edge of an element of which it is not a corner", nodes)
-        )
+        told.append((f"node {node + 1}", xyz[node], "lies on the edge of an element of which it is not a corner", nodes))
     return [
         f"{who}, at x {at[0]:.4g}, y {at[1]:.4g}, z {at[2]:.4g} m, {what}{f' ({many} such)' if many > 1 else ''}: nothing joins the "
         "elements there"
         for who, at, what, many in told
-    ]  # fmt: skip
+    ]
 
 
 def _warping(xyz: np.ndarray, connect: np.ndarray) -> float:
@@ -287,9 +275,15 @@ def _warping(xyz: np.ndarray, connect: np.ndarray) -> float:
 
 
 def _mesh(
-    building: Description, xyz: np.ndarray, parts: list[ShellPart], held: set[tuple[int, int]], feet: list[Foot],
-    push: np.ndarray, warnings: list[str], file: str,
-) -> ShellMesh:  # fmt: skip
+    building: Description,
+    xyz: np.ndarray,
+    parts: list[ShellPart],
+    held: set[tuple[int, int]],
+    feet: list[Foot],
+    push: np.ndarray,
+    warnings: list[str],
+    file: str,
+) -> ShellMesh:
     """The mesh of the nodes that its elements have; nodes of membranes alone move in their plane, which is level."""
     used, bent = np.zeros(len(xyz), dtype=bool), np.zeros(len(xyz), dtype=bool)
     for part in parts:
@@ -326,14 +320,23 @@ def _mesh(
     if not levels[1] > levels[0]:
         raise BadGeometry(f"{file}: all nodes lie at one height; z is up")
     return ShellMesh(
-        kept, parts, [], levels, [building.material, *building.materials.values()], size,
-        sorted((int(number[n]), d) for n, d in held), [], [], np.zeros(len(kept)), push[used], warnings, feet,
-    )  # fmt: skip
+        kept,
+        parts,
+        [],
+        levels,
+        [building.material, *building.materials.values()],
+        size,
+        sorted((int(number[n]), d) for n, d in held),
+        [],
+        [],
+        np.zeros(len(kept)),
+        push[used],
+        warnings,
+        feet,
+    )
 
 
-def _to_the_rim(
-    building: Description, xyz: np.ndarray, parts: list[ShellPart], bent: np.ndarray, push: np.ndarray, file: str
-) -> None:
+def _to_the_rim(building: Description, xyz: np.ndarray, parts: list[ShellPart], bent: np.ndarray, push: np.ndarray, file: str) -> None:
     """What weighs on the inner nodes of membranes goes to their nodes on walls, by the area that these stand for: a membrane
     does not bend, its inner nodes are held upright."""
     density = np.array([m.density for m in (building.material, *building.materials.values())])

@@ -12,9 +12,7 @@ class ShellOptions(Table):
     """How a building is cut into shells: [analysis.mesh]."""
 
     size: Length | None = key(
-        None,
-        "wanted size of the elements; default a tenth of the lowest storey, and an eighth of the shortest wall",
-        gt=0,
+        None, "wanted size of the elements; default a tenth of the lowest storey, and an eighth of the shortest wall", gt=0
     )
     layers: int = key(5, "integration points through the thickness; 2 suffice where walls do not bend", ge=1, le=15)
     through: Literal["gauss", "lobatto"] = key("lobatto", "their rule; Lobatto's have one on each face")

@@ -9,29 +9,11 @@ import numpy as np
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.properties import NO_SLIDING, Material
-from extrados.model.structures.plan import (
-    MEETS,
-    Corner,
-    Plan,
-    PlanWall,
-    Prestress,
-    Rod,
-    StoreyFloor,
-    meeting,
-    nearly_meeting,
-)
+from extrados.model.structures.plan import MEETS, Corner, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
 from extrados.views.mesh.options import LARGEST_MESH
 from extrados.views.mesh.triangles import fill_ring
-from extrados.views.shell.mesh import (
-    Foot,
-    ShellBar,
-    ShellJoint,
-    ShellMesh,
-    ShellPart,
-    WallPlane,
-    pieces,
-)
+from extrados.views.shell.mesh import Foot, ShellBar, ShellJoint, ShellMesh, ShellPart, WallPlane, pieces
 from extrados.views.shell.options import ShellOptions
 
 #: What a rigid floor is: a concrete slab
@@ -60,9 +42,7 @@ class _Grid:
 
     def points(self) -> np.ndarray:
         place = np.asarray(self.wall.start) + self.s[:, None] * self.wall.direction
-        return np.column_stack(
-            [np.repeat(place, len(self.z), axis=0), np.tile(self.z, len(self.s))]
-        )  # fmt: skip
+        return np.column_stack([np.repeat(place, len(self.z), axis=0), np.tile(self.z, len(self.s))])
 
 
 def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
@@ -72,10 +52,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     size = options.size or min(0.1 * plan.storeys[0], min(wall.length for wall in plan.walls) / 8.0)
     area = sum(wall.length for wall in plan.walls) * plan.levels[-1]
     if area / size**2 > LARGEST_MESH:
-        raise BadGeometry(
-            f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}",
-            ("analysis", "mesh", "size"),
-        )
+        raise BadGeometry(f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}", ("analysis", "mesh", "size"))
     warnings: list[str] = []
     junctions = {
         (a, b): at
@@ -85,9 +62,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     for a, b in itertools.combinations(range(len(plan.walls)), 2):
         one, two = plan.walls[a], plan.walls[b]
         if (a, b) not in junctions and (gap := nearly_meeting(one, two)) is not None:
-            warnings.append(
-                f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart and do not meet: nothing joins them"
-            )
+            warnings.append(f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart and do not meet: nothing joins them")
     _check_corners(plan, junctions)
     grids = _grids(plan, junctions, size, warnings)
     xyz, number = _join(plan, grids, junctions)
@@ -97,14 +72,10 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
         with blaming("walls", w):
             parts.append(_wall_part(plan, w, grids, junctions, number, names))
     joints, sources = _joints(plan, grids, junctions, number, parts, len(xyz))
-    joints = [
-        replace(joint, strength=_strength(plan, building, joint.name, size), softening=building.joints.softening)
-        for joint in joints
-    ]
+    joints = [replace(joint, strength=_strength(plan, building, joint.name, size), softening=building.joints.softening) for joint in joints]
     if joints and building.joints.coefficient is not None and not all(j.strength["cohesion"] > 0.0 for j in joints):
         warnings.append(
-            "joints have no cohesion: they slide only after opening; any cohesion, with its shear_energy, lets them "
-            "slide under pressure"
+            "joints have no cohesion: they slide only after opening; any cohesion, with its shear_energy, lets them slide under pressure"
         )
     xyz = np.concatenate([xyz, xyz[sources]])
     planes = [_plane(plan, grid) for grid in grids]
@@ -117,9 +88,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
             walls, ring = _ring(plan, floor, grids, number, xyz)
             if (first := rings.setdefault((floor.storey, frozenset(ring)), k)) != k:
                 raise BadGeometry(f"floor {first + 1} lies between the same walls on storey {floor.storey}")
-            grown, mass, push = _add_floor(
-                plan, floor, walls, ring, grids, number, grown, mass, push, parts, materials, bars, size
-            )
+            grown, mass, push = _add_floor(plan, floor, walls, ring, grids, number, grown, mass, push, parts, materials, bars, size)
     used = np.zeros(len(grown), dtype=bool)
     for connect in (*(part.connect for part in parts), *(joint.connect for joint in joints)):
         used[connect] = True
@@ -139,18 +108,25 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
         across = int(np.abs(plan.walls[w].direction).argmin())
         held = sorted({*held, *((int(n), across) for n in nodes)})
     kept = np.cumsum(used) - 1
-    parts = [
-        ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts
-    ]  # nodes within openings are dropped
+    parts = [ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts]  # nodes within openings are dropped
     joints = [replace(joint, connect=kept[joint.connect]) for joint in joints]
-    bars = [
-        ShellBar(b.name, (int(kept[b.nodes[0]]), int(kept[b.nodes[1]])), b.area, b.material, b.prestress) for b in bars
-    ]
+    bars = [ShellBar(b.name, (int(kept[b.nodes[0]]), int(kept[b.nodes[1]])), b.area, b.material, b.prestress) for b in bars]
     return ShellMesh(
-        grown[used], parts, planes, plan.levels, materials, size, [(int(kept[n]), d) for n, d in held],
-        [(int(kept[n]), d, k) for n, d, k in springs], bars, mass[used], push[used], warnings,
-        _feet(plan, grids, number, kept, used), joints,
-    )  # fmt: skip
+        grown[used],
+        parts,
+        planes,
+        plan.levels,
+        materials,
+        size,
+        [(int(kept[n]), d) for n, d in held],
+        [(int(kept[n]), d, k) for n, d, k in springs],
+        bars,
+        mass[used],
+        push[used],
+        warnings,
+        _feet(plan, grids, number, kept, used),
+        joints,
+    )
 
 
 def _check_corners(plan: Plan, junctions: dict) -> None:
@@ -158,28 +134,23 @@ def _check_corners(plan: Plan, junctions: dict) -> None:
     names = [wall.name for wall in plan.walls]
     for k, corner in enumerate(plan.corners):
         if tuple(sorted(map(names.index, corner.walls))) not in junctions:
-            raise BadGeometry(
-                f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k)
-            )
+            raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
 
 
-def _apart(
-    plan: Plan, parts: list[ShellPart], bars: list[ShellBar], joints: list[ShellJoint], xyz: np.ndarray
-) -> list[str]:
+def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], joints: list[ShellJoint], xyz: np.ndarray) -> list[str]:
     """What to tell of walls that nothing joins with the others; BadGeometry where a wall does not reach the ground."""
     walls, ground = [part for part in parts if part.bends], xyz[:, 2] <= MEETS
     piece = pieces(len(xyz), walls, bars, joints)  # a floor holds no wall up
-    stands = np.isin(
-        piece, piece[ground & np.isin(np.arange(len(xyz)), np.concatenate([p.connect.ravel() for p in walls]))]
-    )
+    stands = np.isin(piece, piece[ground & np.isin(np.arange(len(xyz)), np.concatenate([p.connect.ravel() for p in walls]))])
     for part in walls:
         loose = part.connect[~stands[part.connect[:, 0]]]
         if len(loose):
             x, y, z = xyz[loose].mean(axis=(0, 1))
             raise BadGeometry(
                 f"wall '{part.name}': its part around x {x:.3g}, y {y:.3g}, z {z:.3g} m is not supported: no masonry connects it "
-                "with the ground", ("structure", "walls", part.wall),
-            )  # fmt: skip
+                "with the ground",
+                ("structure", "walls", part.wall),
+            )
     piece = pieces(len(xyz), parts, bars, joints)
     joined: dict[frozenset[int], list[str]] = {}
     for part in walls:
@@ -187,9 +158,7 @@ def _apart(
     alone = [names for which, names in joined.items() if not any(which & other for other in joined if other != which)]
     if len(alone) < 2:
         return []
-    return [
-        f"nothing joins {' with '.join(', '.join(names) for names in alone)}: no corner, floor or rod; each is free"
-    ]
+    return [f"nothing joins {' with '.join(', '.join(names) for names in alone)}: no corner, floor or rod; each is free"]
 
 
 def _lines(breaks: Iterable[float], length: float, size: float, what: str, warnings: list[str]) -> np.ndarray:
@@ -201,9 +170,7 @@ def _lines(breaks: Iterable[float], length: float, size: float, what: str, warni
     kept[-1] = length
     thin = min((b - a for a, b in itertools.pairwise(kept)), default=length)
     if thin < SLIVER * size:
-        warnings.append(
-            f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were requested"
-        )
+        warnings.append(f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were requested")
     parts = [np.zeros(1)]
     for a, b in itertools.pairwise(kept):
         count = max(1, round((b - a) / size))
@@ -213,9 +180,7 @@ def _lines(breaks: Iterable[float], length: float, size: float, what: str, warni
 
 def _holes(plan: Plan, wall: PlanWall) -> list[tuple[float, float, float, float]]:
     """Openings of a wall: s from, to, z from, to [m]."""
-    return [
-        (*o.x, plan.levels[o.storey - 1] + o.z[0], plan.levels[o.storey - 1] + o.z[1]) for o in wall.openings
-    ]  # fmt: skip
+    return [(*o.x, plan.levels[o.storey - 1] + o.z[0], plan.levels[o.storey - 1] + o.z[1]) for o in wall.openings]
 
 
 def _lintels(plan: Plan, wall: PlanWall) -> list[tuple[float, float, float, float, str | None]]:
@@ -282,9 +247,7 @@ def _join(plan: Plan, grids: list[_Grid], junctions: dict) -> tuple[np.ndarray, 
     return xyz[alone], number
 
 
-def _wall_part(
-    plan: Plan, w: int, grids: list[_Grid], junctions: dict, number: np.ndarray, names: list[str]
-) -> ShellPart:
+def _wall_part(plan: Plan, w: int, grids: list[_Grid], junctions: dict, number: np.ndarray, names: list[str]) -> ShellPart:
     grid, wall = grids[w], plan.walls[w]
     i, k = np.nonzero(grid.there)
     if not len(i):
@@ -319,20 +282,17 @@ def _joints(
     on. The nodes that are copied."""
     copies: dict[tuple[int, int], int] = {}  # row of the grids and node: its copy
     beds: list[tuple[str, int, list[int]]] = []  # name, row of the grids, walls
-    for k, (bed, name) in enumerate(
-        zip(plan.beds, plan.joint_names[len(plan.joint_names) - len(plan.beds) :], strict=True)
-    ):
+    for k, (bed, name) in enumerate(zip(plan.beds, plan.joint_names[len(plan.joint_names) - len(plan.beds) :], strict=True)):
         walls = [
-            w for w, wall in enumerate(plan.walls)
+            w
+            for w, wall in enumerate(plan.walls)
             if (wall.name in bed.walls or not bed.walls) and plan.reach(wall)[0] <= bed.storey <= plan.reach(wall)[1]
-        ]  # fmt: skip
+        ]
         row = int(np.abs(grids[0].z - plan.bed_height(bed)).argmin())
         on = {w: _cells_above(grids[w], row, number) for w in range(len(grids))}
         if not any(len(on[w]) for w in walls):
             raise BadGeometry(f"there is no wall at {plan.bed_height(bed):g} m", ("structure", "beds", k))
-        stay = {
-            n for w in on if w not in walls for n in on[w].ravel().tolist()
-        }  # there a wall passes through the joint
+        stay = {n for w in on if w not in walls for n in on[w].ravel().tolist()}  # there a wall passes through the joint
         for n in sorted({n for w in walls for n in on[w].ravel().tolist()} - stay):
             copies[row, n] = nodes + len(copies)
         for w in walls:
@@ -356,23 +316,26 @@ def _joints(
             i = np.flatnonzero(beside)
             if not len(i):
                 continue
-            lower = np.column_stack(
-                [number[grid.number(i, np.full(len(i), row))], number[grid.number(i + 1, np.full(len(i), row))]]
-            )
+            lower = np.column_stack([number[grid.number(i, np.full(len(i), row))], number[grid.number(i + 1, np.full(len(i), row))]])
             upper = np.array([[foot(row, n) for n in pair] for pair in lower.tolist()])
             along = np.append(wall.direction, 0.0)
             found.append(
-                _stretches(name, np.column_stack([lower, upper[:, ::-1]]), np.diff(grid.s)[i], np.array([0.0, 0.0, 1.0]), along,
-                           _thickness_at(plan, wall, np.full(len(i), 0.5 * (grid.z[row] + grid.z[row + 1]))), wall.name)
-            )  # fmt: skip
+                _stretches(
+                    name,
+                    np.column_stack([lower, upper[:, ::-1]]),
+                    np.diff(grid.s)[i],
+                    np.array([0.0, 0.0, 1.0]),
+                    along,
+                    _thickness_at(plan, wall, np.full(len(i), 0.5 * (grid.z[row] + grid.z[row + 1]))),
+                    wall.name,
+                )
+            )
     sources = np.array([n for _, n in copies], dtype=int)
     return found, sources
 
 
 #: What the joints of a building take from [joints], and what [[joints.types]] may say of some
-STRENGTHS = (
-    "tension", "fracture_energy", "friction", "cohesion", "shear_energy", "compressive_strength", "crushing_energy",
-)  # fmt: skip
+STRENGTHS = ("tension", "fracture_energy", "friction", "cohesion", "shear_energy", "compressive_strength", "crushing_energy")
 
 
 def _strength(plan: Plan, building: Description, name: str, size: float) -> dict[str, float]:
@@ -385,9 +348,7 @@ def _strength(plan: Plan, building: Description, name: str, size: float) -> dict
             if joint not in plan.joint_names:
                 raise BadGeometry(f"names no joint '{joint}'; there are {', '.join(plan.joint_names)}", key)
             if named.setdefault(joint, k) != k:
-                raise BadGeometry(
-                    f"joint '{joint}' is named twice, in joints.types {named[joint] + 1} and {k + 1}", key
-                )
+                raise BadGeometry(f"joint '{joint}' is named twice, in joints.types {named[joint] + 1} and {k + 1}", key)
         if name in kind.joints:
             own |= {what: value for what in own if (value := getattr(kind, what)) is not None}
     for strength, energy in (("tension", "fracture_energy"), ("cohesion", "shear_energy")):
@@ -429,8 +390,7 @@ def _between(
     key = ("structure", "corners", plan.corners.index(corner))
     if MEETS < t < wall.length - MEETS:
         raise BadGeometry(
-            f"walls: wall '{wall.name}' passes through '{names[one]}'; a joint is where the second wall ends on the first",
-            key,
+            f"walls: wall '{wall.name}' passes through '{names[one]}'; a joint is where the second wall ends on the first", key
         )
     first = t <= MEETS  # it begins there
     j = 0 if first else len(grid.s) - 1
@@ -449,19 +409,18 @@ def _between(
     )
     normal = np.append(wall.direction if first else -wall.direction, 0.0)
     return _stretches(
-        "-".join(corner.walls), np.column_stack([lower, upper[:, ::-1]]), np.diff(grid.z)[k], normal, np.array([0.0, 0.0, 1.0]),
-        _thickness_at(plan, wall, 0.5 * (grid.z[k] + grid.z[k + 1])), wall.name,
-    )  # fmt: skip
+        "-".join(corner.walls),
+        np.column_stack([lower, upper[:, ::-1]]),
+        np.diff(grid.z)[k],
+        normal,
+        np.array([0.0, 0.0, 1.0]),
+        _thickness_at(plan, wall, 0.5 * (grid.z[k] + grid.z[k + 1])),
+        wall.name,
+    )
 
 
 def _stretches(
-    name: str,
-    connect: np.ndarray,
-    length: np.ndarray,
-    normal: np.ndarray,
-    along: np.ndarray,
-    thickness: np.ndarray,
-    wall: str,
+    name: str, connect: np.ndarray, length: np.ndarray, normal: np.ndarray, along: np.ndarray, thickness: np.ndarray, wall: str
 ) -> ShellJoint:
     n, t, out = (np.tile(axis, (len(connect), 1)) for axis in (normal, along, np.cross(along, normal)))
     return ShellJoint(name, connect, n, t, out, length, thickness, wall)
@@ -492,9 +451,7 @@ def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tu
     return number[grid.number(i, np.full(len(i), k))], grid.s[i]
 
 
-def _ring(
-    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
-) -> tuple[list[int], list[int]]:
+def _ring(plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray) -> tuple[list[int], list[int]]:
     """Walls around a floor and the nodes on them in order, counter-clockwise."""
     what = f"floor on storey {floor.storey}"
     walls = plan.around(floor)
@@ -506,11 +463,7 @@ def _ring(
         inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
         order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
         nodes += own[inside][order].tolist()
-    ring = [
-        n
-        for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True)
-        if np.linalg.norm(xyz[n] - xyz[before]) > MEETS
-    ]
+    ring = [n for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True) if np.linalg.norm(xyz[n] - xyz[before]) > MEETS]
     if len(ring) < 3 or len(set(ring)) < len(ring):
         raise BadGeometry(f"{what}: its walls make no ring; name them in order by `walls`")
     x, y = xyz[ring, 0], xyz[ring, 1]
@@ -520,9 +473,20 @@ def _ring(
 
 
 def _add_floor(
-    plan: Plan, floor: StoreyFloor, walls: list[int], ring: list[int], grids: list[_Grid], number: np.ndarray, xyz: np.ndarray,
-    mass: np.ndarray, push: np.ndarray, parts: list[ShellPart], materials: list[Material], bars: list[ShellBar], size: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    plan: Plan,
+    floor: StoreyFloor,
+    walls: list[int],
+    ring: list[int],
+    grids: list[_Grid],
+    number: np.ndarray,
+    xyz: np.ndarray,
+    mass: np.ndarray,
+    push: np.ndarray,
+    parts: list[ShellPart],
+    materials: list[Material],
+    bars: list[ShellBar],
+    size: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Elements, bars and masses of a floor between walls; the nodes with those within it."""
     level = float(plan.levels[floor.storey])
     outline = xyz[ring, :2]
@@ -552,10 +516,16 @@ def _add_floor(
         count = len(triangles)
         parts.append(
             ShellPart(
-                name, "T3", place[triangles], np.full(count, thickness), np.full(count, len(materials)),
-                np.ones(count, dtype=bool), np.ones(count), bends=False,
+                name,
+                "T3",
+                place[triangles],
+                np.full(count, thickness),
+                np.full(count, len(materials)),
+                np.ones(count, dtype=bool),
+                np.ones(count),
+                bends=False,
             )
-        )  # fmt: skip
+        )
         materials.append(Material(density=0.0, young=young, poisson=floor.poisson))
     elif floor.kind == "joists":
         bars += _joists(plan, floor, grids, number, xyz, name, ring)
@@ -587,9 +557,7 @@ def _joists(
     return made
 
 
-def _prestress(
-    plan: Plan, load: Prestress, grids: list[_Grid], number: np.ndarray, used: np.ndarray, push: np.ndarray
-) -> None:
+def _prestress(plan: Plan, load: Prestress, grids: list[_Grid], number: np.ndarray, used: np.ndarray, push: np.ndarray) -> None:
     """The force along the top of a wall as nodal forces."""
     w = next(i for i, wall in enumerate(plan.walls) if wall.name == load.wall)
     storey = load.level or plan.reach(plan.walls[w])[1]

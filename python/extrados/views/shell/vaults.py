@@ -53,15 +53,18 @@ def _outward(xyz: np.ndarray, connect: np.ndarray, out: np.ndarray) -> np.ndarra
     return np.where((np.einsum("ex,ex->e", normal, out) < 0.0)[:, None], turned, connect)
 
 
-def shell_part(
-    name: str, xyz: np.ndarray, connect: np.ndarray, out: np.ndarray, thickness: float, material: int = 0
-) -> ShellPart:
+def shell_part(name: str, xyz: np.ndarray, connect: np.ndarray, out: np.ndarray, thickness: float, material: int = 0) -> ShellPart:
     """Elements of one thickness [m], their normals to the side of `out` (elements, 3)."""
     count = len(connect)
     return ShellPart(
-        name, "Q4" if connect.shape[1] == 4 else "T3", _outward(xyz, connect, out), np.full(count, thickness),
-        np.full(count, material), np.zeros(count, dtype=bool), np.ones(count),
-    )  # fmt: skip
+        name,
+        "Q4" if connect.shape[1] == 4 else "T3",
+        _outward(xyz, connect, out),
+        np.full(count, thickness),
+        np.full(count, material),
+        np.zeros(count, dtype=bool),
+        np.ones(count),
+    )
 
 
 def clamped_mesh(
@@ -71,33 +74,32 @@ def clamped_mesh(
     held = sorted({(int(n), d) for foot in feet for n in foot.nodes for d in range(6)})
     materials = [building.material, *building.materials.values(), *extra]
     levels = np.array([xyz[:, 2].min(), xyz[:, 2].max()])
-    return ShellMesh(
-        xyz, parts, [], levels, materials, size, held, [], [], np.zeros(len(xyz)), np.zeros((len(xyz), 3)), feet=feet
-    )  # fmt: skip
+    return ShellMesh(xyz, parts, [], levels, materials, size, held, [], [], np.zeros(len(xyz)), np.zeros((len(xyz), 3)), feet=feet)
 
 
 def mesh_barrel(
-    building: Description, options: ShellOptions, radius: float, thickness: float, embrace: float, length: float,
+    building: Description,
+    options: ShellOptions,
+    radius: float,
+    thickness: float,
+    embrace: float,
+    length: float,
     walls: tuple[float, float, float] | None = None,
-) -> ShellMesh:  # fmt: skip
+) -> ShellMesh:
     """Barrel vault of a circular section, `length` along y; embrace in degrees, lengths in m.
 
     It stands on its springings, or on walls: their thickness, the distance of their middle planes from the axis, and the
     height of their soles; a stiff ledge joins the springing to a wall that does not stand right below it.
     """
     half = np.radians(0.5 * embrace)
-    size = element_size(
-        options, 2.0 * half * radius, (2.0 * half * radius + (2.0 * abs(walls[2]) if walls else 0.0)) * length
-    )
+    size = element_size(options, 2.0 * half * radius, (2.0 * half * radius + (2.0 * abs(walls[2]) if walls else 0.0)) * length)
     along, across = count_along(2.0 * half * radius, size, 4), count_along(length, size)
     angle = np.linspace(-half, half, along + 1)
     y = np.linspace(0.0, length, across + 1)
 
     def sheet(section: np.ndarray) -> np.ndarray:
         """Nodes of a line (x, z) of the section drawn out along y."""
-        return np.column_stack(
-            [np.repeat(section[:, 0], across + 1), np.tile(y, len(section)), np.repeat(section[:, 1], across + 1)]
-        )  # fmt: skip
+        return np.column_stack([np.repeat(section[:, 0], across + 1), np.tile(y, len(section)), np.repeat(section[:, 1], across + 1)])
 
     xyz = sheet(radius * np.column_stack([np.sin(angle), np.cos(angle)]))
     connect = _grid(along, across)
@@ -118,19 +120,9 @@ def mesh_barrel(
         for side, word in ((-1, "left"), (1, "right")):
             top = ends[side]
             if ledge > SAME * size:
-                xyz, top = (
-                    np.concatenate([xyz, sheet(np.array([[side * away, springing[1]]]))]),
-                    len(xyz) + np.arange(across + 1),
-                )
+                xyz, top = (np.concatenate([xyz, sheet(np.array([[side * away, springing[1]]]))]), len(xyz) + np.arange(across + 1))
                 strip = np.column_stack([ends[side][:-1], ends[side][1:], top[1:], top[:-1]])
-                stiff = shell_part(
-                    f"{word} ledge",
-                    xyz,
-                    strip,
-                    np.tile([0.0, 0.0, 1.0], (across, 1)),
-                    wide,
-                    1 + len(building.materials),
-                )
+                stiff = shell_part(f"{word} ledge", xyz, strip, np.tile([0.0, 0.0, 1.0], (across, 1)), wide, 1 + len(building.materials))
                 stiff.linear[:] = True
                 parts.append(stiff)
             level = np.linspace(springing[1], sole, up + 1)[1:]
@@ -140,16 +132,11 @@ def mesh_barrel(
             connect = np.concatenate([below, _grid(up - 1, across, first)])
             parts.append(shell_part(f"{word} wall", xyz, connect, np.tile([side, 0.0, 0.0], (len(connect), 1)), wide))
             ends[side] = first + (up - 1) * (across + 1) + np.arange(across + 1)
-    feet = [
-        Foot(word, ends[side], np.tile([float(side), 0.0, 0.0], (across + 1, 1)), y)
-        for side, word in ((-1, "left"), (1, "right"))
-    ]
+    feet = [Foot(word, ends[side], np.tile([float(side), 0.0, 0.0], (across + 1, 1)), y) for side, word in ((-1, "left"), (1, "right"))]
     return clamped_mesh(xyz, parts, feet, building, size, extra)
 
 
-def mesh_dome(
-    building: Description, options: ShellOptions, radius: float, thickness: float, embrace: float, oculus: float
-) -> ShellMesh:
+def mesh_dome(building: Description, options: ShellOptions, radius: float, thickness: float, embrace: float, oculus: float) -> ShellMesh:
     """Spherical dome on its springing; embrace and oculus in degrees. Without an oculus triangles close the crown."""
     half, top = np.radians(0.5 * embrace), np.radians(0.5 * oculus)
     area = 2.0 * np.pi * radius**2 * (np.cos(top) - np.cos(half))
@@ -161,10 +148,11 @@ def mesh_dome(
     turn = 2.0 * np.pi * np.arange(around) / around
     xyz = radius * np.column_stack(
         [
-            np.outer(np.sin(polar[:rows]), np.cos(turn)).ravel(), np.outer(np.sin(polar[:rows]), np.sin(turn)).ravel(),
+            np.outer(np.sin(polar[:rows]), np.cos(turn)).ravel(),
+            np.outer(np.sin(polar[:rows]), np.sin(turn)).ravel(),
             np.repeat(np.cos(polar[:rows]), around),
         ]
-    )  # fmt: skip
+    )
     i, k = (x.ravel() for x in np.meshgrid(np.arange(rows - 1), np.arange(around), indexing="ij"))
     on = (k + 1) % around
     connect = np.column_stack([i * around + k, i * around + on, (i + 1) * around + on, (i + 1) * around + k])
@@ -173,9 +161,7 @@ def mesh_dome(
     parts = [shell_part("dome", xyz, connect, xyz[connect].mean(axis=1), thickness)]
     if rows == up:
         k = np.arange(around)
-        cap = np.column_stack(
-            [(up - 1) * around + k, (up - 1) * around + (k + 1) % around, np.full(around, len(xyz) - 1)]
-        )
+        cap = np.column_stack([(up - 1) * around + k, (up - 1) * around + (k + 1) % around, np.full(around, len(xyz) - 1)])
         parts.append(shell_part("crown", xyz, cap, xyz[cap].mean(axis=1), thickness))
     out = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(around)])
     foot = Foot("springing", np.arange(around), out, radius * np.sin(half) * turn)
@@ -187,13 +173,7 @@ CORNERS = {"north-east": (1, 1), "north-west": (-1, 1), "south-west": (-1, -1), 
 
 
 def mesh_cross_vault(
-    building: Description,
-    options: ShellOptions,
-    radius: float,
-    thickness: float,
-    embrace: float,
-    edge: float,
-    oblong: float,
+    building: Description, options: ShellOptions, radius: float, thickness: float, embrace: float, edge: float, oblong: float
 ) -> ShellMesh:
     """Two barrels that cross over a bay, mitred along the groins; each corner stands on the ends of its two webs.
 
@@ -207,9 +187,7 @@ def mesh_cross_vault(
     x, z = radius * np.sin(angle), radius * np.cos(angle)
     share = np.linspace(0.0, 1.0, columns + 1)
     y = x[:, None] + (reach - x[:, None]) * share  # of the half web x > 0, y > x
-    half_web = np.stack(
-        [np.broadcast_to(x[:, None], y.shape), y, np.broadcast_to(z[:, None], y.shape)], axis=-1
-    ).reshape(-1, 3)
+    half_web = np.stack([np.broadcast_to(x[:, None], y.shape), y, np.broadcast_to(z[:, None], y.shape)], axis=-1).reshape(-1, 3)
     points: list[np.ndarray] = []
     elements: list[np.ndarray] = []
     out: list[np.ndarray] = []
@@ -224,9 +202,7 @@ def mesh_cross_vault(
             feet[word].append(count + rows * (columns + 1) + np.arange(columns + 1))
             points.append(own * [1.0, oblong, 1.0])
     every = np.concatenate(points)
-    _, first, number = np.unique(
-        np.round(every / (SAME * size)).astype(np.int64), axis=0, return_index=True, return_inverse=True
-    )
+    _, first, number = np.unique(np.round(every / (SAME * size)).astype(np.int64), axis=0, return_index=True, return_inverse=True)
     number = number.ravel()
     xyz, connect = every[first], number[np.concatenate(elements)]
     parts = [shell_part("vault", xyz, connect, np.concatenate(out), thickness)]
@@ -255,9 +231,8 @@ def shell_of_vault(building: Description, options: ShellOptions) -> ShellMesh:
     outline = section.outlines[section.buttresses[1]]
     back, sole = float(outline[:, 0].max()), float(outline[:, 1].min())
     return mesh_barrel(
-        building, options, vault.radius, vault.thickness, vault.embrace, vault.depth,
-        (back - vault.face, 0.5 * (back + vault.face), sole),
-    )  # fmt: skip
+        building, options, vault.radius, vault.thickness, vault.embrace, vault.depth, (back - vault.face, 0.5 * (back + vault.face), sole)
+    )
 
 
 def shell_of_dome(building: Description, options: ShellOptions) -> ShellMesh:

@@ -46,8 +46,10 @@ def supports_of(assembly: SolidAssembly, floor: float | None = None) -> Supports
 def _footing(assembly: SolidAssembly, polygon: np.ndarray, up: np.ndarray, deep: float) -> Polyhedron:
     """Wider than the contact, unless it would then reach into a stone, which it would throw out at the start."""
     middle = polygon.mean(axis=0)
-    own, wide = (hull(np.concatenate([top, top - deep * up])) for top in
-                 (middle + (1.0 + 2.0 * share) * (polygon - middle) for share in (0.0, FOOTING)))  # fmt: skip
+    own, wide = (
+        hull(np.concatenate([top, top - deep * up]))
+        for top in (middle + (1.0 + 2.0 * share) * (polygon - middle) for share in (0.0, FOOTING))
+    )
     return wide if _pierced(assembly, wide) <= _pierced(assembly, own) + LEVEL * assembly.size else own
 
 

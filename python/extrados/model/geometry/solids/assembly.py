@@ -126,9 +126,12 @@ def mass_properties(parts: Sequence[Polyhedron], density: float) -> tuple[float,
 
 
 def assemble(
-    stones: Sequence[Stone], tolerance: float | None = None, ground: Sequence[float] | None = None, what: str = "structure",
+    stones: Sequence[Stone],
+    tolerance: float | None = None,
+    ground: Sequence[float] | None = None,
+    what: str = "structure",
     seats: Sequence[tuple[int, np.ndarray]] = (),
-) -> SolidAssembly:  # fmt: skip
+) -> SolidAssembly:
     """Blocks on the ground with the contacts found among them.
 
     tolerance [m]: faces nearer than it touch, overlaps less deep are let pass, and what two faces share is a line or a point
@@ -166,8 +169,7 @@ def assemble(
             )
     last = np.cumsum([len(s.parts) for s in blocks])
     mass, centroid, inertia = zip(
-        *(mass_properties(parts[e - len(s.parts) : e], s.density) for s, e in zip(blocks, last, strict=True)),
-        strict=True,
+        *(mass_properties(parts[e - len(s.parts) : e], s.density) for s, e in zip(blocks, last, strict=True)), strict=True
     )
     polygon, normal = list(found.polygon), list(found.normal)
     a, b = np.array(found.a, dtype=int), np.array(found.b, dtype=int)
@@ -186,12 +188,21 @@ def assemble(
     names = [s.name for s in blocks]
     _refuse(names, found, a, b, close, what, exact=tolerance is None)
     made = SolidAssembly(
-        parts=parts[: int((owner < len(blocks)).sum())], owner=owner[owner < len(blocks)], mass=np.array(mass),
-        centroid=np.array(centroid), inertia=np.array(inertia), polygon=polygon, normal=np.array(normal).reshape(-1, 3),
-        a=a, b=b, block_names=names, joint_names=joint_names(names, a, b, np.array(normal)),
-        remarks=(*_nearly(names, found.gaps), *_narrow(names, found.slivers, close), *_rough(blocks, drawn)), notes=notes,
+        parts=parts[: int((owner < len(blocks)).sum())],
+        owner=owner[owner < len(blocks)],
+        mass=np.array(mass),
+        centroid=np.array(centroid),
+        inertia=np.array(inertia),
+        polygon=polygon,
+        normal=np.array(normal).reshape(-1, 3),
+        a=a,
+        b=b,
+        block_names=names,
+        joint_names=joint_names(names, a, b, np.array(normal)),
+        remarks=(*_nearly(names, found.gaps), *_narrow(names, found.slivers, close), *_rough(blocks, drawn)),
+        notes=notes,
         deviation=moved,
-    )  # fmt: skip
+    )
     return made
 
 
@@ -224,9 +235,11 @@ def _lowest(parts: Sequence[Polyhedron], mobile: np.ndarray, close: float) -> fl
     low = min(float(part.vertices[:, 2].min()) for part in parts)
     soles = [
         (part.middles[k, 2] - low, part.areas[k])
-        for part, on in zip(parts, mobile.tolist(), strict=True) if on
-        for k in _level_faces(part, close) if part.middles[k, 2] - low <= close
-    ]  # fmt: skip
+        for part, on in zip(parts, mobile.tolist(), strict=True)
+        if on
+        for k in _level_faces(part, close)
+        if part.middles[k, 2] - low <= close
+    ]
     return low + float(np.average([h for h, _ in soles], weights=[area for _, area in soles])) if soles else low
 
 
@@ -260,9 +273,7 @@ def _on_ground(part: Polyhedron, face: int, level: float) -> tuple[np.ndarray, n
     return points - ((points - middle) @ up)[:, None] * up, up
 
 
-def _refuse(
-    names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, close: float, what: str, *, exact: bool,
-) -> None:  # fmt: skip
+def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, close: float, what: str, *, exact: bool) -> None:
     """BadGeometry with all that is amiss."""
     wrong = []
     cure = "" if exact else " (contact_tolerance)"

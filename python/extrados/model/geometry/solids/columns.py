@@ -9,12 +9,7 @@ from extrados.model.geometry.solids.polyhedra import loft
 
 
 def drums(
-    width: float,
-    heights: list[float],
-    top_width: float | None,
-    sides: int,
-    flute_depth: float = 0.0,
-    density: float = 2000.0,
+    width: float, heights: list[float], top_width: float | None, sides: int, flute_depth: float = 0.0, density: float = 2000.0
 ) -> SolidAssembly:
     """Drums of the given heights [m] on the ground, from a diameter `width` at the base to `top_width` [m], over corners.
 
@@ -55,8 +50,7 @@ def doweled(column: SolidAssembly, strength: float, reach: float) -> SolidAssemb
         if two >= 0:
             pairs.setdefault((one, two), []).append(j)
     middle = [
-        np.average([column.polygon[j].mean(axis=0) for j in joints], axis=0, weights=column.area[joints])
-        for joints in pairs.values()
+        np.average([column.polygon[j].mean(axis=0) for j in joints], axis=0, weights=column.area[joints]) for joints in pairs.values()
     ]
     first = np.array([joints[0] for joints in pairs.values()], dtype=int)
     n = len(first)

@@ -76,12 +76,7 @@ def slant(sine: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def _meet(
-    found: Touching,
-    parts: Sequence[Polyhedron],
-    pair: tuple[int, int],
-    owners: tuple[int, int],
-    tolerance: float,
-    near: float,
+    found: Touching, parts: Sequence[Polyhedron], pair: tuple[int, int], owners: tuple[int, int], tolerance: float, near: float
 ) -> None:
     """Contacts, slivers, overlap or gap of two parts."""
     (i, j), (a, b) = pair, owners
@@ -122,9 +117,7 @@ def _meet(
             found.gaps.append((a, b, closing))
 
 
-def shared_polygon(
-    one: Polyhedron, f: int, two: Polyhedron, g: int
-) -> tuple[np.ndarray, np.ndarray, float, float] | None:
+def shared_polygon(one: Polyhedron, f: int, two: Polyhedron, g: int) -> tuple[np.ndarray, np.ndarray, float, float] | None:
     """What face f of one body and face g of another share: its corners in the plane midway between both faces (k, 3),
     counter-clockwise about the normal of that plane, which points to the second body, this normal, the gap between the planes of
     the faces in its middle [m], and its area over its diameter [m]; None where that is no more than an edge."""
@@ -174,11 +167,7 @@ def clipped(subject: list[Point], clip: list[Point], same: float) -> list[Point]
             if t >= -same:
                 out.append((x, y))
         kept = out
-    return [
-        (x, y)
-        for (x, y), (px, py) in zip(kept, [*kept[-1:], *kept[:-1]], strict=True)
-        if (x - px) ** 2 + (y - py) ** 2 > same * same
-    ]
+    return [(x, y) for (x, y), (px, py) in zip(kept, [*kept[-1:], *kept[:-1]], strict=True) if (x - px) ** 2 + (y - py) ** 2 > same * same]
 
 
 def _area(polygon: list[Point]) -> float:

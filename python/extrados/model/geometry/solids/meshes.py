@@ -114,9 +114,7 @@ def read_stl(content: bytes, name: str) -> list[Mesh]:
         raise BadGeometry(f"{name}: all of its corners lie in one place")
     for title, triangles in solids.items():
         corners = triangles.reshape(-1, 3)
-        _, first, inverse = np.unique(
-            np.round(corners / (MERGED * size)), axis=0, return_index=True, return_inverse=True
-        )
+        _, first, inverse = np.unique(np.round(corners / (MERGED * size)), axis=0, return_index=True, return_inverse=True)
         faces = [f for f in inverse.reshape(-1, 3).tolist() if len(set(f)) == 3]
         pieces = _shells(faces)
         for piece in pieces:
@@ -146,9 +144,7 @@ def _alone(points: np.ndarray, faces: Sequence[Sequence[int]]) -> tuple[np.ndarr
     return points[used], [[number_of[k] for k in face] for face in faces]
 
 
-def stones_of(
-    meshes: Sequence[Mesh], density: float, unit: str | None, name: str, tolerance: float = 0.0
-) -> list[Stone]:
+def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: str, tolerance: float = 0.0) -> list[Stone]:
     """Stones of meshes in a unit (metres unless one is given), of a density [kg/m^3]; tolerance [m]: of contacts, half of
     which corners may lie off the plane of their face, and of a convex body.
 

@@ -20,10 +20,7 @@ def drawn_out(assembly: Assembly) -> SolidAssembly:
     """The solids of a plane assembly, from -depth/2 to depth/2 across; its joints are the contacts, so that limit analysis
     in the plane and in space ask for the same forces. NoView where earth pushes back, which is known in the plane alone."""
     if assembly.earth is not None:
-        raise NoView(
-            "the fill of a bridge spreads loads and resists in its section alone: remove `direction`",
-            ("analysis", "direction"),
-        )
+        raise NoView("the fill of a bridge spreads loads and resists in its section alone: remove `direction`", ("analysis", "direction"))
     half = 0.5 * assembly.depth
     parts, owner, inertia = [], [], []
     for i, outline in enumerate(assembly.outlines):
@@ -45,11 +42,23 @@ def drawn_out(assembly: Assembly) -> SolidAssembly:
         mass, x, z = assembly.fill[bears].T
         fill = np.column_stack([bears, mass, x, np.zeros(len(bears)), z])
     return SolidAssembly(
-        parts=parts, owner=np.array(owner), mass=assembly.mass, inertia=np.array(inertia),
-        centroid=np.insert(assembly.centroid, 1, 0.0, axis=1), polygon=polygon, normal=normal, a=assembly.a, b=assembly.b,
-        block_names=assembly.block_names, joint_names=assembly.joint_names, fill=fill, groups=assembly.groups,
-        measures=assembly.measures, remarks=assembly.remarks, notes=assembly.notes,
-    )  # fmt: skip
+        parts=parts,
+        owner=np.array(owner),
+        mass=assembly.mass,
+        inertia=np.array(inertia),
+        centroid=np.insert(assembly.centroid, 1, 0.0, axis=1),
+        polygon=polygon,
+        normal=normal,
+        a=assembly.a,
+        b=assembly.b,
+        block_names=assembly.block_names,
+        joint_names=assembly.joint_names,
+        fill=fill,
+        groups=assembly.groups,
+        measures=assembly.measures,
+        remarks=assembly.remarks,
+        notes=assembly.notes,
+    )
 
 
 def barrel(section: Assembly, stones_across: int = 1, skew: float = 0.0) -> SolidAssembly:
@@ -67,10 +76,13 @@ def barrel(section: Assembly, stones_across: int = 1, skew: float = 0.0) -> Soli
     normal = whole.normal @ np.linalg.inv(shear)
     second = 0.5 * np.trace(whole.inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - whole.inertia
     return replace(
-        whole, parts=[part.moved(shear) for part in whole.parts], centroid=whole.centroid @ shear.T,
-        inertia=inertia_of(shear @ second @ shear.T), polygon=[points @ shear.T for points in whole.polygon],
+        whole,
+        parts=[part.moved(shear) for part in whole.parts],
+        centroid=whole.centroid @ shear.T,
+        inertia=inertia_of(shear @ second @ shear.T),
+        polygon=[points @ shear.T for points in whole.polygon],
         normal=normal / np.linalg.norm(normal, axis=1)[:, None],
-    )  # fmt: skip
+    )
 
 
 def _divided(section: Assembly, whole: SolidAssembly, count: int) -> SolidAssembly:
@@ -109,11 +121,7 @@ def _divided(section: Assembly, whole: SolidAssembly, count: int) -> SolidAssemb
                 low, high = max(u, s), min(v, t)
                 if high - low > 1e-9 * depth:
                     corners = [[p[0], low, p[1]], [q[0], low, q[1]], [q[0], high, q[1]], [p[0], high, p[1]]]
-                    add(
-                        np.array(corners),
-                        n3,
-                        *(GROUND if i == GROUND else first[i] + j for i, j in ((one, k), (two, m))),
-                    )
+                    add(np.array(corners), n3, *(GROUND if i == GROUND else first[i] + j for i, j in ((one, k), (two, m))))
     for i in range(n):  # head joints; the face of a voussoir as the quadrilateral of its joints' ends
         here = np.flatnonzero((section.a == i) | (section.b == i))[:2]
         face = np.concatenate([[section.p[here[0]], section.q[here[0]]], [section.q[here[1]], section.p[here[1]]]])
@@ -127,10 +135,20 @@ def _divided(section: Assembly, whole: SolidAssembly, count: int) -> SolidAssemb
     centroid = whole.centroid[course].copy()
     centroid[:, 1] = middle
     return replace(
-        whole, parts=parts, owner=np.array(owner), mass=whole.mass[course] * share, centroid=centroid,
-        inertia=inertia_of(second), polygon=polygon, normal=np.array(normal), a=one, b=two, block_names=names,
-        joint_names=joint_names(names, one, two, np.array(normal)), groups={},
-    )  # fmt: skip
+        whole,
+        parts=parts,
+        owner=np.array(owner),
+        mass=whole.mass[course] * share,
+        centroid=centroid,
+        inertia=inertia_of(second),
+        polygon=polygon,
+        normal=np.array(normal),
+        a=one,
+        b=two,
+        block_names=names,
+        joint_names=joint_names(names, one, two, np.array(normal)),
+        groups={},
+    )
 
 
 def _inertia(outline: np.ndarray, mass: float, polar: float, depth: float) -> np.ndarray:

@@ -48,10 +48,7 @@ class Strand:
             pull[k] += along
             pull[n] -= along
         rows = [
-            (block, self.point[k], pull[k] / len(blocks))
-            for k, blocks in enumerate(self.blocks)
-            for block in blocks
-            if block != GROUND
+            (block, self.point[k], pull[k] / len(blocks)) for k, blocks in enumerate(self.blocks) for block in blocks if block != GROUND
         ]
         block, place, force = zip(*rows, strict=True)
         return np.array(block), np.array(place), np.array(force)
@@ -77,9 +74,7 @@ def solid_at(assembly: SolidAssembly, point: np.ndarray, name: str | None, what:
     if name is not None:
         if name not in names:
             more = ", ..." if len(names) > 8 else ""
-            raise BadGeometry(
-                f"{what}: there is no block '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone")
-            )
+            raise BadGeometry(f"{what}: there is no block '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
         return names.index(name)
     hair = HAIR * assembly.size
     holding = [k for k, part in enumerate(assembly.parts) if _outside(part, point) < hair]
@@ -93,9 +88,7 @@ def solid_at(assembly: SolidAssembly, point: np.ndarray, name: str | None, what:
         )
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
-        raise BadGeometry(
-            f"{what}: {place} lies between {said}; name the one in which the tie is anchored", (*key, end)
-        )
+        raise BadGeometry(f"{what}: {place} lies between {said}; name the one in which the tie is anchored", (*key, end))
     return found[0]
 
 
@@ -105,9 +98,7 @@ def _outside(part: Polyhedron, point: np.ndarray) -> float:
     return float(((point - first) * part.normals).sum(axis=1).max())
 
 
-def hoop_at(
-    assembly: SolidAssembly, height: float, what: str, key: Key
-) -> tuple[np.ndarray, tuple[tuple[int, ...], ...]]:
+def hoop_at(assembly: SolidAssembly, height: float, what: str, key: Key) -> tuple[np.ndarray, tuple[tuple[int, ...], ...]]:
     """Corners (k, 3) [m] of the convex outline of the structure at a height, and the blocks that have each.
 
     BadGeometry, which begins with `what`, where no block is cut there, as in a bed joint.
@@ -131,7 +122,5 @@ def hoop_at(
     back, forth = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
     turn = back[:, 0] * forth[:, 1] - back[:, 1] * forth[:, 0]
     corners = corners[turn > LEAST_TURN * np.linalg.norm(back, axis=1) * np.linalg.norm(forth, axis=1)]
-    blocks = tuple(
-        tuple(sorted(set(whose[np.linalg.norm(plan - corner, axis=1) < 2.0 * hair].tolist()))) for corner in corners
-    )
+    blocks = tuple(tuple(sorted(set(whose[np.linalg.norm(plan - corner, axis=1) < 2.0 * hair].tolist()))) for corner in corners)
     return np.column_stack([corners, np.full(len(corners), height)]), blocks
