@@ -3,7 +3,7 @@ docs/verification/ with every row of every case, and the table of model uncertai
 
     python tools/verification_book.py [--pages | --trials]
 
-Runs the cases of cases/, keeps the results in build/verification.json, so that an interrupted run
+Runs the cases of cases/ whose values are not kept (build/verification, filled by the tests of cases too), so that an interrupted run
 continues, and writes the book with a plot for each strategy and quantity. `--pages` writes the book from the kept results: values found
 before the program's last change are marked, those of another deck, of other data or of other rows are skipped, and both are
 reported. `--trials` writes the section of trials alone anew.
@@ -11,12 +11,10 @@ reported. `--trials` writes the section of trials alone anew.
 
 import argparse
 import csv
-import hashlib
 import json
 import math
 import re
 import sys
-import time
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -29,14 +27,12 @@ ROOT = Path(__file__).resolve().parents[1]
 BOOK = ROOT / "docs" / "verification.md"
 PLOTS = ROOT / "docs" / "verification"
 UNCERTAINTY = ROOT / "python" / "extrados" / "results" / "model_uncertainty.csv"
-KEPT = ROOT / "build" / "verification.json"
 NOTES = ROOT / "build" / "trials"
 sys.path[:0] = [str(ROOT / "tests" / "cases"), str(ROOT / "tools")]
 
-from expectations import KINDS, LOOSE, PROOFS, Case, Row, load_cases, origin_of, origins, pick, results_of  # noqa: E402
+import kept  # noqa: E402
+from expectations import KINDS, LOOSE, PROOFS, Case, Row, load_cases, origin_of, origins  # noqa: E402
 from verification_quantities import QUANTITIES, quantity_of  # noqa: E402
-
-from extrados.schema.files import SHIPPED  # noqa: E402
 
 TRIALS = "## Trials"
 RELATIONS = "## Relations between strategies"
@@ -441,10 +437,10 @@ def trials(book: str) -> list[str]:
     since stays in the book."""
     section = book.partition(f"{TRIALS}\n")[2]
     lines = {row.split(" | ")[0]: row for row in section.split("\n") if row.startswith("| ") and "looked for" not in row}
-    kept = [json.loads(p.read_text(encoding="utf-8")) for p in sorted(NOTES.glob("*.json"))]
+    entries = [json.loads(p.read_text(encoding="utf-8")) for p in sorted(NOTES.glob("*.json"))]
     if asked := {p.stem: json.loads(p.read_text(encoding="utf-8")) for p in sorted((NOTES / "relations").glob("*.json"))}:
         broken = [name for name, one in asked.items() if one["broken"]]
-        kept.append(
+        entries.append(
             {
                 "what": "random buildings that break a relation between results",
                 "tried": sum(one["asked"] for one in asked.values()),
@@ -452,7 +448,7 @@ def trials(book: str) -> list[str]:
                 "notes": [f"{len(asked)} relations", *broken],
             }
         )
-    for r in kept:
+    for r in entries:
         row = f"| {r['what']} | {r['tried']:,} | {r['failures']} | {'; '.join(r['notes'])} |".replace("\n", " ")
         lines[row.split(" | ")[0]] = row
     if not lines:
@@ -492,15 +488,21 @@ def relations() -> list[str]:
     ]
 
 
-def long_cases(kept: dict[str, Any]) -> list[str]:
-    """Cases that take more than a minute, which `make verify` runs and the quick suite does not."""
-    lines = [(seconds, f"| {name} | {seconds:.0f} |") for name, was in kept.items() if (seconds := was.get("seconds", 0.0)) > LONG]
+def processor_seconds() -> dict[str, float]:
+    """Processor time of all changes of each case whose values are kept [s]."""
+    entries = {case.name: [kept.values_of(case, change) for change in {row.change for row in case.rows}] for case in load_cases()}
+    return {name: sum(was["seconds"] for was in of if was) for name, of in entries.items()}
+
+
+def long_cases(seconds: dict[str, float]) -> list[str]:
+    """Cases of more than a minute, `seconds` by name: `make verify` runs them and the quick suite does not."""
+    lines = [(value, f"| {name} | {value:.0f} |") for name, value in seconds.items() if value > LONG]
     if not lines:
         return []
     return [
         "## Cases of more than a minute",
         "",
-        f"Time of all changes of the case on two threads of the machine of the last run. {len(lines)} cases.",
+        f"Processor time of all changes of the case, on the machine of the last run. {len(lines)} cases.",
         "",
         "| case | seconds |",
         "|---|---|",
@@ -514,8 +516,8 @@ def with_trials_alone(book: str) -> str:
     return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials(book))
 
 
-def overview(rows: list[Found], book: str, kept: dict[str, Any]) -> str:
-    """docs/verification.md; `book`: its former text; `kept`: results with their times."""
+def overview(rows: list[Found], book: str) -> str:
+    """docs/verification.md; `book`: its former text."""
     parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", "", *by_strategy(rows)]
     parts += by_quantity(rows)
     if older := sum(found.older for found in rows):
@@ -534,14 +536,14 @@ def overview(rows: list[Found], book: str, kept: dict[str, Any]) -> str:
         ),
         "",
     ]
-    return "\n".join([*parts, *who_computed(rows), *long_cases(kept), *relations(), *trials(book)])
+    return "\n".join([*parts, *who_computed(rows), *long_cases(processor_seconds()), *relations(), *trials(book)])
 
 
-def write_book(rows: list[Found], before: str, kept: dict[str, Any]) -> None:
-    """All pages, plots and the table of model uncertainty; `before`: the former overview; `kept`: results with their times."""
+def write_book(rows: list[Found], before: str) -> None:
+    """All pages, plots and the table of model uncertainty; `before`: the former overview."""
     draw(rows)
     draw_strategies(rows)
-    BOOK.write_text(overview(rows, before, kept), encoding="utf-8")
+    BOOK.write_text(overview(rows, before), encoding="utf-8")
     for old in PLOTS.glob("*.md"):
         old.unlink()
     for strategy in strategies():
@@ -550,66 +552,26 @@ def write_book(rows: list[Found], before: str, kept: dict[str, Any]) -> None:
     write_uncertainty(rows)
 
 
-def checksum(paths: Iterable[Path]) -> str:
-    """Of the bytes of files, and of their names."""
-    total = hashlib.sha256()
-    for path in sorted(paths):
-        data = path.read_bytes()
-        total.update(f"{path.relative_to(ROOT)} {len(data)} ".encode() + data)
-    return total.hexdigest()
-
-
-def program() -> str:
-    """A checksum of all that computes."""
-    trees = (("fortran", "*.f90"), ("c", "*.[ch]"), ("python/extrados", "*.py"))
-    return checksum(path for root, ends in trees for path in (ROOT / root).rglob(ends))
-
-
-@cache
-def data_beside(folder: Path) -> str:
-    """A checksum of the data that decks of a folder may read: its files that are no decks, and shipped data."""
-    shipped = [ROOT / "python" / "extrados" / file for file in SHIPPED.values()]
-    shipped += [path for path in (ROOT / "python/extrados/motions/spectra").iterdir() if path.is_file()]
-    return checksum([*shipped, *(path for path in folder.rglob("*") if path.is_file() and path.suffix != ".toml")])
-
-
-def asked_of(case: Case) -> dict[str, Any]:
-    """Identity of the kept values of a case: its input, and the quantities of its rows."""
-    return {"read": checksum([case.deck]) + data_beside(case.deck.parent), "rows": [repr((row.quantity, row.change)) for row in case.rows]}
-
-
-def from_kept(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found] | None:
-    """The rows of a case with the kept values; None without kept values, or for those of another deck, data or rows.
-
-    Values, tolerances and words of the expectations may have changed since: they do not enter the computation.
+def find(case: Case, compute: bool) -> list[Found]:
+    """Values of the program for the rows of a case: the kept ones, computed anew where the program or the input has changed since.
+    Without `compute` older values are marked, and a case without kept values has no row.
     """
-    was = kept.get(case.name, {})
-    if any(was.get(key) != value for key, value in asked_of(case).items()):
-        return None
-    older = was["program"] != computed_by
-    return [Found(case.name, row, value, older) for row, value in zip(case.rows, was["values"], strict=True)]
-
-
-def find(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]:
-    """Values of the program for the rows of a case; kept values are used if neither the program nor the input
-    has changed since."""
-    found = from_kept(case, kept, computed_by)
-    if found is not None and not any(row.older for row in found):
-        return found
-    values: dict[int, Any] = {}
-    begun = time.perf_counter()
+    rows = []
     for change in dict.fromkeys(row.change for row in case.rows):
-        results = results_of(case, change)
-        values |= {i: pick(results, row.quantity) for i, row in enumerate(case.rows) if row.change == change}
-    ordered = [values[i] for i in range(len(case.rows))]
-    seconds = round(time.perf_counter() - begun, 1)
-    kept[case.name] = {"program": computed_by, **asked_of(case), "values": ordered, "seconds": seconds}
-    KEPT.parent.mkdir(exist_ok=True)
-    KEPT.write_text(json.dumps(kept), encoding="utf-8")
-    return [Found(case.name, row, value) for row, value in zip(case.rows, ordered, strict=True)]
+        was = kept.values_of(case, change)
+        if compute and (was is None or was["program"] != kept.program()):
+            kept.compute(case, change)
+            was = kept.values_of(case, change)
+        if was is None:
+            print(f"{case.name}: no kept values of this deck, data and rows, skipped", file=sys.stderr)
+            return []
+        older = was["program"] != kept.program()
+        of = [row for row in case.rows if row.change == change]
+        rows += [Found(case.name, row, value, older) for row, value in zip(of, was["values"], strict=True)]
+    return sorted(rows, key=lambda found: case.rows.index(found.row))
 
 
-def tested_walls(kept: dict[str, Any], computed_by: str, compute: bool) -> list[Found]:
+def tested_walls(compute: bool) -> list[Found]:
     """Strength of the walls of all tables by each method that the table's data suffice for: membranes need the bond of the units."""
     import wall_tests as tool
 
@@ -617,15 +579,15 @@ def tested_walls(kept: dict[str, Any], computed_by: str, compute: bool) -> list[
     for table in WALL_TABLES:
         walls = tool.read_walls(WALLS / table)
         methods = ["frame", "codes", *([] if any(math.isnan(wall.cohesion) for wall in walls) else ["membrane"])]
-        identity = {"read": checksum([WALLS / table, ROOT / "tools" / "wall_tests.py"])}
-        was = kept.get(table, {})
-        if was.get("read") != identity["read"] or (compute and was["program"] != computed_by):
+        identity = {"input": kept.checksum([WALLS / table, ROOT / "tools" / "wall_tests.py"])}
+        was = kept.load(table)
+        if was.get("input") != identity["input"] or (compute and was["program"] != kept.program()):
             if not compute:
                 print(f"{table}: not kept, skipped", file=sys.stderr)
                 continue
             values = [{name: one.strength for name, one in tool.predict(wall, methods).items()} for wall in walls]
-            was = kept[table] = {"program": computed_by, **identity, "values": values}
-            KEPT.write_text(json.dumps(kept), encoding="utf-8")
+            was = {"program": kept.program(), **identity, "values": values}
+            kept.keep(table, was)
         for wall, by in zip(walls, was["values"], strict=True):
             for name, analysis in WALL_METHODS.items():
                 if name in by:
@@ -640,7 +602,7 @@ def tested_walls(kept: dict[str, Any], computed_by: str, compute: bool) -> list[
                         f"failure {wall.failure}",
                         scatter="one test",
                     )
-                    rows.append(Found(f"wall {wall.name}", row, by[name], was["program"] != computed_by, series=True))
+                    rows.append(Found(f"wall {wall.name}", row, by[name], was["program"] != kept.program(), series=True))
     return rows
 
 
@@ -654,24 +616,13 @@ def main() -> int:
     if options.trials:
         BOOK.write_text(with_trials_alone(before), encoding="utf-8")
         return 0
-    kept: dict[str, Any] = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
-    computed_by = program()
     rows: list[Found] = []
     for case in load_cases():
-        if options.pages:
-            found = from_kept(case, kept, computed_by)
-            if found is None:
-                why = "kept values are of another state" if case.name in kept else "not kept"
-                print(f"{case.name}: {why}, skipped", file=sys.stderr)
-            elif any(row.older for row in found):
-                print(f"{case.name}: kept values are older than the program, marked {OLDER}", file=sys.stderr)
-            rows += found or []
-        else:
-            rows += find(case, kept, computed_by)
-            print(case.name, flush=True)
-    rows += tested_walls(kept, computed_by, not options.pages)
+        rows += find(case, not options.pages)
+        print(case.name, flush=True)
+    rows += tested_walls(not options.pages)
     assert set(TITLES) == set(KINDS)
-    write_book(rows, before, kept)
+    write_book(rows, before)
     wrong = sum(found.wrong for found in rows)
     print(f"docs/verification.md: {len(rows)} rows, {wrong} differ")
     return wrong

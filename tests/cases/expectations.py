@@ -25,7 +25,10 @@ from typing import Any
 
 from jsonschema import Draft202012Validator
 
+from extrados.analyses.context import Context
+from extrados.decks.reader import make_deck
 from extrados.results.explain import json_schema
+from extrados.running.run import Run, compute
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
@@ -186,14 +189,14 @@ def summary_schema() -> Draft202012Validator:
     return Draft202012Validator(json_schema())
 
 
-def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dict[str, Any]]:
-    """Run the deck with the change, as a user would through Python; analysis name -> results."""
-    from extrados.analyses.context import Context
-    from extrados.decks.reader import make_deck
-    from extrados.running.run import compute
-
+def run_of(case: Case, change: tuple[tuple[str, Any], ...]) -> Run:
+    """Run the deck with the change, as a user would through Python."""
     data = changed(tomllib.loads(case.deck.read_text(encoding="utf-8")), change)
     run = compute(Context(make_deck(data, case.deck.parent), threads=2))
     summary_schema().validate(run.summary)
-    # A refusal is a result too: its status and reason can be expected
+    return run
+
+
+def results_of_run(run: Run) -> dict[str, dict[str, Any]]:
+    """Analysis name -> results. A refusal is a result too: its status and reason can be expected."""
     return {a["name"]: {**a["results"], "status": a["status"], "reason": a["reason"]} for a in run.analyses}

@@ -1,33 +1,49 @@
-"""Every row of cases/**/*.expect.toml."""
+"""Every row of cases/**/*.expect.toml, and every figure of cases: a deck is computed once for its rows, the book and its figures."""
 
+import os
+from pathlib import Path
+
+import kept
 import pytest
-from expectations import Case, load_cases, pick, results_of
+from expectations import CASES, Case, load_cases
+from figure_faults import watch_figures
+
+import extrados
 
 ALL = load_cases()
+#: In the long suite the figures of each deck are drawn from the same run
+WHOLE = float(os.environ.get("EXTRADOS_TRIALS", "0")) > 0.0
+DECKS = sorted(p for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml"))
+DRAWN = {case.deck for case in ALL if WHOLE and any(not row.change for row in case.rows)}
 
 
 def _groups() -> list:
     found = []
     for case in ALL:
         for change in dict.fromkeys(row.change for row in case.rows):
-            name = case.name + "".join(f" {k}={v}" for k, v in change)
             marks = [pytest.mark.verify] if case.slow else []
-            found.append(pytest.param(case, change, id=name, marks=marks))
+            found.append(pytest.param(case, change, id=kept.name_of(case, change), marks=marks))
     return found
 
 
 @pytest.mark.parametrize(("case", "change"), _groups())
-def test_case(case: Case, change: tuple) -> None:
-    results = results_of(case, change)
-    wrong = []
-    for row in case.rows:
-        if row.change != change:
-            continue
-        found = pick(results, row.quantity)
-        if not row.fits(found):
-            wrong.append(
-                f"{row.quantity} = {found}, expected {row.value} +- {row.allowed} ({row.kind}: {row.source})"
-                if not isinstance(row.value, str)
-                else f"{row.quantity} = {found!r}, expected {row.value!r}"
-            )
+def test_case(case: Case, change: tuple, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run, values = kept.compute(case, change)
+    rows = [row for row in case.rows if row.change == change]
+    wrong = [
+        f"{row.quantity} = {found!r}, expected {row.value} +- {row.allowed:g} ({row.kind}: {row.source})"
+        if not isinstance(row.value, str)
+        else f"{row.quantity} = {found!r}, expected {row.value!r}"
+        for row, found in zip(rows, values, strict=True)
+        if not row.fits(found)
+    ]
     assert not wrong, "\n".join(wrong)
+    if case.deck in DRAWN and not change:
+        assert not watch_figures(run, tmp_path, monkeypatch).wrong
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("deck", [d for d in DECKS if d not in DRAWN], ids=lambda p: str(p.relative_to(CASES).with_suffix("")))
+def test_figures_can_be_read(deck: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No figure has text that is cut by its edge or covers another."""
+    assert not watch_figures(extrados.run(deck), tmp_path, monkeypatch).wrong

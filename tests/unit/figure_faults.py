@@ -4,11 +4,15 @@ import itertools
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
+
+from extrados.running.run import Run
+from extrados.show import report, style
 
 #: Pixels that a text may reach beyond the edge, and that two texts may reach into each other
 CUT, INTO = 1.5, 2.0
@@ -66,8 +70,6 @@ class Watch:
         self.found: dict[str, list[str]] = {}
 
     def __call__(self, fig: Figure, target: Path, name: str) -> str:
-        from extrados.show import style
-
         fig.get_layout_engine().execute(fig)
         fig.set_layout_engine("none")
         style._spread(fig)
@@ -78,3 +80,13 @@ class Watch:
     def wrong(self) -> list[str]:
         """All faults, each with its figure."""
         return [f"{name}: {fault}" for name, there in self.found.items() for fault in there]
+
+
+def watch_figures(run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Watch:
+    """All figures of a run, laid out in this process and not drawn."""
+    watch = Watch()
+    with monkeypatch.context() as patch:
+        patch.setattr(style, "write", watch)
+        patch.setattr(report, "_drawn", lambda tasks: [report._draw_one(*task) for task in tasks])
+        report.draw(run, folder)
+    return watch

@@ -1,11 +1,11 @@
-"""Figures can be read: no text is cut by the edge or lies over another. Here a few; of all cases in tests/verification."""
+"""Figures can be read: no text is cut by the edge or lies over another. Here a few; of all cases in tests/cases."""
 
 import itertools
 from pathlib import Path
 
 import numpy as np
 import pytest
-from figure_faults import Watch, faults
+from figure_faults import faults, watch_figures
 
 import extrados
 from extrados.analyses.assess.hazard import Demanded
@@ -19,11 +19,7 @@ SOME = ("vault/vezelay-like", "arch/readme", "rocking/facade", "dem/column", "li
 
 @pytest.mark.parametrize("case", SOME)
 def test_figures_can_be_read(case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run = extrados.run(CASES / f"{case}.toml")
-    watch = Watch()
-    monkeypatch.setattr(style, "write", watch)
-    monkeypatch.setattr(report, "_drawn", lambda tasks: [report._draw_one(*task) for task in tasks])
-    report.draw(run, tmp_path)
+    watch = watch_figures(extrados.run(CASES / f"{case}.toml"), tmp_path, monkeypatch)
     assert watch.found and not watch.wrong
 
 
