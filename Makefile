@@ -1,17 +1,23 @@
 # `make run` and `make test` first install missing packages and build; both are quick the second time.
 DECK ?= cases/arch/readme.toml
+# quick, or long: with the tests of tests/long.txt too, of more than a second of a processor each
+SUITE ?= quick
+MARKS := $(if $(filter long,$(SUITE)),-m "not verify",$(if $(filter quick,$(SUITE)),,$(error SUITE is quick or long)))
 PYTHON := .venv/bin/python
 # An import after a pull may build anew; meson then requires numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: browser pictures run test verify bench oldest lint format wheel setup table-5-3 impact-map docs coverage release clean
+.PHONY: browser pictures run test times verify bench oldest lint format wheel setup table-5-3 impact-map docs coverage release clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
 
 test: setup
-	@$(PYTHON) -m pytest -q -n auto --maxprocesses 8 --dist worksteal
+	@$(PYTHON) -m pytest -q -n auto --maxprocesses 8 --dist worksteal $(MARKS)
 	@$(PYTHON) tools/native_tests.py
+
+times: setup  ## measure the processor time of all tests but the validation; writes tests/long.txt
+	@$(PYTHON) tools/long_tests.py
 
 browser: setup  ## chromium and Playwright, if available, for the tests of the interactive page
 	@sh tools/browser.sh

@@ -30,9 +30,18 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background jo
 LONGEST = 3600
 
 
+#: Tests of more than a second of a processor, measured: `make times` writes the list
+LONG = ROOT / "tests" / "long.txt"
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long validation and whole trials may take long; they come last, trials after validation."""
+    """Tests of the list of long ones are marked so. Long validation and whole trials come last, trials after validation."""
     whole = float(os.environ.get("EXTRADOS_TRIALS", "0")) > 0.0
+    listed = set(LONG.read_text(encoding="utf-8").splitlines())
+    for item in items:
+        if item.nodeid in listed:
+            item.add_marker(pytest.mark.long)
 
     def rank(item: pytest.Item) -> int:
         is_trial = "trials" in item.path.parts or "properties" in item.path.parts
@@ -42,6 +51,23 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if rank(item):
             item.add_marker(pytest.mark.timeout(LONGEST))
+
+
+def _processor_seconds() -> float:
+    """Processor time of this process and of the children that it waited for [s]."""
+    used = os.times()
+    return used.user + used.system + used.children_user + used.children_system
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """Keep the processor time of each test where `make times` asks for it: the clock of a busy machine says little."""
+    begun = _processor_seconds()
+    done = yield
+    if folder := os.environ.get("EXTRADOS_TIMES"):
+        with open(Path(folder) / f"{os.getpid()}.tsv", "a", encoding="utf-8") as file:
+            file.write(f"{_processor_seconds() - begun:.3f}\t{item.nodeid!r}\n")
+    return done
 
 
 @pytest.fixture(autouse=True)

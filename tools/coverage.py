@@ -32,7 +32,7 @@ def run(tests: list[str]) -> None:
         path.unlink()
     python = apart.python(ROOM)
     # In one process: the workers of xdist leave without writing the counts of the core
-    options = ["--cov=extrados", "--cov-report=", "-q", "-n", "0"]
+    options = ["--cov=extrados", "--cov-report=", "-q", "-n", "0", "-m", "not verify"]
     done = subprocess.run([python, "-m", "pytest", *options, *tests], cwd=ROOM, check=False)
     if done.returncode == INTERRUPTED:
         sys.exit("the tests were interrupted: nothing was counted")
