@@ -57,6 +57,7 @@ class StackResponse:
     state: np.ndarray
     force: np.ndarray
     events: list[tuple[str, float, int]]
+    events_found: int
     work: float
     loss: float
     interrupted: bool = False
@@ -121,6 +122,7 @@ def stack_history(
         s[:, 9:11].astype(int),
         s[:, 11:15].reshape(-1, 2, 2),
         [(EVENTS[int(k)], float(t), int(c)) for k, (t, c) in zip(kinds[:found], event.T[:found], strict=True)],
+        events,
         work,
         loss,
         interrupted,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from extrados.analyses.chaos import CHAOTIC, NUDGE, chaos_told, growth, over_critical, perturbed, turning
+from extrados.analyses.chaos import NUDGE, growth, over_critical, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.hand_over import Contacts, decide
 from extrados.analyses.rocking.tables import Rocking
@@ -109,8 +109,8 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
         return nothing
     others = [response.outcome if place == FAILED else OUTCOMES[place] for place in nudged.outcome]
     turns = turning(response.outcome, [*(probe.outcome for probe in probes), *others])
-    chaotic = grown > CHAOTIC or turns > 0.0
-    violated = [chaos_told(grown, turns)] if chaotic else []
+    violated = violated_by_chaos(grown, turns)
+    chaotic = bool(violated)
     rivals: dict[str, tuple[float, Body]] = rocker.rivals(DIFFER)
     more = _keeping_more(context, rocker, response)
     bodies = [rocker.held(body) for _, body in rivals.values()]
