@@ -93,7 +93,7 @@ class StackRocking(ResultModel):
     uplift_upper_g: float = fact("horizontal acceleration at which the upper block begins to rock alone", "g")
     impacts_on_ground: int = fact("impacts on the ground")
     impacts_between: int = fact("impacts at the joint between")
-    modes: list[ModeShare] = fact("how long it rocks in each mode")
+    modes: list[ModeShare] = fact("share of the rocking time in each mode")
 
 
 class SoftBaseRocking(ResultModel):

@@ -32,7 +32,7 @@ class BlockSize(ResultModel):
     """The capacity of the same structure in blocks of another size or bond."""
 
     change: str = fact("key of the structure that is changed, with its value")
-    blocks: int | None = fact("blocks then; null without such a partition")
+    blocks: int | None = fact("number of blocks of that partition; null without one")
     collapse_acceleration_g: float | None = fact("upper bound along the direction; null without one", "g")
     relative_change: float | None = fact("over that of the blocks of the deck, less one")
     reason: str | None = fact("why there is no value")
