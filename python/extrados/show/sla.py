@@ -494,5 +494,5 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
         f"Energies in the states: the work of the loads is stored, dissipated, or lost where the structure goes from one state "
-        f"to the next; the ledger of all three closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
+        f"to the next; the balance of all three closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
     )
