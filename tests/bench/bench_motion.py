@@ -9,7 +9,7 @@ from scipy import signal
 from timing import seconds
 
 from extrados.core import motion as core
-from extrados.motions.generated import generated
+from extrados.motions.generated import Window, generated
 
 POINTS, STEP = 5000, 0.01
 PERIODS, DAMPINGS = np.geomspace(0.05, 10.0, 400), [0.02, 0.05, 0.10]
@@ -18,7 +18,7 @@ THREADS = min(2, os.cpu_count() or 1)
 
 def _record() -> np.ndarray:
     """A generated motion of intensity 8 with as many points as the bench asks for."""
-    return generated(8, 30.0, lines=200, step=STEP, tail=19.49, envelope="saragoni-hart").motion(0)[:POINTS]
+    return generated(8, 30.0, lines=200, step=STEP, window=Window("saragoni-hart", tail=19.49)).motion(0)[:POINTS]
 
 
 def _lsim(a: np.ndarray, periods: np.ndarray) -> np.ndarray:

@@ -250,3 +250,34 @@ def test_a_refusal_says_which_key_is_to_blame(room: str) -> None:
                 if name in ("Refused", "NoView") and len(node.args) + len(node.keywords) < 2:
                     silent.append(f"{path.relative_to(PACKAGE)}:{node.lineno}")
     assert not silent
+
+
+#: Functions beyond the limits, and why
+LONG = {
+    "analyses/sla/events.py run_reference_loads": "the loop of events; divided with the step of the iterations",
+    "analyses/sla/model.py _build": "fills the core's model in the order of its calls",
+    "analyses/sla/stages.py run_stages": "one line above, of the same loop",
+    "analyses/shell/model.py _build": "one line above, fills the core's model",
+    "analyses/strengthen/driver.py _row": "keys of a row of results",
+}
+MOST_LINES, MOST_PARAMETERS = 80, 12
+
+
+def _functions_beyond() -> set[str]:
+    """Functions of the package with more lines or parameters than the limits."""
+    found = set()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                args = node.args
+                count = len(args.posonlyargs) + len(args.args) + len(args.kwonlyargs)
+                if (node.end_lineno or 0) - node.lineno + 1 > MOST_LINES or count > MOST_PARAMETERS:
+                    found.add(f"{path.relative_to(PACKAGE)} {node.name}")
+    return found
+
+
+def test_functions_are_short() -> None:
+    """At most 80 lines and 12 parameters."""
+    found = _functions_beyond()
+    assert not found - set(LONG), "divide these functions"
+    assert not set(LONG) - found, "remove these exceptions: the functions are short now"

@@ -200,7 +200,7 @@ def test_friction_search_does_not_survive_ctrl_c(monkeypatch: pytest.MonkeyPatch
         interrupt_from(patch, 4, reason="blow-up")
         (found,) = answers(SLIDING)
     assert found["friction_threshold"] is None
-    assert any("ledger does not close" in w for w in found.warnings)
+    assert any("balance does not close" in w for w in found.warnings)
 
 
 def test_restitution_is_that_of_free_rocking() -> None:

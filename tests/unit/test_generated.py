@@ -10,7 +10,7 @@ from extrados.core import motion as core
 from extrados.core.errors import CoreError
 from extrados.motions import code_spectra, line_spectra, point_source
 from extrados.motions.compatible import CompatibleSet, NotMatched
-from extrados.motions.generated import generated
+from extrados.motions.generated import Window, generated
 from extrados.motions.line_spectra import SpectrumFileError, load_spectrum
 
 G = 9.80665
@@ -64,7 +64,7 @@ def test_phases_are_uniform_and_independent() -> None:
 @pytest.mark.parametrize("envelope", ["arctangent", "trapezoid", "jennings", "saragoni-hart"])
 def test_ensemble_mean_spectrum(scaling, envelope) -> None:
     """The mean square Fourier amplitude is the sum over lines of A^2/4 times that of the window shifted to the line."""
-    made = generated(7, 5.0, seed=8, scaling=scaling, envelope=envelope, factor=1.5)
+    made = generated(7, 5.0, seed=8, scaling=scaling, window=Window(envelope), factor=1.5)
     count, length = 4000, 2048
     power = np.zeros(length // 2 + 1)
     for _, batch in made.batches(count):
@@ -87,7 +87,7 @@ def test_ensemble_mean_spectrum(scaling, envelope) -> None:
 def test_energy_scaling_keeps_the_energy(envelope, lines) -> None:
     """Whatever duration, envelope and number of lines, the Arias intensity is that of the spectrum."""
     for duration in (3.0, 12.0):
-        made = generated(6, duration, seed=4, lines=lines, envelope=envelope)
+        made = generated(6, duration, seed=4, lines=lines, window=Window(envelope))
         arias = core.measures(made.batch(0, 1500), made.step).arias.mean()
         assert arias == pytest.approx(made.expected()["arias"], rel=0.012)
 
@@ -121,7 +121,7 @@ def test_shipped_spectrum_is_that_of_the_point_source() -> None:
 @pytest.mark.parametrize("mmi", [5, 6, 7, 8, 9])
 def test_energy_scaling_gives_motions_of_the_intensity(mmi) -> None:
     """With the source's own duration the medians come out near those the spectrum was matched to."""
-    made = generated(mmi, point_source.source_of(mmi).duration, seed=2, lines=40, envelope="saragoni-hart")
+    made = generated(mmi, point_source.source_of(mmi).duration, seed=2, lines=40, window=Window("saragoni-hart"))
     m = core.measures(made.batch(0, 1000), made.step)
     assert 0.6 < np.median(m.pga) / made.expected()["pga"] < 1.6
     assert 0.6 < np.median(m.pgv) / made.expected()["pgv"] < 1.6
@@ -156,7 +156,7 @@ def test_envelopes() -> None:
         ({"duration": 0.0}, "above zero"),
         ({"lines": [2.0, 1.0]}, "ascending"),
         ({"spectrum": "nowhere.csv"}, "no such file"),
-        ({"envelope": "square"}, "unknown envelope"),
+        ({"window": Window("square")}, "unknown envelope"),
     ],
 )
 def test_refusals(keys, words) -> None:

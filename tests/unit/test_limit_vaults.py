@@ -16,7 +16,7 @@ from extrados.limit.supports import support_movement
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly, part_of
 from extrados.model.geometry.builder import Builder
-from extrados.model.structures.aisled_vault import Added, Aisle, Flyer, make_church
+from extrados.model.structures.aisled_vault import Added, Aisle, Fill, Flyer, make_church
 from extrados.model.structures.arch import make_arch
 from extrados.model.structures.block import make_block
 from extrados.model.structures.vault import make_vault
@@ -213,7 +213,7 @@ def test_flyers_add_loops_and_strength() -> None:
 
 
 def test_fill_weighs_on_the_haunches() -> None:
-    plain, filled = church(1.8), church(1.8, fill_level=15.0, fill_density=1600.0)
+    plain, filled = church(1.8), church(1.8, fill=Fill(15.0, density=1600.0))
     assert filled.fill is not None and np.allclose(filled.mass, plain.mass)
     nave = [int(filled.a[j]) for j in filled.chains["nave"][:-1]]
     mass = filled.fill[nave, 0]

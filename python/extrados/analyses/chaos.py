@@ -46,17 +46,19 @@ def turning(outcome: str, others: Sequence[str]) -> float:
     return next((NUDGES[i // 2] for i, other in enumerate(others) if (other == "collapse") != (outcome == "collapse")), 0.0)
 
 
-def chaos_told(
+def violated_by_chaos(
     found: float, turns: float, parts: str = "the rotation", limit: str = "the critical one", advice: str = "use fragility"
-) -> str:
-    """The violated condition of a chaotic run, from the growth of a perturbation and the least one that turns its outcome; `parts`:
-    what differs, as a share of its `limit`."""
+) -> list[str]:
+    """The violated condition of a chaotic run, from the growth of a perturbation and the least one that changes its outcome; empty if
+    the response is smooth. parts: differing quantity, as a share of its `limit`."""
+    if found <= CHAOTIC and turns <= 0.0:
+        return []
     if found <= CHAOTIC and turns > NUDGE:
-        return (
+        return [
             f"Sensitive to perturbations of {turns:.1g}: scaled by 1 plus or minus that, the motion ends in another outcome. One run is "
             f"one sample: {advice}."
-        )
-    return (
+        ]
+    return [
         f"Chaotic: sensitive to perturbations of 1e-6. Scaled by 1 plus or minus {NUDGE:g}, the motion ends in another outcome, or "
         f"{parts} differs by up to {100.0 * min(1.0, found * NUDGE):.2g} % of {limit}. One run is one sample: {advice}."
-    )
+    ]

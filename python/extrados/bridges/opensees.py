@@ -69,7 +69,7 @@ def _block(deck: Deck) -> Iterator[str]:
         raise BadGeometry("OpenSees takes one rigid block here", ("structure",))
     block, friction = model.block, deck.building.friction()
     if block.slope:
-        raise BadGeometry("OpenSees is given a block on level ground here", ("structure", "base_slope"))
+        raise BadGeometry("the export to OpenSees covers a block on level ground only", ("structure", "base_slope"))
     mass, inertia, height = float(block.mass[0]), float(block.inertia[0]), float(block.centre_height)
     toes = {"right": float(block.toe_right), "left": -float(block.toe_left)}
     stiffness = HARD * mass * GRAVITY / height

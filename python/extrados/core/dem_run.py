@@ -20,7 +20,7 @@ from extrados.core.handles import Owner
 
 #: Why a run ended, by the number the core gives.
 REASONS = tuple(lists.words("dem_stop").values())
-#: Rows of the energy ledger [J].
+#: Rows of the energy balance [J].
 ENERGIES = tuple(lists.words("dem_energy").values())
 #: Between two pauses of a run that is watched: about so long [s]; the first one comes after a few steps.
 PAUSE_SECONDS, FIRST_PAUSE = 0.5, 256

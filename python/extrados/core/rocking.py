@@ -216,6 +216,12 @@ class Response:
     joints: JointDemand | None = None  # of a watched structure
 
 
+def output_times(end_time: float, output_step: float, rows: int) -> np.ndarray:
+    """Output times from 0 to the end [s]; refuses histories of `rows` values that do not fit into memory."""
+    room_for(rows, int(min(end_time / output_step, 1e12)))
+    return np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
+
+
 def history(
     body: Body,
     ground: Ground,
@@ -234,16 +240,13 @@ def history(
     It starts with `start_rotation` >= 0 [rad] and `start_rate` [rad/s] to the side `start_side`, 1 to +x or -1. `room`:
     events kept.
     """
-    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0):
-        raise ValueError("end time, output step and tolerance must be positive")
-    if not np.isfinite(scale):
-        raise ValueError(f"scale is {scale}, expected a number")
+    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
+        raise ValueError("end time, output step and tolerance must be positive, the scale a number")
     if start_side not in (1, -1) or not start_rotation >= 0.0:
         raise ValueError(f"start is {start_rotation} rad to side {start_side}, expected 0 or more to side 1 or -1")
     if not 0 <= room <= 10**7:
         raise ValueError(f"number of events kept is {room}, expected 0 to 10,000,000 events")
-    room_for(8, int(min(end_time / output_step, 1e12)))
-    times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
+    times = output_times(end_time, output_step, 8)
     with MotionSet([ground]) as motions, BodyList([body]) as bodies:
         counts, measures, state, kept, kinds, event, status = long_call(
             _core.api_rocking.history,

@@ -7,10 +7,10 @@ import numpy.typing as npt
 
 from extrados import _core
 from extrados.core import lists
-from extrados.core.calls import long_call, real, room_for
+from extrados.core.calls import long_call, real
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
-from extrados.core.rocking import EVENTS, OUTCOMES, Body, Outcome
+from extrados.core.rocking import EVENTS, OUTCOMES, Body, Outcome, output_times
 
 
 @dataclass(frozen=True)
@@ -158,8 +158,7 @@ def soft_base_history(
     if not 1 <= room <= 10**7:
         raise ValueError(f"number of events kept is {room}, expected 1 to 10,000,000 events")
     rows = int(_core.api_soft_base.rows())
-    room_for(rows, int(min(end_time / output_step, 1e12)))
-    times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
+    times = output_times(end_time, output_step, rows)
     with MotionSet([ground]) as motions:
         counts, measures, state, kinds, event, status = long_call(
             _core.api_soft_base.history,

@@ -6,10 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core
-from extrados.core.calls import long_call, real, room_for
+from extrados.core.calls import long_call, real
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
-from extrados.core.rocking import EVENTS, OUTCOMES, Outcome
+from extrados.core.rocking import EVENTS, OUTCOMES, Outcome, output_times
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,7 @@ class StackResponse:
     state: np.ndarray
     force: np.ndarray
     events: list[tuple[str, float, int]]
+    events_found: int
     work: float
     loss: float
     interrupted: bool = False
@@ -80,8 +81,7 @@ def stack_history(
     if not 1 <= room <= 10**7:
         raise ValueError(f"number of events kept is {room}, expected 1 to 10,000,000 events")
     rows = int(_core.api_stack.rows())
-    room_for(rows, int(min(end_time / output_step, 1e12)))
-    times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
+    times = output_times(end_time, output_step, rows)
     with MotionSet([ground]) as motions:
         counts, measures, state, kinds, event, status = long_call(
             _core.api_stack.history,
@@ -121,6 +121,7 @@ def stack_history(
         s[:, 9:11].astype(int),
         s[:, 11:15].reshape(-1, 2, 2),
         [(EVENTS[int(k)], float(t), int(c)) for k, (t, c) in zip(kinds[:found], event.T[:found], strict=True)],
+        events,
         work,
         loss,
         interrupted,

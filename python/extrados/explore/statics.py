@@ -98,26 +98,10 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
         made.arrays["dampers"] = np.array([[d.start, d.far] for d in building.dampers]).reshape(-1, 2) - anchor
     words["abutting_wall"] = building.supports.abutting_wall
     words["head_mass_kg"] = getattr(building.structure, "head_mass", None) or None
-    if ignored := [what for what in building.special_keys if what not in options.bears]:
-        words |= {"stands": None, "unknown": f"{options.kind} cannot take {' and '.join(ignored)} into account."}
+    ends = _ends(made, building, options)
+    if ends is None or made.limit is None:
         return made
-    try:
-        limit = made.limit = limit_of(building, options)
-        words["weight_N"] = limit.loads.scale
-        ends = {"plus": limit.collapse(1), "minus": limit.collapse(-1)}
-    except Immovable as error:  # one of those that follow, and no failure
-        words |= {"stands": True, "immovable": str(error)}
-        return made
-    except NoEquilibrium:
-        try:
-            cannot_stand(limit)
-            words |= {"stands": False, "falls": "weight"}
-        except (NoAnswer, NoEquilibrium) as error:  # no certificate: nothing is said of the structure
-            words |= {"stands": None, "unknown": str(error)}
-        return made
-    except (NoAnswer, NoView, Refused) as error:
-        words |= {"stands": None, "unknown": str(error)}
-        return made
+    limit = made.limit
     plus, minus = ends["plus"][0].gamma, -ends["minus"][0].gamma
     words["capacity"] = {"plus_g": plus, "minus_g": minus}
     words["dilating"] = {name: bool(limit.dilating(mechanism)) for name, (_, mechanism) in ends.items()}
@@ -149,33 +133,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     shown: State | None = None
     if chain is not None and quick:
         try:
-            least, most = limit.thrust(chains[chain], view.gamma)
-            told = thrust_joint(assembly, limit.loads, chains[chain])
-            for name, state in (("least", least), ("most", most)):
-                if name in view.lines:
-                    _line(made, name, state, anchor)
-                words[f"{name}_N"] = thrust_of(assembly, state, chains[chain], told)
-                words[f"{name}_touches"] = _touches(assembly, state, anchor)
-            shown = least
-            if view.through is not None and "through" in view.lines and view.through[0] < len(assembly.a):
-                shown = limit.through(*view.through, view.gamma)
-                _line(made, "through", shown, anchor)
-                joint = view.through[0]
-                at = shown.points(assembly)[joint] - anchor
-                words["through"] = {
-                    "joint": joint,
-                    "name": assembly.joint_names[joint],
-                    "wanted": view.through[1],
-                    "reached": float(shown.position[joint]),
-                    "at": at.tolist(),
-                    "thrust_N": thrust_of(assembly, shown, chains[chain], told),
-                }
-            elif view.thrust is not None and "through" in view.lines:
-                low, high = words["least_N"], words["most_N"]
-                share = min(max((view.thrust - low) / (high - low), 0.0), 1.0) if high > low else 0.0
-                shown = blended(least, most, share)
-                _line(made, "through", shown, anchor)
-                words["chosen"] = {"thrust_N": thrust_of(assembly, shown, chains[chain], told), "wanted_N": view.thrust}
+            shown = _thrusts(made, limit, view, chains[chain], anchor)
         except (NoEquilibrium, NoAnswer) as error:
             words["remark"] = str(error)
     shown = shown or governing
@@ -183,6 +141,64 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     words["reactions_of"] = "through" if "through" in words or "chosen" in words else "least" if shown is not governing else way
     _polygon(made, shown, chain)
     return made
+
+
+def _ends(made: Picture, building: Building, options: LimitAnalysisTable) -> dict[str, tuple[State, Mechanism]] | None:
+    """Collapse to both sides; None without it, and the words of the picture give the reason."""
+    words = made.words
+    if ignored := [what for what in building.special_keys if what not in options.bears]:
+        words |= {"stands": None, "unknown": f"{options.kind} cannot take {' and '.join(ignored)} into account."}
+        return None
+    limit: LimitAnalysis | None = None
+    try:
+        limit = made.limit = limit_of(building, options)
+        words["weight_N"] = limit.loads.scale
+        return {"plus": limit.collapse(1), "minus": limit.collapse(-1)}
+    except Immovable as error:  # before NoAnswer, of which it is one, and no failure
+        words |= {"stands": True, "immovable": str(error)}
+    except NoEquilibrium:
+        try:
+            assert limit is not None  # making it solves nothing
+            cannot_stand(limit)
+            words |= {"stands": False, "falls": "weight"}
+        except (NoAnswer, NoEquilibrium) as error:  # no certificate: nothing is said of the structure
+            words |= {"stands": None, "unknown": str(error)}
+    except (NoAnswer, NoView, Refused) as error:
+        words |= {"stands": None, "unknown": str(error)}
+    return None
+
+
+def _thrusts(made: Picture, limit: LimitAnalysis, view: View, chain: list[int], anchor: np.ndarray) -> State:
+    """States of least and greatest thrust of a chain, and the state that the view requests; the one whose reactions are shown."""
+    words, assembly = made.words, made.assembly
+    least, most = limit.thrust(chain, view.gamma)
+    crown = thrust_joint(assembly, limit.loads, chain)
+    for name, state in (("least", least), ("most", most)):
+        if name in view.lines:
+            _line(made, name, state, anchor)
+        words[f"{name}_N"] = thrust_of(assembly, state, chain, crown)
+        words[f"{name}_touches"] = _touches(assembly, state, anchor)
+    shown = least
+    if view.through is not None and "through" in view.lines and view.through[0] < len(assembly.a):
+        shown = limit.through(*view.through, view.gamma)
+        _line(made, "through", shown, anchor)
+        joint = view.through[0]
+        at = shown.points(assembly)[joint] - anchor
+        words["through"] = {
+            "joint": joint,
+            "name": assembly.joint_names[joint],
+            "wanted": view.through[1],
+            "reached": float(shown.position[joint]),
+            "at": at.tolist(),
+            "thrust_N": thrust_of(assembly, shown, chain, crown),
+        }
+    elif view.thrust is not None and "through" in view.lines:
+        low, high = words["least_N"], words["most_N"]
+        share = min(max((view.thrust - low) / (high - low), 0.0), 1.0) if high > low else 0.0
+        shown = blended(least, most, share)
+        _line(made, "through", shown, anchor)
+        words["chosen"] = {"thrust_N": thrust_of(assembly, shown, chain, crown), "wanted_N": view.thrust}
+    return shown
 
 
 def _reason(words: dict[str, Any]) -> str:

@@ -13,6 +13,7 @@ Joints without dilatancy are no linear programme, which HiGHS and Clarabel need.
 long on walls of 100 to 250 stones, Clarabel, without the mechanism, 0.9 to 1.5 times (`python tests/bench solvers`).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -285,18 +286,7 @@ class CollapseProblem:
         aim = max(min(1.0, max(reached.gap, 0.0) / x.gap) ** 3 * mean, FLOOR * GAP / self.pairs)
         second = _products(guess)
         step = newton(aim, second)
-        reach = _reaches(x, step)
-        for _ in range(CORRECTIONS):
-            if min(reach) >= FAR:
-                break
-            # Gondzio (1996): products that a longer step would carry far from the aim are led back to it.
-            tried = x.moved(step, *(min(1.0, r + FURTHER) for r in reach))
-            corrected = [s - _led_back(product, aim) for s, product in zip(second, _products(tried), strict=True)]
-            other = newton(aim, (corrected[0], corrected[1], corrected[2]))
-            longer = _reaches(x, other)
-            if sum(longer) < sum(reach) + GAINED:
-                break
-            step, reach, second = other, longer, (corrected[0], corrected[1], corrected[2])
+        step, reach = _corrected(x, step, second, aim, newton)
         force, motion = (1.0 if r >= 1.0 else TOWARDS_EDGE * r for r in reach)
         if not self.dilates:  # forces and motions bear on each other: they go together
             force = motion = min(force, motion)
@@ -372,3 +362,22 @@ def _sums(pairs: np.ndarray) -> np.ndarray:
 def _led_back(product: np.ndarray, aim: float) -> np.ndarray:
     """What brings products back between a tenth and ten times the aim, large ones no farther than that."""
     return np.maximum(np.clip(product, 0.1 * aim, 10.0 * aim) - product, -10.0 * aim)
+
+
+def _corrected(
+    x: Point, step: Point, second: Products, aim: float, newton: Callable[[float, Products], Point]
+) -> tuple[Point, tuple[float, float]]:
+    """The step and its reach in forces and motion, after corrections by Gondzio (1996): products that a longer step would carry far
+    from the aim are led back to it."""
+    reach = _reaches(x, step)
+    for _ in range(CORRECTIONS):
+        if min(reach) >= FAR:
+            break
+        tried = x.moved(step, *(min(1.0, r + FURTHER) for r in reach))
+        corrected = [s - _led_back(product, aim) for s, product in zip(second, _products(tried), strict=True)]
+        other = newton(aim, (corrected[0], corrected[1], corrected[2]))
+        longer = _reaches(x, other)
+        if sum(longer) < sum(reach) + GAINED:
+            break
+        step, reach, second = other, longer, (corrected[0], corrected[1], corrected[2])
+    return step, reach

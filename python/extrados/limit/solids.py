@@ -402,15 +402,8 @@ class SolidLimit:
                 cones.append(clarabel.NonnegativeConeT(1))
                 right = np.append(right, 1.0)
                 lines = np.append(lines, -1)
-        settings = clarabel.DefaultSettings()
-        settings.verbose = False
-        settings.max_iter = 200
-        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
-        settings.tol_infeas_abs = settings.tol_infeas_rel = 1e-9
-        settings.max_threads = 1
-        settings.direct_solve_method = method
         nothing = sparse.csc_array((len(cost), len(cost)))
-        solver = clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, settings)
+        solver = clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, _settings(method))
         return _waited(solver.solve)[0], lines
 
     @cached_property
@@ -519,6 +512,18 @@ class SolidLimit:
             bounds.append(own)
         matrix = sparse.hstack([*columns, sparse.csc_array(live[:, None])]).tocsc()
         return _most(matrix, -dead, np.concatenate([*low, [-np.inf]]), np.concatenate([*high, [np.inf]]))
+
+
+def _settings(method: str) -> "clarabel.DefaultSettings":
+    """Settings of the conic solver; method: of its sparse factors."""
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_iter = 200
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
+    settings.tol_infeas_abs = settings.tol_infeas_rel = 1e-9
+    settings.max_threads = 1
+    settings.direct_solve_method = method
+    return settings
 
 
 def _waited(*calls: Callable[[], Found], told: Callable[[], None] = lambda: None) -> list[Found]:

@@ -30,7 +30,9 @@ class Tie(Table):
     start_stone: str | None = key(
         None, "name of the stone at `start`; needed if that point lies between two stones or in none", max_length=80
     )
-    end_stone: str | None = key(None, "name of the stone at `end`; needed if that point lies between two stones or in none", max_length=80)
+    end_stone: str | None = key(
+        None, "name of the block at `end`; required if that point lies between two blocks or outside all blocks", max_length=80
+    )
     works_in: Literal["tension", "compression", "both"] = key(
         "tension", "a tie is slack in compression, a strut in tension; a spring works in both"
     )

@@ -1,7 +1,7 @@
 """The motion, or the motions, that a deck asks for."""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,7 @@ from extrados.motions import tables as models
 from extrados.motions.compatible import CompatibleSet, NotMatched
 from extrados.motions.floors import on_floor, sway_of
 from extrados.motions.formats.record import Record, RecordError
-from extrados.motions.generated import GeneratedSet, generated
+from extrados.motions.generated import GeneratedSet, Window, generated
 from extrados.motions.motion import Motion
 from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Motion as Model
@@ -112,7 +112,8 @@ def generated_set(model: models.Generated, folder: Path, seed: int | None = None
     if seed is not None:
         keys["seed"] = seed
     try:
-        made = generated(**keys, step=model.time_step, folder=folder)
+        window = Window(**{field.name: keys.pop(field.name) for field in fields(Window)})
+        made = generated(**keys, window=window, step=model.time_step, folder=folder)
         return made if model.floor is None else replace(made, floor=sway_of(model.floor))
     except ValueError as error:
         raise RecordError(f"[motion] generated: {error}") from None

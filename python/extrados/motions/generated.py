@@ -108,6 +108,21 @@ def envelope_parameters(
     raise ValueError(f"unknown envelope '{kind}': expected one of {', '.join(core.ENVELOPES)}")
 
 
+@dataclass(frozen=True)
+class Window:
+    """Envelope of a motion of duration t_d over time, with lead and tail [s] before and after t_d.
+
+    envelope: 'arctangent' (Eq. 6.7; rise is its width, 0.1 s), 'trapezoid' (Hou 1968; rise 0.15 t_d, decay 0.4 t_d, both within t_d),
+    'jennings' (rise within t_d, then decay to 5 % in `decay`), 'saragoni-hart' (rise: time of the peak, 0.2 t_d; 5 % at t_d).
+    """
+
+    envelope: str = "arctangent"
+    rise: float | None = None
+    decay: float | None = None
+    lead: float = 0.5
+    tail: float = 2.0
+
+
 def generated(
     mmi: float,
     duration: float,
@@ -119,11 +134,7 @@ def generated(
     scaling: str = "energy",
     factor: float = 1.0,
     dispersion: float = 0.0,
-    envelope: str = "arctangent",
-    rise: float | None = None,
-    decay: float | None = None,
-    lead: float = 0.5,
-    tail: float = 2.0,
+    window: Window = Window(),
     step: float = 0.01,
     folder: Path | None = None,
 ) -> GeneratedSet:
@@ -132,19 +143,18 @@ def generated(
     spectrum: 'boore-worden' or a CSV file (of `folder`). lines: how many over the band of the spectrum
     (spacing 'log' or 'uniform'), or the frequencies [Hz]. scaling, of the sine amplitudes: 'thesis' factor |X| df
     (Eq. 6.6 as printed), 'fourier' 2 |X| df, 'energy' 2 |X| sqrt(df / int P^2 dt), which keeps the energy of the
-    spectrum. dispersion: standard deviation of the logarithm of a further factor on each motion. envelope: 'arctangent' (Eq. 6.7; rise is its width, 0.1 s), 'trapezoid' (Hou 1968; rise 0.15 t_d,
-    decay 0.4 t_d, both within t_d), 'jennings' (rise within t_d, then decay to 5 % in `decay`), 'saragoni-hart'
-    (rise: time of the peak, 0.2 t_d; 5 % at t_d). lead and tail [s] before and after t_d.
+    spectrum. dispersion: standard deviation of the logarithm of a further factor on each motion. window: shape over time.
     """
-    if not (duration > 0.0 and step > 0.0 and lead >= 0.0 and tail >= 0.0):
+    if not (duration > 0.0 and step > 0.0 and window.lead >= 0.0 and window.tail >= 0.0):
         raise ValueError("duration and step must be above zero, lead and tail not below")
     table = load_spectrum(spectrum, folder)
     frequency = line_frequencies(lines, spacing, table.band)
     if frequency[-1] >= 0.5 / step:
         raise ValueError(f"a line at {frequency[-1]:g} Hz needs a time step below {0.5 / frequency[-1]:g} s")
-    points = int(np.ceil((lead + duration + tail) / step - 1e-9)) + 1
-    window = core.envelope(envelope, envelope_parameters(envelope, duration, lead, rise, decay), points, step)
+    points = int(np.ceil((window.lead + duration + window.tail) / step - 1e-9)) + 1
+    shape = envelope_parameters(window.envelope, duration, window.lead, window.rise, window.decay)
+    envelope = core.envelope(window.envelope, shape, points, step)
     values, widths = table.at(mmi, frequency), core.line_widths(frequency, spacing)
-    strong = float(np.sum(window**2) * step)
+    strong = float(np.sum(envelope**2) * step)
     amplitude = core.line_amplitudes(values, widths, scaling, factor, strong)
-    return GeneratedSet(float(mmi), int(seed), float(step), frequency, widths, values, amplitude, window, float(dispersion))
+    return GeneratedSet(float(mmi), int(seed), float(step), frequency, widths, values, amplitude, envelope, float(dispersion))

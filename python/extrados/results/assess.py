@@ -21,7 +21,7 @@ class AssessHazard(ResultModel):
     motions: int = fact("number of motions")
     member: int = maybe("of a set: the motion that strategies of one motion take, from 1")
     chosen_by: str = maybe("of a set: the rule by which it was taken")
-    peak_ground_acceleration_g: float = fact("demand of strategies that take a constant acceleration", "g")
+    peak_ground_acceleration_g: float = fact("demand of strategies with a constant acceleration", "g")
     peak_told: str = fact("source of that peak")
     pulse_amplitude_g: float | None = fact("amplitude of the primary impulse; null: none", "g")
     pulse_period_s: float | None = fact("its period; null: none", "s")
@@ -104,8 +104,8 @@ class TurningValue(ResultModel):
     dem_base: float | None = fact(
         "displacement of discrete elements over that which counts as collapse, at the value of the deck; null: not run"
     )
-    dem_low: float | None = fact("the same at the value below")
-    dem_high: float | None = fact("the same at the value above")
+    dem_low: float | None = fact("ratio of the displacements at the value below")
+    dem_high: float | None = fact("ratio of the displacements at the value above")
     dem_turns: float | None = fact(
         "value at which the verdict of discrete elements changes; null: at none that was run, or the response is chaotic"
     )

@@ -172,7 +172,7 @@ class CodeChecks(Checked):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
     dynamic_outcome: RockingOutcome = maybe("of a block under a motion: outcome of the computed rocking")
-    dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
+    dynamic_peak_rotation_ratio: float = maybe("greatest rotation of the block over its critical rotation")
     peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
 

@@ -78,7 +78,7 @@ class DemRun(KindResults):
     stop_time_s: float = fact("when it ended", "s")
     still_moving: bool = fact("whether it still moved at the end")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse where the block did more than slide", "m")
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse, unless the block only slides", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
     residual_slip_m: float = fact("greatest slip of joints at the end", "m")
@@ -120,7 +120,7 @@ class DemRun(KindResults):
         "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
     )
     steps: int = fact("time steps")
-    settling_steps: int = fact("time steps until it had settled under its weight")
+    settling_steps: int = fact("time steps until the building settled under its weight")
     time_step_s: float = fact("time step", "s")
     critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
@@ -194,7 +194,7 @@ class SolidDemRun(KindResults):
     dowel_slip_m: float = fact("greatest displacement of a support, settling included", "m")
     dowels_out: int = fact("how many of them came out")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse where the block did more than slide", "m")
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse, unless the block only slides", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     final_displacement_m: float = fact("greatest displacement of any block at the end", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that still touches", "m")
@@ -236,7 +236,7 @@ class SolidDemRun(KindResults):
         "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
     )
     steps: int = fact("time steps")
-    settling_steps: int = fact("time steps until it had settled under its weight")
+    settling_steps: int = fact("time steps until the building settled under its weight")
     time_step_s: float = fact("time step", "s")
     critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
@@ -253,14 +253,14 @@ class SolidDemTilt(KindResults):
     test: Literal["tilt"] = fact("the test")
     outcome: DemOutcome = fact("collapse occurs, at these accelerations")
     collapse_acceleration_g: float = fact("constant acceleration that causes collapse, applied along the direction", "g")
-    collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
+    collapse_acceleration_opposite_g: float = fact("collapse acceleration in the opposite direction", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
     load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     opening_contacts: list[str] = fact("contacts that gape or slide as it begins to go, at most 20, the widest first")
-    opening_contacts_opposite: list[str] = fact("the same, pushed the opposite way")
+    opening_contacts_opposite: list[str] = fact("contacts that open under the opposite direction")
     interval: bool = fact(INTERVAL)
     energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
     time_step_s: float = fact("time step", "s")
@@ -376,12 +376,9 @@ class DemDomain(KindResults):
                 )
         failing = [t for t in self.shortest_durations_s if t is not None]
         if not failing:
-            return judge("No pulse that was run causes collapse.", None, None, "s")
+            return judge("None of the calculated pulses causes collapse.", None, None, "s")
         return judge(
-            f"Of the {self.pulse} pulses that were run the shortest that causes collapse lasts {min(failing):.3g} s.",
-            None,
-            min(failing),
-            "s",
+            f"Of the {self.pulse} calculated pulses the shortest that causes collapse lasts {min(failing):.3g} s.", None, min(failing), "s"
         )
 
 

@@ -141,8 +141,8 @@ class FrameLimitCurve(ResultModel):
     the base shear)."""
 
     limit_state: FrameLimitState = fact("strength, first-limit or collapse")
-    exceeded: int = fact("runs that exceed it; of pushovers the motions as they are")
-    share: float = fact("of the runs that have a result")
+    exceeded: int = fact("runs that exceed the limit state; of pushovers the motions without scaling")
+    share: float = fact("share of the runs with a result")
     share_interval: list[float] = fact("interval of that share (Wilson)")
     median_g: float | None = fact("median of the lognormal curve; null: the runs determine none", "g")
     dispersion: float | None = fact("its logarithmic standard deviation")

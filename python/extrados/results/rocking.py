@@ -90,10 +90,10 @@ class StackRocking(ResultModel):
     peak_rotation_upper_rad: float = fact("greatest rotation of the upper block, positive to +x", "rad")
     critical_rotation_upper_rad: float = fact("slenderness angle of the upper block by itself", "rad")
     uplift_as_one_g: float = fact("horizontal acceleration at which both as one begin to rock", "g")
-    uplift_upper_g: float = fact("that at which the upper block begins to rock by itself", "g")
+    uplift_upper_g: float = fact("horizontal acceleration at which the upper block begins to rock alone", "g")
     impacts_on_ground: int = fact("impacts on the ground")
     impacts_between: int = fact("impacts at the joint between")
-    modes: list[ModeShare] = fact("how long it rocks in each mode")
+    modes: list[ModeShare] = fact("share of the rocking time in each mode")
 
 
 class SoftBaseRocking(ResultModel):
@@ -144,7 +144,7 @@ class Rocking(KindResults):
     energy_taken_up_J: float = maybe("energy dissipated by dampers and yielding restraints", "J")
     restraints: list[RestraintForces] = maybe("restraints besides self-weight")
     rebound: float = maybe("against a wall: rate after over before it is thrown back, as given or by three impacts")
-    energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy in motion")
+    energy_residual_ratio: float = fact("greatest error of the energy balance over the energy in motion")
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("rejected steps")
     restitution: float | None = fact(
@@ -211,9 +211,11 @@ class AtAmplitudes(ResultModel):
 
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     mode_I_durations_s: list[float | None] = fact(
-        "shortest that causes collapse in either mode; null: none up to the longest of `durations`", "s"
+        "shortest pulse that causes collapse in either mode; null: no pulse up to the longest of `durations`", "s"
     )
-    mode_II_durations_s: list[float | None] = fact("shortest that does without an impact; null: none up to the longest of `durations`", "s")
+    mode_II_durations_s: list[float | None] = fact(
+        "shortest pulse that causes collapse without an impact; null: no pulse up to the longest of `durations`", "s"
+    )
 
 
 class RuleCurve(ResultModel):
@@ -292,7 +294,7 @@ class FailureDomain(KindResults):
                 )
         failing = [a for a in curve if a is not None]
         if not failing:
-            return judge("No pulse that was run causes collapse.", None, None, "g", violated=self.conditions.violated)
+            return judge("None of the calculated pulses causes collapse.", None, None, "g", violated=self.conditions.violated)
         return judge(
             f"Over the {self.pulse} pulses that were run the lowest amplitude that causes collapse is {min(failing):.3g} g.",
             None,
@@ -374,7 +376,7 @@ class FailureCurves(KindResults):
         lowest = [(min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])]
         if not lowest:
             every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
-            return judge("No pulse that was run causes collapse of any of them.", None, None, "g", violated=every)
+            return judge("None of the calculated pulses causes collapse of any of them.", None, None, "g", violated=every)
         least, label = min(lowest)
         violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(

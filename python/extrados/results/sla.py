@@ -72,7 +72,7 @@ class SlaCurve(ResultModel):
     crushing_events: int = fact("events of crushing")
     last_load_N: float | None = fact("load of the last event in equilibrium", "N")
     last_displacement_m: float | None = fact("control displacement of that event", "m")
-    energy_residual_ratio: float = fact("error of the energy ledger over the work of the loads")
+    energy_residual_ratio: float = fact("error of the energy balance over the work of the loads")
     external_work_J: float | None = fact("work of all loads up to that event, along the straight way from event to event", "J")
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(

@@ -32,7 +32,7 @@ class BlockSize(ResultModel):
     """The capacity of the same structure in blocks of another size or bond."""
 
     change: str = fact("key of the structure that is changed, with its value")
-    blocks: int | None = fact("blocks then; null without such a partition")
+    blocks: int | None = fact("number of blocks of that partition; null without one")
     collapse_acceleration_g: float | None = fact("upper bound along the direction; null without one", "g")
     relative_change: float | None = fact("over that of the blocks of the deck, less one")
     reason: str | None = fact("why there is no value")
@@ -65,7 +65,7 @@ class SolidTilt(KindResults):
     """tilt of solids: the constant horizontal acceleration, in a direction in plan, at which they become a mechanism."""
 
     collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant) along the direction", "g")
-    collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
+    collapse_acceleration_opposite_g: float = fact("collapse acceleration in the opposite direction", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg", source="thesis Eq. 3.1")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
     load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
@@ -89,11 +89,11 @@ class SolidTilt(KindResults):
     collapse_acceleration_load_path_g: float = maybe(
         "design value where contacts slide: least of the load paths of elastic joints along the direction", "g"
     )
-    collapse_acceleration_load_path_opposite_g: float = maybe("the same, pushed the opposite way", "g")
+    collapse_acceleration_load_path_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
     collapse_acceleration_non_associated_g: float = maybe(
         "sliding without dilatancy along the direction: the least certified state found", "g"
     )
-    collapse_acceleration_non_associated_opposite_g: float = maybe("the same, pushed the opposite way", "g")
+    collapse_acceleration_non_associated_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
     non_dilatant: list[SolidNonDilatant] = maybe(
         "sliding without dilatancy, direction by direction: along, opposite, the least of the rose; all with "
         'friction_rule = "non-associated"'
@@ -105,7 +105,7 @@ class SolidTilt(KindResults):
         "g",
         source="after Orduna and Lourenco 2005",
     )
-    collapse_acceleration_face_law_opposite_g: float = maybe("the same, pushed the opposite way", "g")
+    collapse_acceleration_face_law_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
     face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
     face_law_reason: str = maybe("why the face law gives no value")
     ties: list[TieForce] = maybe("ties, chains and hoops at the collapse acceleration; of bonded ones each segment")

@@ -254,7 +254,7 @@ class OverDurations(KindResults):
     uplift_probability: list[float | None] = fact("share of the motions that make the structure rock, at each duration")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
     confidence: float = fact("level of these intervals")
-    count: list[int] = fact("motions with a result, at each")
+    count: list[int] = fact("motions with a result, at each level")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("motions that cause collapse, at each")
     uplifted: list[int] = fact("number of motions that make the structure rock, at each duration")

@@ -102,7 +102,7 @@ class FragilityPair(ResultModel):
 class Strengthen(KindResults):
     """strengthen: alternatives that meet a target, side by side."""
 
-    by: str = fact("analysis by which the target is measured")
+    by: str = fact("analysis that measures the target")
     quantity: str = fact("quantity of the target in words")
     unit: str = fact("unit of target and values; empty of a factor or a probability")
     target: float = fact("the target, in `unit`")

@@ -32,6 +32,6 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
         ax.set_title("Capacity of the mechanism" if r.mechanism == "building" else f"Capacity: {r.mechanism.replace('-', ' ')}")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-capacity")
-    straight = "; the straight line is that of the code" if r.jurisdiction == "NTC" else ""
+    straight = "; the straight line is the rule of the code" if r.jurisdiction == "NTC" else ""
     caption = f"Capacity curve of the equivalent oscillator, with the confidence factor{straight}."
     return [(saved, caption), *draw_code_checks(run, name, folder)]

@@ -12,7 +12,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from extrados.results.model import Array
-from extrados.results.sla import DROP, PREFIXES, Sla
+from extrados.results.sla import DROP, PREFIXES, Sla, SlaCurve
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.cracked import CORNERS, CRACKS, at_points, polygons, scale
@@ -154,76 +154,12 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 label=f"incremental, {run.results_of(other, Sla).stop}",
             )
         _measured(run, name, ax, True)
-        lost = False
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
-            if numbers is None:
-                continue
-            d, p = get(f"{prefix}event_displacement") * 1e3, get(f"{prefix}event_load") / 1e3
-            fine = get(f"{prefix}event_state") > 0
-            color = style.THRUST if not prefix else style.SAFE
-            begin = 1e3 * numbers.displacement_of_constant_loads_m
-            on = next((1e-3 * s.start_load_N for s in numbers.get("stages", []) if not s.prefix), 0.0)
-            ax.plot(np.append(begin, d[fine]), np.append(on, p[fine]), color=color, linewidth=0.25, alpha=0.4)
-            none = get(f"{prefix}event_state") == 0  # what lies out of reach is not drawn
-            if none.any():
-                ax.plot(d[none], p[none], "x", color=LOST, markersize=3, label="no equilibrium" if not lost else None)
-                lost = True
-            ax.plot(
-                get(f"{prefix}envelope_displacement") * 1e3,
-                get(f"{prefix}envelope_load") / 1e3,
-                color=color,
-                linewidth=1.4,
-                label=f"envelope, load to {numbers.sense}",
-            )
-            step = (get(f"{prefix}event_step") > 0) & fine
-            if step.any():
-                ax.plot(
-                    d[step], p[step], ".", color=style.STEPS, markersize=4, zorder=3, label="equilibrium iterations" if not prefix else None
-                )
-            if numbers.get("drop_displacement_m") is not None:
-                ax.axvline(
-                    1e3 * numbers["drop_displacement_m"],
-                    color="#777",
-                    linestyle=":",
-                    linewidth=0.9,
-                    label="drop to 80 % of the peak" if not prefix else None,
-                )
-            if numbers.get("axial_loss_displacement_m") is not None:
-                ax.axvline(
-                    1e3 * numbers["axial_loss_displacement_m"],
-                    color=style.THRUST,
-                    linestyle="--",
-                    linewidth=0.9,
-                    label="axial capacity lost" if not prefix else None,
-                )
-            idea = numbers.bilinear
-            if idea:
-                shift = get(f"{prefix}envelope_displacement")[0]
-                ax.plot(
-                    (shift + np.array([0, idea.yield_displacement_m, idea.ultimate_displacement_m])) * 1e3,
-                    np.array([0, idea.yield_load_N, idea.yield_load_N]) / 1e3,
-                    color=ENVELOPE if not prefix else color,
-                    linestyle="--" if not prefix else "-.",
-                    linewidth=0.9,
-                    label=f"bilinear of equal area, load to {numbers.sense}",
-                )
-        # Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve
-        there = [p for p in PREFIXES if f"{p}envelope_load" in run.arrays[name]]
-        far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
-        loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_state") > 0] for p in there])
-        least, most = min(far.min(), 0.0), max(far.max(), 1e-12)
-        enough = max(near_the_peak(*(get(f"{p}envelope_{n}") for n in ("displacement", "load"))) for p in there)
-        cut = most > MOST_PLATEAU * enough > 0.0
-        ax.set_xlim(
-            1.05e3 * max(least, -MOST_PLATEAU * enough) if cut else 1.05e3 * least, 1.05e3 * (MOST_PLATEAU * enough if cut else most)
-        )
-        if len(loads):
-            if "measured_greatest" in run.arrays[name]:
-                loads = np.append(loads, get("measured_greatest"))
-            low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
-            ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
+            if numbers is not None:
+                _draw_sense(ax, run, name, prefix, numbers)
+        most = _frame_curve(ax, run, name)
         ax.axhline(0.0, color="#999", linewidth=0.5)
-        ax.set_xlabel(f"control displacement [mm]{f', continues to {1e3 * most:.0f}' if cut else ''}")
+        ax.set_xlabel(f"control displacement [mm]{f', continues to {1e3 * most:.0f}' if most else ''}")
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
@@ -231,6 +167,76 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             f"bilinear idealisation; grey, the steps of "
             f"an incremental solution of the same deck, if there is one.{_dropped(r)}"
         )
+
+
+def _draw_sense(ax: Axes, run: Stored, name: str, prefix: str, numbers: SlaCurve) -> None:
+    """States, envelope and idealisation of the curve of one sense of the load."""
+
+    def get(key: str) -> np.ndarray:
+        return run.array(name, f"{prefix}{key}")
+
+    d, p = get("event_displacement") * 1e3, get("event_load") / 1e3
+    fine = get("event_state") > 0
+    color = style.SAFE if prefix else style.THRUST
+    begin = 1e3 * numbers.displacement_of_constant_loads_m
+    on = next((1e-3 * s.start_load_N for s in numbers.get("stages", []) if not s.prefix), 0.0)
+    ax.plot(np.append(begin, d[fine]), np.append(on, p[fine]), color=color, linewidth=0.25, alpha=0.4)
+    none = get("event_state") == 0  # states out of reach are not drawn
+    if none.any():
+        known = "no equilibrium" in ax.get_legend_handles_labels()[1]
+        ax.plot(d[none], p[none], "x", color=LOST, markersize=3, label=None if known else "no equilibrium")
+    ax.plot(
+        get("envelope_displacement") * 1e3,
+        get("envelope_load") / 1e3,
+        color=color,
+        linewidth=1.4,
+        label=f"envelope, load to {numbers.sense}",
+    )
+
+    def label(text: str) -> str | None:
+        return None if prefix else text
+
+    step = (get("event_step") > 0) & fine
+    if step.any():
+        ax.plot(d[step], p[step], ".", color=style.STEPS, markersize=4, zorder=3, label=label("equilibrium iterations"))
+    for key, line, colour, text in (
+        ("drop_displacement_m", ":", "#777", "drop to 80 % of the peak"),
+        ("axial_loss_displacement_m", "--", style.THRUST, "axial capacity lost"),
+    ):
+        if numbers.get(key) is not None:
+            ax.axvline(1e3 * numbers[key], color=colour, linestyle=line, linewidth=0.9, label=label(text))
+    idea = numbers.bilinear
+    if idea:
+        shift = get("envelope_displacement")[0]
+        ax.plot(
+            (shift + np.array([0, idea.yield_displacement_m, idea.ultimate_displacement_m])) * 1e3,
+            np.array([0, idea.yield_load_N, idea.yield_load_N]) / 1e3,
+            color=color if prefix else ENVELOPE,
+            linestyle="-." if prefix else "--",
+            linewidth=0.9,
+            label=f"bilinear of equal area, load to {numbers.sense}",
+        )
+
+
+def _frame_curve(ax: Axes, run: Stored, name: str) -> float:
+    """Set the limits of the axes; the greatest displacement [m] if the axis ends before it, else 0.
+
+    Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve.
+    """
+    get = partial(run.array, name)
+    there = [p for p in PREFIXES if f"{p}envelope_load" in run.arrays[name]]
+    far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
+    loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_state") > 0] for p in there])
+    least, most = min(far.min(), 0.0), max(far.max(), 1e-12)
+    enough = max(near_the_peak(*(get(f"{p}envelope_{n}") for n in ("displacement", "load"))) for p in there)
+    cut = most > MOST_PLATEAU * enough > 0.0
+    ax.set_xlim(1.05e3 * max(least, -MOST_PLATEAU * enough) if cut else 1.05e3 * least, 1.05e3 * (MOST_PLATEAU * enough if cut else most))
+    if len(loads):
+        if "measured_greatest" in run.arrays[name]:
+            loads = np.append(loads, get("measured_greatest"))
+        low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
+        ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
+    return most if cut else 0.0
 
 
 def _dropped(r: Sla) -> str:
@@ -488,5 +494,5 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
         f"Energies in the states: the work of the loads is stored, dissipated, or lost where the structure goes from one state "
-        f"to the next; the ledger of all three closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
+        f"to the next; the balance of all three closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -200,44 +201,22 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
     )
     note = found.note if place.period is None or not place.free else f"{found.note}, T_0 {place.period:.3g} s"
     starts = "[C8.7.1.9]: alpha_0 g/(e* FC) >= S_eZ(T_0)" if place.free else "[C8.7.1.8]: alpha_0 g/(e* FC) >= a_Z, at the ground a_g S"
+    common: dict[str, Any] = {"scope": f"{SCOPE}; rigid until it starts", "state": state}
+
+    def activation(name: str, **more: Any) -> Line:
+        source = f"NTC 2018, Circ. 7/2019 {starts}: the mechanism does not start"
+        return Line(name, quantity, found.a0 / GRAVITY, demand, "g", source, note, CODE, **common, barred=unknown, **more)
+
     if state == "SLD":
-        return [
-            Line(
-                f"NTC activation at SLD ({where})",
-                quantity,
-                found.a0 / GRAVITY,
-                demand,
-                "g",
-                f"NTC 2018, Circ. 7/2019 {starts}: the mechanism does not start",
-                note,
-                CODE,
-                scope=f"{SCOPE}; rigid until it starts",
-                state=state,
-                barred=unknown,
-            )
-        ]
+        return [activation(f"NTC activation at SLD ({where})")]
     lines = []
     compared = False
     if found.d0 is not None:
         lines.append(_nonlinear(found, state, spectrum, place))
         compared = lines[0].demand is not None
     if compared:
-        lines.append(
-            Line(
-                f"NTC activation ({where})",
-                quantity,
-                found.a0 / GRAVITY,
-                demand,
-                "g",
-                f"NTC 2018, Circ. 7/2019 {starts}: the mechanism does not start",
-                note,
-                CODE,
-                scope=f"{SCOPE}; rigid until it starts",
-                state=state,
-                alternative=state,
-                barred=unknown,
-            )
-        )
+        lines.append(activation(f"NTC activation ({where})", alternative=state))
+    known = "the displacement is checked: q is for mechanisms of which only the multiplier is known (C8.7.1.2.1.7)" if compared else ""
     lines.append(
         Line(
             f"NTC linear ({where})",
@@ -251,10 +230,7 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
             scope=f"{SCOPE}; rigid until it starts; no displacement check",
             state=state,
             alternative=state,
-            barred=unknown
-            or (
-                "the displacement is checked: q is for mechanisms of which only the multiplier is known (C8.7.1.2.1.7)" if compared else ""
-            ),
+            barred=unknown or known,
         )
     )
     return lines

@@ -167,7 +167,7 @@ def _nz_parapet(part: Part, spectrum: Callable[[float, float], float] | None, st
     h, t = float(part.height or 0.0), float(part.thickness or 0.0)
     barred, demand, note, capacity = "", None, "", None
     if part.element != "parapet":
-        barred = f"the constants are those of a parapet of one thickness, this is none ({part.element})"
+        barred = f"the constants hold for a parapet of one thickness, and this part is another one ({part.element})"
     else:
         slope, capacity = 1.0 + (t / h) ** 2, USABLE * t
         period = float(np.sqrt(0.65 * h * slope))

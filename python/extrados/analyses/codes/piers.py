@@ -148,17 +148,10 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
                 "regular masonry",
             )
         )
-    for name, drift in (("flexure", 0.01), ("shear", 0.005)):
-        lines.append(
-            _drift(
-                f"NTC drift in {name}",
-                drift * (0.75 if state == "SLV" else 1.0),
-                "NTC 2018 7.8.2.2, Circ. 7/2019 C8.7.1.3.1.1: at "
-                "SLC 0.01 in flexure, 0.005 in shear; SLV is 3/4 of SLC on the bilinear curve",
-                state,
-            )
-        )
-    return lines
+    rule = "NTC 2018 7.8.2.2, Circ. 7/2019 C8.7.1.3.1.1: at SLC 0.01 in flexure, 0.005 in shear; SLV is 3/4 of SLC on the bilinear curve"
+    share = 0.75 if state == "SLV" else 1.0
+    drifts = (("flexure", 0.01), ("shear", 0.005))
+    return lines + [_drift(f"NTC drift in {name}", drift * share, rule, state) for name, drift in drifts]
 
 
 def en1998_piers(p: Pier, factor: float, demand: float | None, state: str) -> list[Line]:

@@ -128,7 +128,7 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
             "unsettled": f"the structure does not stand under its own weight: {first} falls",
             "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps, {first} least of "
             f"all: elements do not show whether it stands{wedged}",
-            "blow-up": f"the energy ledger does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
+            "blow-up": f"the energy balance does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
             f"{first}; a smaller step may help",
         }.get(run.reason, f"stopped: {run.reason} ({first})")
     )

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from extrados.analyses.batches import Unfinished
-from extrados.analyses.chaos import CHAOTIC, NUDGE, chaos_told, growth
+from extrados.analyses.chaos import NUDGE, growth, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
 from extrados.analyses.dem.job import Runs, SolidRuns, answered
@@ -18,16 +18,10 @@ FACTOR = 1.0 + NUDGE
 def chaos_of(outcome: str, other: str, grown: float) -> dict[str, Any]:
     """Results on chaos, by both outcomes and the growth of the perturbation (see analyses.chaos)."""
     turns = NUDGE if (outcome == "collapse") != (other == "collapse") else 0.0
-    chaotic = grown > CHAOTIC or turns > 0.0
-    told = chaos_told(
+    violated = violated_by_chaos(
         grown, turns, "the displacement of a block", "the one that counts as collapse", "repeat it under other factors on the motion"
     )
-    return {
-        "decided_by_last_digits": chaotic,
-        "perturbation_growth": grown,
-        "perturbed_outcome": other,
-        "violated": [told] if chaotic else [],
-    }
+    return {"decided_by_last_digits": bool(violated), "perturbation_growth": grown, "perturbed_outcome": other, "violated": violated}
 
 
 def probe_chaos(

@@ -14,7 +14,7 @@ def solved(c: Convergence) -> str:
 
 def _audit(r: DemRun | SolidDemRun) -> str:
     """Ledger, and how impacts are damped or contacts solved."""
-    audit = f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %"
+    audit = f"energy balance closed to {100 * r.energy_residual_ratio:.2g} %"
     if r.convergence is not None:
         return f"{audit}, {solved(r.convergence)}"
     assert r.damping_ratio_rotation is not None and r.damping_ratio_edge is not None  # joints with springs

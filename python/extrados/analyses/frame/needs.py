@@ -51,4 +51,4 @@ def _enough(context: Context, options: FrameFragility) -> None:
 def _few(context: Context) -> None:
     count = len(context.building.blocks().mass)
     if count > MOST_BLOCKS:
-        raise Refused(f"{count} blocks; modes are calculated of at most {MOST_BLOCKS}", ("structure",))
+        raise Refused(f"{count} blocks: modes are calculated of at most {MOST_BLOCKS}", ("structure",))

@@ -139,7 +139,10 @@ class FrameFragility(FrameMotion):
         source="Fajfar 2000",
     )
     patterns: list[Literal["uniform", "static", "modal"]] = key(
-        ["uniform", "static"], "of pushovers: patterns of the forces, as of frame-pushover", min_length=1, max_length=3
+        ["uniform", "static"],
+        "of pushovers: patterns of the horizontal forces, the same words as in frame-pushover",
+        min_length=1,
+        max_length=3,
     )
     target_drift: float = key(0.02, "of pushovers: greatest control displacement, over the height of the highest level", gt=0, le=0.2)
     count: int | None = key(None, "number of motions; default 100, or the whole suite", ge=2, le=1_000_000)

@@ -39,6 +39,7 @@ from extrados.results import limit as out
 from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
 #: What makes the model of a bridge whole
@@ -214,9 +215,9 @@ def factored(assembly: Assembly, loads: Loads, factors: PartialFactors) -> Loads
     return replace(loads, dead=loads.dead + extra)
 
 
-def run(context: Context, options: MovingLoad) -> Result:
-    """Collapse load over place; the most dangerous place with its thrust line, zone and mechanism."""
-    building, factors = context.building, options.factors
+def job_of(building: Building, options: MovingLoad) -> tuple[Places, LimitAnalysis, Train, str | None]:
+    """The places of the load, the structure with its partial factors, the train as the deck gives it, and the chain that it crosses."""
+    factors = options.factors
     assembly, structure = building.blocks(), building.require_structure()
     whole = (structure.crossed == "top" or assembly.earth is not None) and options.chain is None
     chain = None if whole else chain_of(assembly, options.chain)
@@ -228,10 +229,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     friction, strength = building.friction(), building.material.compressive_strength
     friction = None if friction is None else friction / factors.friction
     strength = None if strength is None else strength / factors.strength
-    reduced = LimitAnalysis(assembly, friction, strength=strength, loads=dead)
-    if not reduced.stands():
-        proof = cannot_stand(reduced)
-        raise CannotStand(f"with the partial factors: {proof}", proof.motion)
+    reduced = _standing_factored(LimitAnalysis(assembly, friction, strength=strength, loads=dead))
     # The whole depth stands for the strip that carries the load: as much heavier is the load on all of it.
     strip = assembly.depth / (options.width or assembly.depth)
     design = factors.live * factors.dynamic * strip if train.known else 1.0
@@ -250,6 +248,15 @@ def run(context: Context, options: MovingLoad) -> Result:
         options.adverse,
         _top(assembly, low, high),
     )
+    return job, reduced, train, chain
+
+
+def run(context: Context, options: MovingLoad) -> Result:
+    """Collapse load over place; the most dangerous place with its thrust line, zone and mechanism."""
+    building, factors, structure = context.building, options.factors, context.building.require_structure()
+    job, reduced, train, chain = job_of(building, options)
+    assembly, dead, friction, places, ways, (low, high) = job.assembly, job.dead, job.friction, job.places, job.ways, job.span
+    strip = assembly.depth / (options.width or assembly.depth)
     swept = sweep(context, "moving-load", job, len(places), "moving load", slow=True).whole()
     mechanisms, gap, factor = swept["mechanism"].tolist(), float(swept["gap"].max()), swept["factor"]
     capacity = swept["capacity"] / strip if train.known else swept["capacity"]
@@ -262,13 +269,13 @@ def run(context: Context, options: MovingLoad) -> Result:
     if worst is None:  # the sweep found it by the same steps
         raise NoAnswer(f"the load at {places[k]:.4g} m caused collapse in the sweep, and not when computed again")
     state, mechanism = worst.state, worst.mechanism
-    heavier = replace(assembly, mass=factors.masonry * assembly.mass)
     result = Result("moving-load")
     asked: Keys = {}
+    live = factors.live * factors.dynamic
     if options.force is not None:
         asked |= {"load_N": options.force, "safety_factor": capacity[k] / options.force}
     if train.known:
-        asked |= {"adequacy_factor": float(factor[k]), "train": train.name, "live_load_factor": factors.live * factors.dynamic}
+        asked |= {"adequacy_factor": float(factor[k]), "train": train.name, "live_load_factor": live}
     if options.serviceability is not None:
         asked |= _permissible(context, options, options.serviceability, job, strip)
     if job.associated and friction is not None:
@@ -301,33 +308,49 @@ def run(context: Context, options: MovingLoad) -> Result:
         **load_arrays(assembly, options.load),
         **tie_arrays(building, dead, {"collapse": state}),
         **zone_arrays(assembly, state, job.strength),
-        "place": Array(places, ("place",), "m", "x of the first axle"),
-        "way": Array(ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
+        **_worst_arrays(assembly, job, k, worst, replace(assembly, mass=factors.masonry * assembly.mass)),
         "capacity": Array(finite, ("place",), "N", "collapse load; NaN if no load causes collapse"),
+        "envelope_point": Array(swept["line"], ("place", "joint", "axis"), "m", "thrust lines at collapse, all places"),
+        "envelope_normal": Array(swept["normal"], ("place", "joint"), "N", "compression at collapse, all places"),
+    }
+    adequacy = np.where(np.isinf(factor), np.nan, factor)
+    if train.known:
+        result.arrays["adequacy"] = Array(adequacy, ("place",), "", "multiple of the factored train that causes collapse")
+    columns = {"place": places, **({"way": ways, "adequacy": adequacy} if train.known else {}), "collapse_load": finite}
+    result.tables = {"moving_load": TableData({**columns, "mechanism": mechanisms}, {"place": "m", "collapse_load": "N"})}
+    result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
+    result.answer = _words(options, r, structure)
+    return result
+
+
+def _standing_factored(reduced: LimitAnalysis) -> LimitAnalysis:
+    """The structure with the partial factors; CannotStand if they exceed it."""
+    if not reduced.stands():
+        proof = cannot_stand(reduced)
+        raise CannotStand(f"with the partial factors: {proof}", proof.motion)
+    return reduced
+
+
+def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heavier: Assembly) -> dict[str, Array]:
+    """Places of the load, and thrust line and mechanism at the worst place k; heavier: with the partial factor of the masonry."""
+    state = worst.state
+    chains = list(assembly.chains.values())
+    return {
+        "place": Array(job.places, ("place",), "m", "x of the first axle"),
+        "way": Array(job.ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
         "axle": Array(job.at(k), ("axle",), "m", "axles at the worst place"),
         "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "even loads at the worst place"),
         "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, worst place"),
         **line_arrays("collapse", thrust_paths(heavier, worst.loads, state, sway=0.0), "at collapse, worst place"),
-        "envelope_point": Array(swept["line"], ("place", "joint", "axis"), "m", "thrust lines at collapse, all places"),
-        "envelope_normal": Array(swept["normal"], ("place", "joint"), "N", "compression at collapse, all places"),
-        "mechanism_pose": Array(finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
+        "mechanism_pose": Array(finite_motion(assembly, worst.mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
         "chain_joint": Array(
-            np.concatenate([np.array(j, dtype=int) for j in assembly.chains.values()] or [np.empty(0, dtype=int)]),
+            np.concatenate([np.array(j, dtype=int) for j in chains] or [np.empty(0, dtype=int)]),
             ("link",),
             "",
             "joints of the chains, one chain after the other",
         ),
-        "chain_start": Array(np.cumsum([0, *map(len, assembly.chains.values())]), ("chain_edge",), "", "first of each chain, and the end"),
+        "chain_start": Array(np.cumsum([0, *map(len, chains)]), ("chain_edge",), "", "first of each chain, and the end"),
     }
-    columns = {"place": places, "collapse_load": finite, "mechanism": mechanisms}
-    if train.known:
-        adequacy = np.where(np.isinf(factor), np.nan, factor)
-        result.arrays["adequacy"] = Array(adequacy, ("place",), "", "multiple of the factored train that causes collapse")
-        columns = {"place": places, "way": ways, "adequacy": adequacy, "collapse_load": finite, "mechanism": mechanisms}
-    result.tables = {"moving_load": TableData(columns, {"place": "m", "collapse_load": "N"})}
-    result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
-    result.answer = _words(options, r, structure)
-    return result
 
 
 def _permissible(context: Context, options: MovingLoad, service: Serviceability, job: Places, strip: float) -> dict[str, object]:

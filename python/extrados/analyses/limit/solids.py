@@ -48,12 +48,7 @@ def run(context: Context, options: Tilt) -> Result:
     pushed = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
     found_at = dict(zip(asked.tolist(), pushed, strict=True))
     there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, opposite))
-    if there.gamma < 0.0 or back.gamma < 0.0:
-        low, high = sorted((there.gamma, -back.gamma))
-        raise CannotStand(
-            f"the structure stands only under a horizontal load along {first:g} degrees by {low:.4f} to "
-            f"{high:.4f} g; certificate: the mechanism of the smaller load, in which the weights do work"
-        )
+    _refuse_falling(there, back, first)
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
     capacity = np.array([np.inf if one is None else _stands(one, assembly).gamma for one in rose])
     result = Result("tilt")
@@ -108,8 +103,30 @@ def run(context: Context, options: Tilt) -> Result:
         ),
     )
     result.results = found
+    result.arrays |= _arrays(assembly, there, pose) | {
+        "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
+        "rose_capacity": Array(capacity, ("direction",), "g", "capacity along them"),
+    }
+    result.arrays |= strand_arrays(limit, there.tension)
+    result.files |= scene_files(assembly.parts, assembly.owner, assembly.centroid, assembly.block_names, pose)
+    result.answer = _words(word, found, count)
+    return result
+
+
+def _refuse_falling(there: Programme, back: Programme, first: float) -> None:
+    """CannotStand if the structure requires a horizontal load; first: direction [deg]."""
+    if there.gamma < 0.0 or back.gamma < 0.0:
+        low, high = sorted((there.gamma, -back.gamma))
+        raise CannotStand(
+            f"the structure stands only under a horizontal load along {first:g} degrees by {low:.4f} to "
+            f"{high:.4f} g; certificate: the mechanism of the smaller load, in which the weights do work"
+        )
+
+
+def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict[str, Array]:
+    """Contacts with their forces at collapse, and the mechanism."""
     force, centre = _resultants(assembly, there)
-    result.arrays |= scene_arrays(assembly) | {
+    return scene_arrays(assembly) | {
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
         "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, into their first stone"),
@@ -120,13 +137,7 @@ def run(context: Context, options: Tilt) -> Result:
         "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application: centre of the compression"),
         "velocity": Array(there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, spin"),
         "mechanism_pose": Array(pose, ("block", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on: shift, rotation vector"),
-        "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
-        "rose_capacity": Array(capacity, ("direction",), "g", "capacity along them"),
     }
-    result.arrays |= strand_arrays(limit, there.tension)
-    result.files |= scene_files(assembly.parts, assembly.owner, assembly.centroid, assembly.block_names, pose)
-    result.answer = _words(word, found, count)
-    return result
 
 
 def _without_dilatancy(

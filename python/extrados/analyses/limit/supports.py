@@ -1,5 +1,6 @@
 """supports: what opens where supports give way; an arch whose right support moves, from rest until it falls."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from extrados.limit.places import place_of
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.resistance import together
 from extrados.limit.settlement import settle
-from extrados.limit.supports import support_movement
+from extrados.limit.supports import SupportState, support_movement
 from extrados.model.errors import WHOLE, BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.chains import in_order, is_stack
@@ -75,32 +76,7 @@ def run(context: Context, options: MovingSupports) -> Result:
         stages=[out.Stage(movement_m=movement[i], hinges=[_place(arch, hinge) for hinge in states[i].hinges]) for i in stages],
     )
     result.results = r
-    shown = [int(np.abs(movement - share * movement[-1]).argmin()) for share in SHOWN]
-    result.arrays = {
-        **geometry_arrays(arch),
-        "movement": Array(movement, ("movement",), "m", "movement of the right support"),
-        "force": Array(force, ("movement", "axis"), "N", "force of the arch on the right support"),
-        "energy": Array(np.array([s.energy for s in states]), ("movement",), "J", "potential energy over that at rest"),
-        "hinge": Array(np.array([[h[0] for h in s.hinges] for s in states]), ("movement", "hinge_number"), "", "joints that hinge"),
-        "shown_movement": Array(movement[shown], ("shown",), "m", "movements drawn"),
-        "shown_pose": Array(
-            np.array([states[i].pose for i in shown]), ("shown", "block", "component"), "m, m, rad", "places of the centroids, rotations"
-        ),
-        "shown_point": Array(
-            np.array([states[i].points for i in shown]), ("shown", "joint", "axis"), "m", "thrust line on the displaced joints"
-        ),
-    }
-    if options.animation != "none":
-        film = np.unique(np.linspace(0, len(states) - 1, FILM).astype(int))
-        result.arrays |= {
-            "film_movement": Array(movement[film], ("film",), "m", "movements in the animation"),
-            "film_pose": Array(
-                np.array([states[i].pose for i in film]), ("film", "block", "component"), "m, m, rad", "places of the centroids, rotations"
-            ),
-            "film_line": Array(
-                np.array([states[i].points for i in film]), ("film", "joint", "axis"), "m", "thrust line on the displaced joints"
-            ),
-        }
+    result.arrays = geometry_arrays(arch) | _way_arrays(options, states)
     result.tables = {
         "supports": TableData(
             {
@@ -120,6 +96,38 @@ def run(context: Context, options: MovingSupports) -> Result:
         f"{force[0, 0] / 1e3:.4g} to {force[-1, 0] / 1e3:.4g} kN."
     )
     return result
+
+
+def _way_arrays(options: MovingSupports, states: list[SupportState]) -> dict[str, Array]:
+    """The states on the way of the support to the collapse."""
+    movement = np.array([s.movement for s in states])
+    pose_axes, line_axes = ("block", "component"), ("joint", "axis")
+    places, line = "places of the centroids, rotations", "thrust line on the displaced joints"
+
+    def poses(index: Iterable[int], axis: str) -> Array:
+        return Array(np.array([states[i].pose for i in index]), (axis, *pose_axes), "m, m, rad", places)
+
+    def lines(index: Iterable[int], axis: str) -> Array:
+        return Array(np.array([states[i].points for i in index]), (axis, *line_axes), "m", line)
+
+    shown = [int(np.abs(movement - share * movement[-1]).argmin()) for share in SHOWN]
+    arrays = {
+        "movement": Array(movement, ("movement",), "m", "movement of the right support"),
+        "force": Array(np.array([s.force for s in states]), ("movement", "axis"), "N", "force of the arch on the right support"),
+        "energy": Array(np.array([s.energy for s in states]), ("movement",), "J", "potential energy over that at rest"),
+        "hinge": Array(np.array([[h[0] for h in s.hinges] for s in states]), ("movement", "hinge_number"), "", "joints that hinge"),
+        "shown_movement": Array(movement[shown], ("shown",), "m", "movements drawn"),
+        "shown_pose": poses(shown, "shown"),
+        "shown_point": lines(shown, "shown"),
+    }
+    if options.animation == "none":
+        return arrays
+    film = np.unique(np.linspace(0, len(states) - 1, FILM).astype(int)).tolist()
+    return arrays | {
+        "film_movement": Array(movement[film], ("film",), "m", "movements in the animation"),
+        "film_pose": poses(film, "film"),
+        "film_line": lines(film, "film"),
+    }
 
 
 def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
@@ -204,31 +212,37 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
             {"opening": "mm", "slip": "mm"},
         )
     }
-    if np.abs(found.pose[:, 2]).max() > LARGE:
+    rotation = float(np.abs(found.pose[:, 2]).max())
+    if rotation > LARGE:
         result.warnings.append(
-            f"blocks rotate by up to {np.degrees(np.abs(found.pose[:, 2]).max()):.1f} degrees: the motion is of first order, "
-            "smaller movements are meant"
+            f"blocks rotate by up to {np.degrees(rotation):.1f} degrees: the motion is of first order, smaller movements are meant"
         )
-    wide_open = [o for o in opened if o.opening_mm > 1e-3 * abs(o.slip_mm)]
-    shown = "; ".join(f"{o.name} by {o.opening_mm:.3g} mm" for o in wide_open[:6])
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
             "dilatant friction: joints that slide open by their friction times the slip too, and states in which less is "
             'carried without dilatancy are not sought; `friction = "no-sliding"` considers joints that only open'
         )
+    result.answer = _opened_in_words(building.require_structure().word, movement, opened, len(slid), found.work) + spoken_ties(
+        result.of(out.MovingSupports).ties
+    )
+    return result
+
+
+def _opened_in_words(word: str, movement: np.ndarray, opened: list[out.JointOpening], slid: int, work: float) -> str:
+    """Joints that open under movements (joints, 3) of the supports; slid: number of joints that slide; work of the weight [J]."""
+    wide_open = [o for o in opened if o.opening_mm > 1e-3 * abs(o.slip_mm)]
+    shown = "; ".join(f"{o.name} by {o.opening_mm:.3g} mm" for o in wide_open[:6])
     most_moved = 1e3 * float(np.hypot(*movement[:, :2].T).max())
     given = f" by up to {most_moved:.3g} mm" if most_moved > 0.0 else ""
-    result.answer = (
-        f"Under the movements of its supports{given} {_counted(len(wide_open), 'joint')} of the {building.require_structure().word} "
+    return (
+        f"Under the movements of its supports{given} {_counted(len(wide_open), 'joint')} of the {word} "
         f"{'opens' if len(wide_open) == 1 else 'open'}"
         + (f": {shown}" if shown else "")
         + (f" and {len(wide_open) - 6} more" if len(wide_open) > 6 else "")
-        + (f"; {_counted(len(slid), 'joint')} {'slides' if len(slid) == 1 else 'slide'}" if slid else "")
-        + f". Its weight does {found.work:.4g} J of work."
-        + spoken_ties(result.results.ties)
+        + (f"; {_counted(slid, 'joint')} {'slides' if slid == 1 else 'slide'}" if slid else "")
+        + f". Its weight does {work:.4g} J of work."
     )
-    return result
 
 
 def _counted(count: int, what: str) -> str:

@@ -98,7 +98,6 @@ def run(context: Context, options: Sweep) -> Result:
     result = Result("sweep")
     stable = [c for c in changes if not c["before"] or not c["after"]]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
-    fractured = [o.fractured for o in outcomes]
     r = out.Sweep(
         vary=options.vary,
         unit=unit,
@@ -123,11 +122,24 @@ def run(context: Context, options: Sweep) -> Result:
         upper_bound_values=[v for v, o in zip(values.tolist(), outcomes, strict=True) if o.dilating],
         gaps=[out.Gap(value=v, status=o.status, reason=o.reason) for v, o in zip(values, outcomes, strict=True) if o.status != "ok"],
         duality_gap=max(o.gap for o in outcomes),
-        **({"fractured_collapse_accelerations_g": fractured} if options.fracture else {}),
+        **({"fractured_collapse_accelerations_g": [o.fractured for o in outcomes]} if options.fracture else {}),
         **({"buttress_alone_accelerations_g": [o.alone for o in outcomes]} if options.buttress_alone else {}),
     )
     result.results = r
-    gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
+    _store(options, r, values, outcomes, numbers, result)
+    result.arrays.update(_examples(ask, values, outcomes, numbers))
+    result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
+    result.answer = _words(options, r)
+    return result
+
+
+def _store(
+    options: Sweep, r: out.Sweep, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int], result: Result
+) -> None:
+    """Arrays and table of the swept values; numbers: of the mechanisms."""
+    gamma, fractured, alone = (
+        np.array([np.nan if (value := getattr(o, name)) is None else value for o in outcomes]) for name in ("gamma", "fractured", "alone")
+    )
     number = np.array([numbers.get(o.signature, 0) for o in outcomes])
     columns: dict[str, Any] = {
         options.vary: values,
@@ -139,14 +151,12 @@ def run(context: Context, options: Sweep) -> Result:
         "value": Array(values, ("value",), "", f"values of {options.vary}"),
         "gamma": Array(gamma, ("value",), "g", "collapse acceleration to +x; 0 for a structure that cannot stand, NaN without a result"),
         "mechanism": Array(number, ("value",), "", "number of the mechanism; 0: none"),
-        "change": Array(np.array([c["value"] for c in changes]), ("change",), "", "values at which the mechanism changes"),
+        "change": Array(np.array([c.value for c in r.changes]), ("change",), "", "values at which the mechanism changes"),
     }
     if options.fracture:
-        cracked = np.array([np.nan if f is None else f for f in fractured])
-        result.arrays["fractured"] = Array(cracked, ("value",), "g", "with the leeward buttress cracked")
-        columns["fractured_collapse_acceleration"] = cracked
+        result.arrays["fractured"] = Array(fractured, ("value",), "g", "with the leeward buttress cracked")
+        columns["fractured_collapse_acceleration"] = fractured
     if options.buttress_alone:
-        alone = np.array([np.nan if o.alone is None else o.alone for o in outcomes])
         result.arrays["buttress_alone"] = Array(alone, ("value",), "g", "the leeward buttress by itself")
         columns["buttress_alone_acceleration"] = alone
     for name in next((o.measures for o in outcomes if o.measures), {}):
@@ -162,10 +172,6 @@ def run(context: Context, options: Sweep) -> Result:
         "tilt_angle": "deg",
     }
     result.tables = {"sweep": TableData(columns, units)}
-    result.arrays.update(_examples(ask, values, outcomes, numbers))
-    result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
-    result.answer = _words(options, r)
-    return result
 
 
 @dataclass(frozen=True)

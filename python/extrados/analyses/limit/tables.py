@@ -146,7 +146,7 @@ class MovingSupports(BuildingAnalysis, Animated):
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     movement: Length | None = key(
-        None, "movement of the right support where collapse is not followed; default a thousandth of the width", gt=0
+        None, "movement of the right support, for structures not followed to collapse; default 1/1000 of the width", gt=0
     )
     steps: int = key(200, "of an arch: steps from rest to collapse", ge=10, le=5000)
 
@@ -198,13 +198,13 @@ class UniformLoad(Table):
 class PartialFactors(Table):
     """Partial factors: actions are multiplied by theirs, strength and friction divided by theirs."""
 
-    masonry: float = key(1.0, "on the weight of the blocks", gt=0, le=10)
-    fill: float = key(1.0, "on the weight of the fill", gt=0, le=10)
-    surfacing: float = key(1.0, "on the weight of the surfacing", gt=0, le=10)
-    live: float = key(1.0, "on the moving load", gt=0, le=10)
+    masonry: float = key(1.0, "partial factor on the weight of the blocks", gt=0, le=10)
+    fill: float = key(1.0, "partial factor on the weight of the fill", gt=0, le=10)
+    surfacing: float = key(1.0, "partial factor on the weight of the surfacing", gt=0, le=10)
+    live: float = key(1.0, "partial factor on the moving load", gt=0, le=10)
     dynamic: float = key(1.0, "dynamic factor of the moving load, besides `live`", gt=0, le=10)
-    strength: float = key(1.0, "under the compressive strength", gt=0, le=10)
-    friction: float = key(1.0, "under the coefficients of friction", gt=0, le=10)
+    strength: float = key(1.0, "partial factor that divides the compressive strength", gt=0, le=10)
+    friction: float = key(1.0, "partial factor that divides the coefficients of friction", gt=0, le=10)
 
 
 class Serviceability(Table):

@@ -23,6 +23,19 @@ from extrados.views.rockers.rocker import Rocker
 
 #: After the motion it rocks itself to rest within this many of its own time units.
 SETTLE = 40.0
+#: Columns of assessment.csv
+COLUMNS = (
+    "rank",
+    "amplitude_g",
+    "period_s",
+    "start_s",
+    "explained",
+    "goodness_of_fit",
+    "failing_amplitude_g",
+    "failing_amplitude_own_g",
+    "margin",
+    "verdict",
+)
 
 
 def run(context: Context, options: Assessment) -> Result:
@@ -77,44 +90,9 @@ def run(context: Context, options: Assessment) -> Result:
     )
     result.results = r
     result.warnings += [*told(r.conditions), *at_margin, *_undecided(by_rule)]
-    beyond = [row for row in rows if row.verdict == "stands" and abs(row.amplitude_g) > CAP * gamma]
-    if beyond:
-        result.warnings.append(
-            f"the criterion follows the failure curve up to {CAP:g} times the acceleration that starts rocking ({CAP * gamma:.3g} g): "
-            f"an impulse of {abs(beyond[0].amplitude_g):.3g} g over {beyond[0].period_s:.3g} s lies above: one swing may cause "
-            "collapse; see `failure-domain`"
-        )
-    if run_outcome is not None and (r.verdict == "fails") != (run_outcome == "collapse"):
-        why = (
-            "impulses this strong lie beyond the criterion"
-            if beyond
-            else "the criterion holds for single impulses without the motion before and after them"
-        )
-        result.warnings.append(
-            f"the criterion predicts that it {r.verdict}, but under the whole motion it "
-            f"{'collapses' if run_outcome == 'collapse' else 'recovers'}: {why}; the run (analysis `rocking`) is more reliable"
-        )
-    if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
-        first = rows[0]
-        result.warnings.append(
-            f"the criterion was made for single sines: the strongest impulse of this motion is replaced by a sine of "
-            f"{abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s, which removes {100 * first.goodness_of_fit:.0f} % "
-            "of the squared acceleration over its span"
-        )
-    columns = (
-        "rank",
-        "amplitude_g",
-        "period_s",
-        "start_s",
-        "explained",
-        "goodness_of_fit",
-        "failing_amplitude_g",
-        "failing_amplitude_own_g",
-        "margin",
-        "verdict",
-    )
+    result.warnings += _limits_of_criterion(context, r)
     result.tables["assessment"] = TableData(
-        {name: [np.nan if row[name] is None else row[name] for row in rows] for name in (columns if rows else ())}
+        {name: [np.nan if row[name] is None else row[name] for row in rows] for name in (COLUMNS if rows else ())}
     )
     periods = np.geomspace(0.12, 1.6, 200) * np.sqrt(scale)
     result.arrays = {
@@ -131,6 +109,37 @@ def run(context: Context, options: Assessment) -> Result:
     }
     result.answer = _answer(r, worst, rocker.word)
     return result
+
+
+def _limits_of_criterion(context: Context, r: out.Assessment) -> list[str]:
+    """Warnings: impulses beyond the criterion, a run that contradicts it, a motion that is no single sine."""
+    warnings, rows = [], r.impulses
+    gamma = r.uplift_acceleration_g
+    beyond = [row for row in rows if row.verdict == "stands" and abs(row.amplitude_g) > CAP * gamma]
+    if beyond:
+        warnings.append(
+            f"the criterion follows the failure curve up to {CAP:g} times the acceleration that starts rocking ({CAP * gamma:.3g} g): "
+            f"an impulse of {abs(beyond[0].amplitude_g):.3g} g over {beyond[0].period_s:.3g} s lies above: one swing may cause "
+            "collapse; see `failure-domain`"
+        )
+    if r.run_outcome is not None and (r.verdict == "fails") != (r.run_outcome == "collapse"):
+        why = (
+            "impulses this strong lie beyond the criterion"
+            if beyond
+            else "the criterion holds for single impulses without the motion before and after them"
+        )
+        warnings.append(
+            f"the criterion predicts that it {r.verdict}, but under the whole motion it "
+            f"{'collapses' if r.run_outcome == 'collapse' else 'recovers'}: {why}; the run (analysis `rocking`) is more reliable"
+        )
+    if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
+        first = rows[0]
+        warnings.append(
+            f"the criterion was made for single sines: the strongest impulse of this motion is replaced by a sine of "
+            f"{abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s, which removes {100 * first.goodness_of_fit:.0f} % "
+            "of the squared acceleration over its span"
+        )
+    return warnings
 
 
 def _run_through(context: Context, rocker: Rocker, factor: float = 1.0) -> tuple[Outcome | None, dict[str, Any]]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from extrados.analyses.chaos import CHAOTIC, NUDGE, chaos_told, growth, over_critical, perturbed, turning
+from extrados.analyses.chaos import NUDGE, growth, over_critical, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.hand_over import Contacts, decide
 from extrados.analyses.rocking.tables import Rocking
@@ -109,15 +109,23 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
         return nothing
     others = [response.outcome if place == FAILED else OUTCOMES[place] for place in nudged.outcome]
     turns = turning(response.outcome, [*(probe.outcome for probe in probes), *others])
-    chaotic = grown > CHAOTIC or turns > 0.0
-    violated = [chaos_told(grown, turns)] if chaotic else []
+    violated = violated_by_chaos(grown, turns)
+    chaotic = bool(violated)
+    rules, warnings, decided = _rules(context, options, rocker, response, end_time)
+    return nothing if rules is None else Doubts(rules, grown, chaotic, warnings, [*violated, *decided])
+
+
+def _rules(
+    context: Context, options: Rocking, rocker: Rocker, response: Response, end_time: float
+) -> tuple[list[RuleOutcome] | None, list[str], list[str]]:
+    """Outcomes under rival impact rules, None after an interruption; warnings; violated conditions."""
     rivals: dict[str, tuple[float, Body]] = rocker.rivals(DIFFER)
     more = _keeping_more(context, rocker, response)
     bodies = [rocker.held(body) for _, body in rivals.values()]
     if isinstance(rocker.model, ArchModel):
         bodies += [arch_body(rocker.model.four_hinge, c_v) for c_v, _ in more]
     if not bodies:
-        return Doubts([], grown, chaotic, [], violated)
+        return [], [], []
     which = np.arange(len(bodies))
     found = ensemble(
         bodies,
@@ -131,28 +139,27 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
         threads=context.threads,
     )
     if found.interrupted:
-        return nothing
+        return None, [], []
     outcome = [None if place == FAILED else OUTCOMES[place] for place in found.outcome]
-    warnings = []
+    warnings, violated = [], []
     rules = [
         RuleOutcome(rule=rule, restitution=c_v, outcome=one)
         for (rule, (c_v, _)), one in zip(rivals.items(), outcome[: len(rivals)], strict=True)
         if one
     ]
     if rules:
-        told = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.outcome}' for one in rules)
-        same = {one.outcome for one in rules} == {response.outcome}
-        if same:
-            warnings.append(f"The impact rules differ by more than {DIFFER:g}, and the outcome is the same: {told}.")
+        listed = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.outcome}' for one in rules)
+        if {one.outcome for one in rules} == {response.outcome}:
+            warnings.append(f"The impact rules differ by more than {DIFFER:g}, and the outcome is the same: {listed}.")
         else:
-            violated.append(f"The impact rule decides the outcome: {told}.")
+            violated.append(f"The impact rule decides the outcome: {listed}.")
     for (c_v, why), one in zip(more, outcome[len(rivals) :], strict=True):
         if one:
             rules.append(RuleOutcome(rule=f"{c_v:.3f}", restitution=c_v, outcome=one))
             warnings.append(f"{why}: with {c_v:.3f} the outcome is {one}; use `dem`")
             if one != response.outcome:
                 violated.append(f"The restitution decides the outcome: with {c_v:.3f} {one}. Use dem.")
-    return Doubts(rules, grown, chaotic, warnings, violated)
+    return rules, warnings, violated
 
 
 def doubts_on_contacts(context: Context, rocker: Rocker, contacts: Contacts, response: Response, over: HandOver, end_time: float) -> Doubts:

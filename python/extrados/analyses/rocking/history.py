@@ -8,6 +8,7 @@ import numpy as np
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.conditions import astray_of, of_one, told
+from extrados.analyses.rocking.course import Course, build_result, impact_times, keep_events, refuse_long_history
 from extrados.analyses.rocking.doubts import Doubts, doubts, doubts_on_contacts
 from extrados.analyses.rocking.hand_over import contacts_of, follow_contacts, leaving_time, outcome_of, stored
 from extrados.analyses.rocking.tables import Rocking
@@ -15,15 +16,12 @@ from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
 from extrados.results.fields import given
-from extrados.results.model import Array, Result, TableData
+from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.block import BlockModel
 from extrados.views.rockers.rocker import Rocker
 
-#: Numbers a history may hold in all: output times times the values at each.
-LARGEST = 20_000_000
-ROOM = 20_000
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
 
@@ -84,127 +82,66 @@ def run_history(context: Context, options: Rocking, body: Body, end_time: float,
 
     start_rotation > 0 to +x [rad]. Refused where the history would not fit into memory.
     """
-    if end_time / options.output_step * width > LARGEST:
-        least = end_time * width / LARGEST
-        raise Refused(
-            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store; "
-            f"the least output_step that fits is {least:.2g} s",
-            ("analysis", "output_step"),
-        )
+    refuse_long_history(end_time, options.output_step, width)
     settings: dict[str, Any] = {
         "tolerance": options.tolerance,
         "start_side": 1 if start_rotation >= 0.0 else -1,
         "start_rotation": abs(start_rotation),
     }
-    room = ROOM
-    while True:
-        response = history(body, context.motion.ground, end_time, options.output_step, room=room, **settings)
-        if response.events_found <= room or response.interrupted:
-            return response
-        room = response.events_found
+    return keep_events(lambda room: history(body, context.motion.ground, end_time, options.output_step, room=room, **settings))
 
 
 def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction: np.ndarray, **further: Any) -> Result:
-    """Results, tables and arrays that every rocking structure has; `of` says whose rotation it is.
+    """Results of a structure that rocks as a mechanism; `of` says whose rotation it is.
 
     friction (times, joints): coefficient of friction needed. further: the results that only this structure has.
     """
     response, doubt, over = ran.response, ran.doubt, ran.hand_over
-    impacts = [(t, v) for kind, t, v in response.events if kind == "impact"]
-    collapse = response.outcome == "collapse"
     energy = response.kinetic + response.potential + response.stored
-    scale = max(float(np.abs(energy).max(initial=0.0)), abs(response.work), 1e-300)
-    result = Result("rocking", status="interrupted" if response.interrupted else "ok")
-    result.reason = f"interrupted at {response.stop_time:.3f} s" if response.interrupted else ""
-    if response.events_found > len(response.events):
-        result.warnings.append(f"only the first {len(response.events)} of {response.events_found} events are kept")
-    if over is not None and ran.run is not None and ran.run.status != "ok":
-        result.status, result.reason = ran.run.status, f"rigid contacts: {ran.run.reason}"
-    settled = response.settled if over is None else not over.contacts.still_moving
-    if not settled and not response.interrupted:
-        result.warnings.append(
-            f"the structure still rocks at the end time of {response.stop_time:g} s: the outcome is open, set a longer end_time"
-        )
-    r = out.Rocking(
-        rotation_of=of,
-        outcome=response.outcome if over is None else over.outcome,
-        settled=settled,
-        collapse_half_cycle=response.half_cycles if collapse else None,
-        collapse_time_s=over.contacts.collapse_time_s if over else response.stop_time if collapse else None,
+    course = Course(
+        of=of,
+        settled=response.settled if over is None else not over.contacts.still_moving,
+        moves="the structure still rocks",
         half_cycles=response.half_cycles,
+        potential=response.potential,
+        energy=energy,
+        scale=max(float(np.abs(energy).max(initial=0.0)), abs(response.work), 1e-300),
+        lost="the energy lost at impacts, minus the energy absorbed by restraints",
+        friction=friction,
+        coordinates={"rotation": (response.rotation, "rad"), "rotation_rate": (response.rate, "rad/s")},
+        event_value="rad at peak and collapse; rad/s before impact; side at uplift",
+        chaotic=doubt.chaotic,
+        growth=doubt.growth,
+        violated=doubt.violated,
+    )
+    contacts = {} if over is None else {"outcome": over.outcome, "collapse_time_s": over.contacts.collapse_time_s}
+    result = build_result(
+        context,
+        response,
+        course,
+        **contacts,
         impacts=response.impacts,
-        impact_times_s=[t for t, _ in impacts],
         peak_rotation_rad=response.peak,
         peak_rotation_ratio=response.peak_ratio,
-        peak_ground_acceleration_g=context.motion.peak / GRAVITY,
-        energy_supplied_J=response.work,
         energy_lost_at_impacts_J=response.loss,
-        energy_residual_ratio=float(np.abs(energy - energy[:1] - response.ledger).max(initial=0.0)) / scale,
-        steps=response.steps,
         rejected_steps=response.rejected,
-        decided_by_last_digits=doubt.chaotic,
-        perturbation_growth=doubt.growth,
         conditions=ran.conditions,
         **given(hand_over=over, outcomes_by_rule=doubt.rules or None),
-        violated=doubt.violated,
         **_held(rocker, response),
         **further,
     )
-    result.results = r
-    result.warnings += [*told(r.conditions), *r.violated, *doubt.warnings]
+    result.warnings += [*told(ran.conditions), *doubt.violated, *doubt.warnings]
     if over is not None and ran.run is not None:
+        if ran.run.status != "ok":
+            result.status, result.reason = ran.run.status, f"rigid contacts: {ran.run.reason}"
         result.warnings.append(f"Rigid contacts follow the blocks from {over.time_s:.3f} s on.")
         result.warnings += [text for text in ran.run.warnings if text not in result.warnings]
-    result.tables["rocking"] = TableData(
-        {
-            "time": response.time,
-            "rotation": response.rotation,
-            "rotation_rate": response.rate,
-            "ground_acceleration": response.ground,
-            "vertical_acceleration": response.vertical,
-            "kinetic_energy": response.kinetic,
-            "potential_energy": response.potential,
-            "energy_supplied_less_lost": response.ledger,
-            "required_friction": friction.max(axis=1) if len(friction) else np.zeros(0),
-        },
-        {
-            "time": "s",
-            "rotation": "rad",
-            "rotation_rate": "rad/s",
-            "ground_acceleration": "m/s^2",
-            "vertical_acceleration": "m/s^2",
-            "kinetic_energy": "J",
-            "potential_energy": "J",
-            "energy_supplied_less_lost": "J",
-        },
-    )
-    result.tables["rocking_events"] = TableData(
-        {
-            "event": [kind for kind, _, _ in response.events],
-            "time": np.array([t for _, t, _ in response.events]),
-            "value": np.array([v for _, _, v in response.events]),
-        },
-        {"time": "s", "value": "rad at peak and collapse; rad/s before impact; side at uplift"},
-    )
-    result.arrays = {
-        "time": Array(response.time, ("time",), "s", "output times"),
+        result.arrays |= stored(ran.run)
+    result.arrays |= {
         "rotation": Array(response.rotation, ("time",), "rad", f"rotation of {of}, positive to +x"),
         "rate": Array(response.rate, ("time",), "rad/s"),
         "acceleration": Array(response.acceleration, ("time",), "rad/s^2"),
-        "ground": Array(response.ground, ("time",), "m/s^2", "horizontal ground acceleration"),
-        "vertical": Array(response.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
-        "kinetic": Array(response.kinetic, ("time",), "J"),
-        "potential": Array(response.potential, ("time",), "J"),
-        "ledger": Array(
-            response.ledger,
-            ("time",),
-            "J",
-            "work done by the ground motion, minus the energy lost at impacts, minus the energy absorbed by restraints",
-        ),
-        "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
-        "required_friction": Array(friction, ("time", "joint"), "", "coefficient of friction needed"),
         **restraint_arrays(rocker, response),
-        **({} if ran.run is None else stored(ran.run)),
     }
     return result
 
@@ -258,18 +195,6 @@ def snapshot_index(response: Response, options: Rocking, warnings: list[str]) ->
     return np.unique(np.clip(index, 0, len(response.time) - 1))
 
 
-def drawn_times(time: np.ndarray, rotations: np.ndarray, options: Rocking) -> np.ndarray:
-    """Output times at which several coordinates (coordinates, times) are drawn: those asked for, or up to six crests."""
-    if not len(time):
-        return np.zeros(0, dtype=int)
-    if options.thrust_line_times:
-        return np.unique(np.clip(np.searchsorted(time, options.thrust_line_times), 0, len(time) - 1))
-    crests: list[int] = [k for q in np.abs(rotations) for k in (np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1).tolist()]
-    size = np.abs(rotations).max(axis=0)
-    chosen = sorted(dict.fromkeys([*crests, int(size.argmax())]), key=lambda k: -size[k])[:6]
-    return np.array(sorted(chosen))
-
-
 def ordinal(n: int) -> str:
     """first, second, ..., tenth, 11th, 12th, 21st."""
     if n <= len(ORDINALS):
@@ -300,7 +225,7 @@ def answer(context: Context, response: Response, who: str, falls: str, uplift: f
     pga = context.motion.peak / GRAVITY
     upward = " (horizontal alone)" if np.any(response.vertical) else ""
     about = f"peak ground acceleration {pga:.3f} g, rocking starts at {uplift:.3f} g{upward}"
-    times = [t for kind, t, _ in response.events if kind == "impact"]
+    times = impact_times(response)
     way = "+x" if response.peak > 0 else "-x"
     if response.outcome == "collapse":
         if not times:

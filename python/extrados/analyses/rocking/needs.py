@@ -72,7 +72,7 @@ def _refuse_stack(building: Building, options: tables.Rocking) -> None:
             ("supports", "stiffness"),
         )
     if options.form == "linear":
-        raise Refused('form = "linear" is known of blocks and columns only', ("analysis", "form"))
+        raise Refused('form = "linear" applies to blocks and columns only', ("analysis", "form"))
     if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):
         name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
         raise Refused("two stacked blocks take plastic impacts at all edges: remove restitution and energy_ratio", ("joints", name))

@@ -1,11 +1,13 @@
 """What a rocking structure looks like at chosen times: places of its stones, and the line of thrust or of the ground's force."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.rocking import arch, block
+from extrados.analyses.rocking.tables import Rocking
 from extrados.core import arch as core_arch
 from extrados.model.geometry.assembly import Assembly
 from extrados.results.model import Array, Result
@@ -68,6 +70,32 @@ def film(time: np.ndarray, pose: np.ndarray) -> dict[str, Array]:
         "film_time": Array(time, ("film",), "s", "times of the pictures of the animation"),
         "film_pose": Array(pose, ("film", "block", "component"), "m, m, rad", "x, y, rotation of the stones"),
     }
+
+
+def drawn_times(time: np.ndarray, rotations: np.ndarray, options: Rocking) -> np.ndarray:
+    """Output times at which several coordinates (coordinates, times) are drawn: the requested ones, or up to six crests."""
+    if not len(time):
+        return np.zeros(0, dtype=int)
+    if options.thrust_line_times:
+        return np.unique(np.clip(np.searchsorted(time, options.thrust_line_times), 0, len(time) - 1))
+    crests: list[int] = [k for q in np.abs(rotations) for k in (np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1).tolist()]
+    size = np.abs(rotations).max(axis=0)
+    chosen = sorted(dict.fromkeys([*crests, int(size.argmax())]), key=lambda k: -size[k])[:6]
+    return np.array(sorted(chosen))
+
+
+def course_arrays(options: Rocking, time: np.ndarray, rotations: np.ndarray, pose: Callable[[np.ndarray], np.ndarray]) -> dict[str, Array]:
+    """Shapes at the drawn times, and the film where the deck requests one; pose(index): (times, blocks, 3) [m, m, rad] at output
+    times; rotations (coordinates, times) [rad]."""
+    index = drawn_times(time, rotations, options)
+    found = {
+        "snapshot_time": Array(time[index], ("snapshot",), "s"),
+        "snapshot_pose": Array(pose(index), ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"),
+    }
+    if options.animation != "none" and len(time):
+        shown = pictures(time)
+        found |= film(time[shown], pose(shown))
+    return found
 
 
 def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:

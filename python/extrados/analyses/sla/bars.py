@@ -99,7 +99,7 @@ def bar_group(
 def tie_group(mesh: Mesh, tie: Tie, rod: Rod, options: Sla) -> core.Bars:
     """One of [[ties]]: a bar of 1 m^2, so that its stress is its force."""
     if tie.prestress:
-        raise BadGeometry(f"{tie.name}: prestress is not taken into account here; put the pair of its forces among the constant loads")
+        raise BadGeometry(f"{tie.name}: prestress is not considered here; add its two forces to the constant loads")
     length = float(rod.length[0])
     thickness = max(float(group.thickness.max()) for group in mesh.groups if group.joint is None)
     young = (tie.stiffness or RIGID * mesh.materials[0].young * thickness) * length

@@ -18,7 +18,7 @@ from extrados.analyses.statistics.annual import hazard_curve
 from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe, shares_at
 from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import median, shares, shares_of
-from extrados.analyses.statistics.tables import Fragility
+from extrados.analyses.statistics.tables import Fragility, Hazard
 from extrados.analyses.statistics.uncertain import Bodies, bodies_at, sampled
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
@@ -26,6 +26,7 @@ from extrados.core.rocking import FAILED, Body, Ground, Response
 from extrados.core.soft_base import KIND as SOFT_BASE
 from extrados.core.soft_base import SoftBase, SoftBaseResponse, soft_base_history, soft_base_start
 from extrados.motions.from_deck import is_set
+from extrados.motions.hazard import HazardCurve
 from extrados.motions.motion import Motion
 from extrados.results import statistics as out
 from extrados.results.fields import Keys
@@ -34,6 +35,9 @@ from extrados.results.rocking import COLLAPSE, Conditions
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.block import BlockModel
 from extrados.views.rockers.rocker import Rocker
+
+#: Hazard curve of the site, and its table
+SiteHazard = tuple[HazardCurve, Hazard] | None
 
 #: Histories are drawn in so many points, and until so many time units of the building after the motion
 POINTS, AFTER = 3000, 5.0
@@ -212,71 +216,17 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
     result.warnings += told(r["conditions"])
     _tell_failures(job, swept, per_motion, result)
     _tables(job, swept, per_motion, options, result)
-    hazard = None if options.hazard is None else (hazard_curve(options.hazard, context.deck.folder), options.hazard)
+    hazard: SiteHazard = None if options.hazard is None else (hazard_curve(options.hazard, context.deck.folder), options.hazard)
     if job.levels is not None:
-        seen = arranged(job.levels, swept)
-        found = shares_at(job.levels, swept, "slips", "strays")
-        r |= {"sliding_share": found["slips"], "hinges_elsewhere_share": found["strays"]}
-        r |= describe(
-            seen,
-            options.intensity,
-            base.word,
-            initial,
-            hazard,
-            options.confidence,
-            0 if swept.interrupted else options.bootstrap,
-            options.seed or 0,
-            result,
-        )
-        if swept.complete:
-            r |= _by_rule(context, options, base, job, motions * per_motion, result)
-        result.results = out.OverLevels(**r)
+        result.results = out.OverLevels(**r, **_over_levels(context, options, base, job, swept, motions, hazard, result))
         return
     r |= shares_of(
         lambda: ((rows["outcome"], rows["peak_ratio"]) for _, rows in swept.pieces("outcome", "peak_ratio")), options.confidence, initial
     )
-    middle = {name: median(partial(_column, swept, name)) for name in ("pga", "pgv", "arias")}
-    r |= {
-        "median_pga_g": None if middle["pga"] is None else middle["pga"] / GRAVITY,
-        "median_pgv_m_s": middle["pgv"],
-        "median_arias_m_s": middle["arias"],
-    }
-    if isinstance(job.source, GeneratedSource) and job.source.made.floor is None:
-        expected = job.source.made.expected()
-        r |= {"expected_pga_g": expected["pga"] / GRAVITY, "expected_pgv_m_s": expected["pgv"]}
-        ratio = r["median_pga_g"] / r["expected_pga_g"]
-        if not 0.5 <= ratio <= 2.0:
-            result.warnings.append(
-                f"the median peak acceleration of the motions, {r['median_pga_g']:.2f} g, is {ratio:.1f} times the median observed "
-                f"at this intensity ({r['expected_pga_g']:.2f} g, Worden et al. 2012)"
-            )
-    edges = np.linspace(0.0, 1.0, options.bins + 1)
-    counts = np.zeros(options.bins, int)
-    for _, rows in swept.pieces("outcome", "peak_ratio"):
-        upright = (rows["outcome"] != FAILED) & (rows["outcome"] != COLLAPSE)
-        counts += np.histogram(np.minimum(rows["peak_ratio"][upright], 1.0), edges)[0]
-    result.arrays |= {
-        "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
-        "bin_count": Array(counts, ("bin",), "", "members that do not collapse"),
-    }
-    p, (low, high) = r["collapse_probability"], r["confidence_interval"]
-    many = context.deck.motion is None or is_set(context.deck.motion)
-    counted = (
-        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down"
-        if many
-        else f"Of {r['count']} buildings of uncertain values {r['collapsed']} collapse"
-    )
-    result.answer = (
-        (
-            f"{counted}: probability of collapse {100 * p:.1f} % "
-            f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
-            f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
-            f"The {'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
-        )
-        if p is not None
-        else "No motion could be run."
-    )
-    if swept.complete and job.levels is None:
+    r |= _medians(job, swept, result)
+    result.arrays |= _histogram(options, swept)
+    result.answer = _words(context, options, base, r)
+    if swept.complete:
         r |= _by_rule(context, options, base, job, motions, result)
     if options.cloud:
         name, _, unit = INTENSITIES[options.intensity]
@@ -294,25 +244,106 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
     if options.histories and swept.complete:
         _histories(job, base, min(options.histories, motions), result)
     if options.sensitivity is not None and swept.complete:
-        try:
-            r |= sensitivity(
-                context,
-                sorted(options.uncertain),
-                lambda draws: bodies_at(context, options, base, draws),
-                job.source,
-                motions if context.deck.motion is None or is_set(context.deck.motion) else 1,
-                job.settle,
-                options.sensitivity,
-                options.seed or 0,
-                options.bootstrap,
-                options.confidence,
-                options.tolerance,
-                result,
-            )
-            result.answer += f" {spoken(r['sensitivity'])}"
-        except Unfinished as stop:
-            result.status, result.reason = ("interrupted" if stop.interrupted else "failed"), str(stop)
+        r |= _sensitivity(context, options, base, job, motions, result)
     result.results = out.Ensemble(**r)
+
+
+def _over_levels(
+    context: Context, options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, motions: int, hazard: SiteHazard, result: Result
+) -> Keys:
+    """Results over levels of the intensity."""
+    assert job.levels is not None
+    found = shares_at(job.levels, swept, "slips", "strays")
+    r: Keys = {"sliding_share": found["slips"], "hinges_elsewhere_share": found["strays"]}
+    r |= describe(
+        arranged(job.levels, swept),
+        options.intensity,
+        base.word,
+        base.initial_ratio,
+        hazard,
+        options.confidence,
+        0 if swept.interrupted else options.bootstrap,
+        options.seed or 0,
+        result,
+    )
+    return r | _by_rule(context, options, base, job, motions * len(job.levels), result) if swept.complete else r
+
+
+def _medians(job: EnsembleJob, swept: Swept, result: Result) -> Keys:
+    """Medians of the measures of the motions, of generated ones with those expected at their intensity."""
+    middle = {name: median(partial(_column, swept, name)) for name in ("pga", "pgv", "arias")}
+    r: Keys = {
+        "median_pga_g": None if middle["pga"] is None else middle["pga"] / GRAVITY,
+        "median_pgv_m_s": middle["pgv"],
+        "median_arias_m_s": middle["arias"],
+    }
+    if isinstance(job.source, GeneratedSource) and job.source.made.floor is None:
+        expected = job.source.made.expected()
+        r |= {"expected_pga_g": expected["pga"] / GRAVITY, "expected_pgv_m_s": expected["pgv"]}
+        ratio = r["median_pga_g"] / r["expected_pga_g"]
+        if not 0.5 <= ratio <= 2.0:
+            result.warnings.append(
+                f"the median peak acceleration of the motions, {r['median_pga_g']:.2f} g, is {ratio:.1f} times the median observed "
+                f"at this intensity ({r['expected_pga_g']:.2f} g, Worden et al. 2012)"
+            )
+    return r
+
+
+def _histogram(options: Fragility, swept: Swept) -> dict[str, Array]:
+    """Peak rotations of the members that do not collapse."""
+    edges = np.linspace(0.0, 1.0, options.bins + 1)
+    counts = np.zeros(options.bins, int)
+    for _, rows in swept.pieces("outcome", "peak_ratio"):
+        upright = (rows["outcome"] != FAILED) & (rows["outcome"] != COLLAPSE)
+        counts += np.histogram(np.minimum(rows["peak_ratio"][upright], 1.0), edges)[0]
+    return {
+        "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
+        "bin_count": Array(counts, ("bin",), "", "members that do not collapse"),
+    }
+
+
+def _words(context: Context, options: Fragility, base: Rocker, r: Keys) -> str:
+    """The probability in words."""
+    p, (low, high) = r["collapse_probability"], r["confidence_interval"]
+    if p is None:
+        return "No motion could be run."
+    many = context.deck.motion is None or is_set(context.deck.motion)
+    counted = (
+        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down"
+        if many
+        else f"Of {r['count']} buildings of uncertain values {r['collapsed']} collapse"
+    )
+    return (
+        f"{counted}: probability of collapse {100 * p:.1f} % "
+        f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
+        f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
+        f"The {'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
+    )
+
+
+def _sensitivity(context: Context, options: Fragility, base: Rocker, job: EnsembleJob, motions: int, result: Result) -> Keys:
+    """Influence of each uncertain value on collapse; empty if the runs end early."""
+    assert options.sensitivity is not None
+    try:
+        r = sensitivity(
+            context,
+            sorted(options.uncertain),
+            lambda draws: bodies_at(context, options, base, draws),
+            job.source,
+            motions if context.deck.motion is None or is_set(context.deck.motion) else 1,
+            job.settle,
+            options.sensitivity,
+            options.seed or 0,
+            options.bootstrap,
+            options.confidence,
+            options.tolerance,
+            result,
+        )
+    except Unfinished as stop:
+        result.status, result.reason = ("interrupted" if stop.interrupted else "failed"), str(stop)
+        return {}
+    result.answer += f" {spoken(r['sensitivity'])}"
+    return r
 
 
 def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarray]]) -> dict[str, Any]:

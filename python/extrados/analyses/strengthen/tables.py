@@ -62,7 +62,7 @@ class TieOption(Tie):
         None, "of a bonded FRP or FRCM strip: design force at which it debonds, the greatest force considered", gt=0
     )
     source: str | None = key(
-        None, "of the debonding force: document and formula, or test, that gives it; the report prints it", min_length=3, max_length=300
+        None, "source of the debonding force: document with formula, or test; the report prints the source", min_length=3, max_length=300
     )
     anchorage: Anchorage | None = key(None, "strengths of bar and anchorage, for their checks")
     beam_weight: Force | None = key(

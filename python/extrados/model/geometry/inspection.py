@@ -207,7 +207,7 @@ def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarra
         raise BadGeometry(f"block '{polygon.name}': its outline crosses itself")
     area = signed_area(points)
     if abs(area) < tolerance * float(np.ptp(points, axis=0).max()):
-        raise BadGeometry(f"block '{polygon.name}': it has no area to speak of ({abs(area):.3g} m^2)")
+        raise BadGeometry(f"block '{polygon.name}': its area is practically zero ({abs(area):.3g} m^2)")
     return points if area > 0.0 else points[::-1]
 
 

@@ -105,6 +105,15 @@ class Aisle:
     added: Added | None = None
 
 
+@dataclass(frozen=True)
+class Fill:
+    """Fill over the nave vault up to level, over the aisle vaults up to aisle_level [m]; None: no fill. density [kg/m^3]."""
+
+    level: float | None = None
+    aisle_level: float | None = None
+    density: float = 1600.0
+
+
 def make_church(
     radius: float,
     thickness: float,
@@ -115,17 +124,15 @@ def make_church(
     left: Aisle | None,
     right: Aisle | None,
     pier_top: float | None = None,
-    fill_level: float | None = None,
-    aisle_fill_level: float | None = None,
-    fill_density: float = 1600.0,
+    fill: Fill = Fill(),
     density: float = 2000.0,
     depth: float = 1.0,
 ) -> Assembly:
     """A nave on two piers, with side aisles where they are given; ground at y = 0, nave centre at x = 0.
 
     The inner face of a pier is tangent to the nave's intrados, as are the faces about an aisle to its own.
-    Piers and buttresses are monolithic and stand on horizontal joints. Fill lies over the nave vault up to
-    fill_level and over the aisle vaults up to aisle_fill_level [m].
+    Piers and buttresses are monolithic and stand on horizontal joints. fill: over the
+    nave and aisle vaults.
     """
     half = 0.5 * np.radians(embrace)
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
@@ -156,10 +163,10 @@ def make_church(
     for word, aisle in (("left", left), ("right", right)):
         if aisle is not None:
             measures[f"{word}_aisle_span_m"] = aisle.span
-    levels = {name: fill_level if name == "nave" else aisle_fill_level for name in chains if "flyer" not in name}
+    levels = {name: fill.level if name == "nave" else fill.aisle_level for name in chains if "flyer" not in name}
     if any(level is not None for level in levels.values()):
-        fill = fill_loads(assembly, [(chains[n], level) for n, level in levels.items() if level is not None], fill_density)
-        return replace(assembly, fill=fill, measures=measures)
+        loads = fill_loads(assembly, [(chains[n], level) for n, level in levels.items() if level is not None], fill.density)
+        return replace(assembly, fill=loads, measures=measures)
     return replace(assembly, measures=measures)
 
 
@@ -362,9 +369,7 @@ class AisledVault(PresetStructure):
             left,
             right,
             self.pier_top,
-            self.fill_level,
-            self.aisle_fill_level,
-            self.fill_density,
+            Fill(self.fill_level, self.aisle_fill_level, self.fill_density),
             density,
             self.depth,
         )

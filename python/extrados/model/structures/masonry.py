@@ -77,7 +77,7 @@ class Column(Structure):
         None, 'dowels in the axis between the drums: the shear strength of each, or "unbroken"'
     )
     dowel_reach: Length | None = key(
-        None, "`dem`: how far each dowel reaches into the drum above; drums that part farther have lost it; default: never lost", gt=0
+        None, "`dem`: length of each dowel within the drum above; the dowel is lost if the drums part by more; default: never lost", gt=0
     )
 
     @model_validator(mode="after")

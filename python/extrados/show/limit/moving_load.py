@@ -73,11 +73,14 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 f"The most dangerous place: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
             )
         ]
-    if len(place) == 1:
-        return found
+    return found if len(place) == 1 else [*found, _draw_places(run, name, folder)]
+
+
+def _draw_places(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """The capacity over the place of the first axle."""
+    place, way = run.array(name, "place"), run.array(name, "way")
     adequacy = "adequacy" in run.arrays[name]
     value = run.array(name, "adequacy") if adequacy else run.array(name, "capacity") / 1e3
-    way = run.array(name, "way")
     with style.figure(7.5, 3.6) as (fig, (curve,)):
         for sense, colour, label in ((1, style.THRUST, "heading to +x"), (-1, style.HINGE, "heading to -x")):
             if (way == sense).any():
@@ -91,14 +94,11 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         curve.set_xlabel("x of the first axle [m]")
         curve.set_ylabel("adequacy factor" if adequacy else "load at collapse [kN]")
         curve.set_title("Adequacy over place" if adequacy else "Load at collapse over place")
-        found.append(
-            (
-                style.save(fig, folder, f"{name}-places"),
-                "Load that causes collapse, over the place of the first axle."
-                + (f" At the worst place joints slide: {DILATANT}." if r.dilating_joints else ""),
-            )
+        return (
+            style.save(fig, folder, f"{name}-places"),
+            "Load that causes collapse, over the place of the first axle."
+            + (f" At the worst place joints slide: {DILATANT}." if run.results_of(name, MovingLoad).dilating_joints else ""),
         )
-    return found
 
 
 def _borne(r: MovingLoad) -> str:

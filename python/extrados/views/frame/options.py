@@ -45,9 +45,7 @@ class FrameOptions(Table):
         None, "part of its strength that a spandrel keeps beyond; default 0.6 with a lintel, 0.1 without", ge=0, le=1
     )
     flange_strength: Stress | None = key(
-        None,
-        "shear strength of the vertical section along which walls hang together at corners; default the cohesion, without it unlimited",
-        gt=0,
+        None, "shear strength of the vertical section between walls that meet at corners; default the cohesion, unlimited without one", gt=0
     )
     softening: float = key(0.5, "beta of the law damage: exponent of its resistance beyond the peak", gt=0, lt=2)
     damage_compliance: float = key(3.0, "c_t G of the law damage: inelastic over elastic shear compliance", gt=0, le=100)

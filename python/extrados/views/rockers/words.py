@@ -30,7 +30,7 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
             "the energy ratio is that of a block: give restitution, the rate after over before an impact", ("joints", "energy_ratio")
         )
     if linear and not block:
-        raise NoView('form = "linear" is known of blocks and columns only', ("analysis", "form"))
+        raise NoView('form = "linear" applies to blocks and columns only', ("analysis", "form"))
     if wall is not None and not block and building.supports.rebound is None:
         raise NoView("the rebound from a wall has a rule for blocks only: give [supports] rebound", ("supports", "abutting_wall"))
     if wall is not None and ratio and wall == ("right" if ratio > 0.0 else "left"):

@@ -42,26 +42,32 @@ def shell_of_file(building: Description, options: ShellOptions) -> ShellMesh:
         return read_shell(building.structure, building, options)
 
 
-def read_shell(structure: MeshFile, building: Description, options: ShellOptions) -> ShellMesh:
-    """The triangles and quadrilaterals of a file with what its groups say; BadGeometry names file, group and what fits."""
+def open_shells(structure: MeshFile, building: Description, options: ShellOptions) -> "tuple[str, meshio.Mesh]":
+    """Name and content of a file of shells; BadGeometry if it holds anything else, or too many."""
     for name in ("regions", "ties", "bars"):
         if getattr(structure, name):
             raise BadGeometry(f"{name} are of a wall in a plane; shells in space take groups", ("structure", name))
     file, mesh = open_mesh(structure, building)
     if options.size is not None:
         raise BadGeometry(f"{file}: the elements are those of the file; leave mesh.size out", ("analysis", "mesh", "size"))
-    xyz = structure.scale * np.asarray(mesh.points, dtype=float)
-    if xyz.shape[1] != 3:
-        raise BadGeometry(f"{file}: its points have {xyz.shape[1]} coordinates; shells in space need 3")
+    if mesh.points.shape[1] != 3:
+        raise BadGeometry(f"{file}: its points have {mesh.points.shape[1]} coordinates; shells in space need 3")
     for cells in mesh.cells:
         if cells.type not in KINDS and cells.type not in PASSED_OVER:
             raise BadGeometry(f"{file}: cells of kind '{cells.type}'; expected {' and '.join(KINDS)}")
-    shells = {b: np.asarray(cells.data).astype(int) for b, cells in enumerate(mesh.cells) if cells.type in KINDS}
-    count = sum(map(len, shells.values()))
+    count = sum(len(cells.data) for cells in mesh.cells if cells.type in KINDS)
     if not count:
         raise BadGeometry(f"{file}: holds no shells; expected cells of kind {' or '.join(KINDS)}")
     if count > LARGEST_MESH:
         raise BadGeometry(f"{file}: {count} elements: the most are {LARGEST_MESH:g}")
+    return file, mesh
+
+
+def read_shell(structure: MeshFile, building: Description, options: ShellOptions) -> ShellMesh:
+    """The triangles and quadrilaterals of a file with what its groups say; BadGeometry names file, group and what fits."""
+    file, mesh = open_shells(structure, building, options)
+    xyz = structure.scale * np.asarray(mesh.points, dtype=float)
+    shells = {b: np.asarray(cells.data).astype(int) for b, cells in enumerate(mesh.cells) if cells.type in KINDS}
     for connect in shells.values():
         _check_corners(xyz, connect, file)
     _check_overlaps(xyz, list(shells.values()), file)

@@ -45,6 +45,10 @@ class _Grid:
         return np.column_stack([np.repeat(place, len(self.z), axis=0), np.tile(self.z, len(self.s))])
 
 
+#: Nodes (n, 3) [m] with their masses (n) [kg] and forces (n, 3) [N]
+Nodes = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
 def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     """Walls on a plan with the floors between them; BadGeometry says what does not fit."""
     plan = building.structure
@@ -54,14 +58,12 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     if area / size**2 > LARGEST_MESH:
         raise BadGeometry(f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}", ("analysis", "mesh", "size"))
     warnings: list[str] = []
-    junctions = {
-        (a, b): at
-        for a, b in itertools.combinations(range(len(plan.walls)), 2)
-        if (at := meeting(plan.walls[a], plan.walls[b])) is not None
-    }
+    junctions = {}
     for a, b in itertools.combinations(range(len(plan.walls)), 2):
         one, two = plan.walls[a], plan.walls[b]
-        if (a, b) not in junctions and (gap := nearly_meeting(one, two)) is not None:
+        if (at := meeting(one, two)) is not None:
+            junctions[a, b] = at
+        elif (gap := nearly_meeting(one, two)) is not None:
             warnings.append(f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart and do not meet: nothing joins them")
     _check_corners(plan, junctions)
     grids = _grids(plan, junctions, size, warnings)
@@ -88,7 +90,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
             walls, ring = _ring(plan, floor, grids, number, xyz)
             if (first := rings.setdefault((floor.storey, frozenset(ring)), k)) != k:
                 raise BadGeometry(f"floor {first + 1} lies between the same walls on storey {floor.storey}")
-            grown, mass, push = _add_floor(plan, floor, walls, ring, grids, number, grown, mass, push, parts, materials, bars, size)
+            grown, mass, push = _add_floor(plan, floor, (walls, ring), grids, number, (grown, mass, push), parts, materials, bars, size)
     used = np.zeros(len(grown), dtype=bool)
     for connect in (*(part.connect for part in parts), *(joint.connect for joint in joints)):
         used[connect] = True
@@ -475,19 +477,17 @@ def _ring(plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray
 def _add_floor(
     plan: Plan,
     floor: StoreyFloor,
-    walls: list[int],
-    ring: list[int],
+    around: tuple[list[int], list[int]],
     grids: list[_Grid],
     number: np.ndarray,
-    xyz: np.ndarray,
-    mass: np.ndarray,
-    push: np.ndarray,
+    nodes: Nodes,
     parts: list[ShellPart],
     materials: list[Material],
     bars: list[ShellBar],
     size: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Elements, bars and masses of a floor between walls; the nodes with those within it."""
+) -> Nodes:
+    """Elements, bars and masses of a floor; the nodes with those within it. around: its walls and their nodes, as a ring."""
+    (walls, ring), (xyz, mass, push) = around, nodes
     level = float(plan.levels[floor.storey])
     outline = xyz[ring, :2]
     x, y = outline.T
