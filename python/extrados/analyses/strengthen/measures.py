@@ -303,6 +303,26 @@ class Runs:
 Measure = Statics | Runs
 
 
+def reached(measure: Measure, worth: Worth) -> bool:
+    """Whether a value meets the target."""
+    if worth.value is None or np.isnan(worth.value):
+        return False
+    return worth.value >= measure.target if measure.higher_is_safer else worth.value <= measure.target
+
+
+def over_demand(value: float | None, demand: float | None) -> float | None:
+    """The safety factor of a value; None without a demand."""
+    return None if value is None or not demand else value / demand
+
+
+def safest(measure: Measure, values: list[float]) -> float | None:
+    """The greatest value, of a probability the least; None without any."""
+    known = [v for v in values if np.isfinite(v)]
+    if not known:
+        return None
+    return max(known) if measure.higher_is_safer else min(known)
+
+
 def nested(context: Context, deck: Deck) -> Context:
     """A context for a deck of a part."""
     whole = context.deck
