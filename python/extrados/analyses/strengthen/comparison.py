@@ -7,7 +7,7 @@ import numpy as np
 from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.analyses.strengthen.alternatives import TieAlternative
-from extrados.analyses.strengthen.measures import Statics, nested, plain_data
+from extrados.analyses.strengthen.measures import Statics, meets, nested, plain_data
 from extrados.analyses.strengthen.rows import NAMED, placed
 from extrados.analyses.strengthen.sizing import Sized, Sizing
 from extrados.decks.reader import DeckError, make_deck
@@ -34,12 +34,20 @@ def combine_ties(work: Sizing, ties: list[TieAlternative]) -> dict[str, Any]:
     carry = [k for k, f in enumerate(forces) if f > 1e-6 * float(forces.max())]
     if len(carry) < 2:
         return {}
-    rows, cost = [], 0.0
+    rows, cost, added = [], 0.0, []
     for k in carry:
         one, place = columns[k]
         tie = one.places[place]
+        added.append(tie.model_copy(update={"yield_force": float(forces[k])}))
         rows.append(out.CombinedTie(name=one.name, place=placed(tie), force_N=float(forces[k])))
         cost += work.cost(one.lengths[place], float(forces[k]), 0.0)
+    building = work.context.building
+    worth = statics.of(building.having(ties=(*building.ties, *added)), picture=True)
+    if not meets(statics, worth):
+        least = worth.value if worth.beside is None else worth.beside
+        work.context.warnings.append(
+            f"The combination of ties meets the target by dilatant friction alone: without dilatancy the building with it carries {_number(least)} g."
+        )
     return {"combination": rows, "combination_cost": cost}
 
 

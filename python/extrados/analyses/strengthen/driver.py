@@ -9,7 +9,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.strengthen.alternatives import ChangeAlternative, TieAlternative, change_alternatives, is_spatial, tie_alternatives
 from extrados.analyses.strengthen.change_sizes import size_change
 from extrados.analyses.strengthen.comparison import assess_all, combine_ties, compare_fragility
-from extrados.analyses.strengthen.measures import Measure, Runs, Statics, over_demand, plain_data, reached
+from extrados.analyses.strengthen.measures import Measure, Runs, Statics, meets, over_demand, plain_data
 from extrados.analyses.strengthen.outcome import arrays_of, table_of, words
 from extrados.analyses.strengthen.sizing import Sized, Sizing
 from extrados.analyses.strengthen.space import SpaceStatics
@@ -27,7 +27,7 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
     building, measure = context.building, measure_of(context, options, closely)
     result = Result("strengthen")
     before = measure.of(building, picture=True) if isinstance(measure, Statics) else measure.of_data(plain_data(context))
-    met = reached(measure, before)
+    met = meets(measure, before)
     work = Sizing(context, options, measure, before)
     sized: list[Sized] = []
     ties = tie_alternatives(building, options) if building.structure is not None else []

@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados.analyses.strengthen.alternatives import TieAlternative, is_spatial
 from extrados.analyses.strengthen.anchorage import check_anchorage
-from extrados.analyses.strengthen.measures import Statics, Worth, over_demand, reached
+from extrados.analyses.strengthen.measures import Statics, Worth, meets, over_demand, reached
 from extrados.analyses.strengthen.sizing import Sizing
 from extrados.analyses.strengthen.space import SpaceStatics
 from extrados.analyses.strengthen.tables import Anchorage
@@ -21,8 +21,6 @@ from extrados.views.building import Building
 
 #: Changes of a capacity, or of a mass, that are named
 NAMED = 0.01
-#: Of the target: rounding of the bisection that raises a force until it is met without dilatancy
-SLACK = 1e-3
 
 
 @dataclass(frozen=True)
@@ -63,7 +61,7 @@ def row_of(work: Sizing, means: Means, found: Found) -> out.Intervention:
     worth, required, reason, tie = found.worth or Worth(None), found.required, found.reason, means.tie
     met = required is not None
     # The target is met only where the least state without dilatancy reaches it too; the size is that of the upper bound.
-    sure = met and (worth.beside is None or worth.beside > (1.0 - SLACK) * work.measure.target)
+    sure = met and meets(work.measure, worth)
     if met and not sure:
         reason = "the size meets the target only by the upper bound of limit analysis (dilatant friction)"
     more: dict[str, Any] = {"key": means.key} if means.key else {}
