@@ -114,16 +114,22 @@ def run(context: Context, options: LocalMechanism) -> Result:
     context.warnings = list(dict.fromkeys(context.warnings))  # what goes for one goes for the others
     judged.sort(key=lambda j: (np.inf if (least := j.results.least()) is None else least, j.results.activation_acceleration_g))
     result = _of_walls(context, judged) if on_plan else _result(judged[0])
-    if isinstance(building.structure, Plan) and on_plan:
-        result.arrays |= packed("plan_wall", plan_outlines(building.structure), "m", "walls on the plan")
-    elif (body := judged[0].turning.body) is not None:
+    result.arrays |= _drawn(building, options, None if on_plan else judged[0].turning.body)
+    return result
+
+
+def _drawn(building: Building, options: LocalMechanism, body: Overturning | Bending | None) -> dict[str, Array]:
+    """What the picture shows: the bodies that turn, or the walls of a plan; nothing of stones, which limit analysis draws."""
+    if body is not None:
         rest, turned, hinge = body_outlines(options, body)
-        result.arrays |= {
+        return {
             **packed("section", rest, "m", "bodies of the mechanism at rest"),
             **packed("section_turned", turned, "m", "the same at the rotation of the picture"),
             "section_hinge": Array(hinge, ("section_hinges", "axis"), "m", "hinges of the mechanism at that rotation"),
         }
-    return result
+    if isinstance(building.structure, Plan):
+        return packed("plan_wall", plan_outlines(building.structure), "m", "walls on the plan")
+    return {}
 
 
 def _on_floor(options: LocalMechanism, below: FloorBelow) -> LocalMechanism:
