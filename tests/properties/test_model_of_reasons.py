@@ -177,11 +177,12 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
         share is not None and 0.05 < share < 0.95,
         [p for p in pairs if "probability" in p and not set(p) & {"tilt", "sla", "push-x", "push-y"}],
     )
+    meshed = ("sla",) if CONTEXT.building.meshed_by_stones else ()  # such elements do not slide either
     stuck, shortest = probe("no-sliding"), float(CONTEXT.building.blocks().length.min())
     told(
         reasons_of_motion.sliding,
         dem is not None and stuck is not None and not chaotic and dem.peak_slip_m >= 0.01 * shortest and not alike(dem, stuck),
-        [p for p in pairs if "dem" in p and set(p) & {"rocking", "assessment", "probability", "tilt"}],
+        [p for p in pairs if "dem" in p and set(p) & {"rocking", "assessment", "probability", "tilt", *meshed}],
         **({"slip_m": dem.peak_slip_m, "displacement_without_sliding_m": stuck.peak_displacement_m} if dem and stuck else {}),
     )
     one = probe("monolith")

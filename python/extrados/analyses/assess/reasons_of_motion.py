@@ -79,6 +79,8 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
         f"{a.primary_impulse.period_s:.3g} s ({100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared acceleration there): "
         f"under that sine alone the greatest rotation is {100 * sine.peak_rotation_ratio:.0f} % of the critical rotation, under the whole "
         f"motion {100 * whole.peak_rotation_ratio:.0f} %.",
+        sine_amplitude_g=abs(a.primary_impulse.amplitude_g),
+        sine_period_s=a.primary_impulse.period_s,
         sine_rotation_ratio=sine.peak_rotation_ratio,
         motion_rotation_ratio=whole.peak_rotation_ratio,
         goodness_of_fit=a.primary_impulse.goodness_of_fit,
