@@ -7,7 +7,8 @@ from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 
 from extrados.analyses.assess import strategies
-from extrados.analyses.assess.driver import _Work
+from extrados.analyses.assess.conclusion import conclude
+from extrados.analyses.assess.work import Work
 from extrados.analyses.context import Context
 from extrados.decks.reader import make_deck
 from extrados.results.assess import Assess, Reason, StrategyVerdict
@@ -91,10 +92,10 @@ CONTEXT = Context(DECK, 1)
 
 def concluded(table: list[StrategyVerdict], results: dict[str, Result] | None = None) -> Assess:
     """What an assessment makes of rows, and results, that it did not ask for."""
-    work = _Work(CONTEXT, DECK.analyses[0])
+    work = Work(CONTEXT, DECK.analyses[0])
     work.rows, work.results = {row.strategy: row for row in table}, results or {}
     result = Result("assess")
-    work.conclude(result)
+    conclude(work, result)
     assert not work.not_done, work.not_done  # a rule that fails is a fault, though the others go on
     return result.results
 

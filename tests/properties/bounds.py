@@ -6,9 +6,10 @@ import math
 import numpy as np
 from asking import Deck, ask, at_most, must, near
 from buildings import SMALL, SOLIDS, arches, changed, cut, decks, drawn, number, pulses, sections
+from conservation import building
 from hypothesis import reject
 from hypothesis import strategies as st
-from relations import CRACKS, MASONRY, PUSH, RECTANGLES, RIGID, STONES, WEAK, ok, relation, statics
+from relations import CRACKS, GRAVITY, MASONRY, PUSH, RECTANGLES, RIGID, STONES, WEAK, ok, relation, statics
 
 #: What makes a structure of a kind stouter
 STOUT = {
@@ -283,3 +284,32 @@ def a_stiff_base(size: tuple, foundation: str, within: float) -> None:
         capacity.append(answer.results.soft_base.capacity_g)
     near("stiff", capacity[1], width / height, within)
     at_most("soft", capacity[0], capacity[1], 1e-6)
+
+
+@st.composite
+def held_down(draw: st.DrawFn) -> Deck:
+    """A squat hollow block that a rod through its axis holds down; it slides before it rocks."""
+    height, width = draw(number(0.5, 0.8)), draw(number(1.0, 2.0))
+    structure = {"kind": "chimney", "width": width, "height": height, "thickness": 0.3 * width, "rings": 1, "facets": 4}
+    rod = {
+        "name": "rod",
+        "start": [0.0, 0.0, 0.9 * height],
+        "start_stone": "",
+        "ground": [0.0, 0.0, -1.0],
+        "yield_force": draw(number(0.3, 1.0)),
+    }
+    return {"structure": structure, "joints": {"friction": draw(number(0.1, 0.35))}, "ties": [rod]}
+
+
+@relation("strengthen", st.tuples(held_down(), number(0.05, 0.95)), 1e-3)
+def a_target_is_met_by_the_state_without_dilatancy(deck: Deck, share: float, within: float) -> None:
+    """Dilatant sliding stretches the rod, mu (1 + F/W); without dilatancy it is slack, mu. A target between both is not met."""
+    bare = building({k: v for k, v in deck.items() if k != "ties"}).solids()
+    friction, part = deck["joints"]["friction"], deck["ties"][0]["yield_force"]
+    rod = {**deck["ties"][0], "start_stone": bare.block_names[0], "yield_force": part * float(bare.mass.sum()) * GRAVITY}
+    for target, met in ((friction * (1.0 + share * part), False), (friction * (1.0 - share), True)):
+        keys = {"acceleration": f"{target!r} g", "directions": [0.0, 90.0], "ties": [rod | {"name": "another", "yield_force": 1.0}]}
+        found = ask(changed(deck, ties=[rod]), "strengthen", **keys)
+        ok(found)
+        near("the upper bound of a block that a rod holds down", found.results.value_before, friction * (1.0 + part), within)
+        must(found.results.met_before is met, f"target {target} of {friction} and {friction * (1.0 + part)}: {found.results.met_before}")

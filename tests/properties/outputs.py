@@ -13,7 +13,7 @@ from relations import EARTHQUAKES, GRAVITY, ok, relation
 from scipy.optimize import minimize
 from scipy.stats import norm
 
-from extrados.analyses.assess import driver
+from extrados.analyses.assess import budget
 from extrados.analyses.statistics import summaries
 
 
@@ -363,12 +363,12 @@ def an_assessment_ends_at_its_time_limit(deck: Deck, within: float) -> None:
     del deck, within
     asked = changed(ARCH, motion=PULSE)
     whole = ask(asked, "assess", strategies=["tilt", "dem"])
-    kept = driver.STOPPED_AFTER
-    driver.STOPPED_AFTER = 1e-9
+    kept = budget.STOPPED_AFTER
+    budget.STOPPED_AFTER = 1e-9
     try:
         brief = ask(asked, "assess", strategies=["dem", "tilt"], budget=61.0)
     finally:
-        driver.STOPPED_AFTER = kept
+        budget.STOPPED_AFTER = kept
     ok(whole, brief)
     must(all(row.status == "ok" for row in whole.results.verdicts if row.strategy in ("tilt", "dem")), f"{whole.results.verdicts}")
     left = {row.strategy: row for row in brief.results.verdicts}

@@ -5,9 +5,10 @@ from assess_model import CONTEXT, FACTORS, QUICK, TABLES, concluded, rows, state
 from hypothesis import given
 from hypothesis import strategies as st
 
-from extrados.analyses.assess import reasons
+from extrados.analyses.assess import facts as stating
+from extrados.analyses.assess import reasons_of_buildings, reasons_of_motion, reasons_of_statics
 from extrados.analyses.assess.asking import scaled_margin
-from extrados.analyses.assess.reasons import Facts
+from extrados.analyses.assess.facts import Facts
 from extrados.decks.reader import make_deck
 from extrados.results.assess import StrategyVerdict
 from extrados.results.codes import LocalMechanism, WallMechanism
@@ -122,7 +123,7 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
             assert [tuple(p) for p in found.explains] == mine, rule.__name__
             for name, value in numbers.items():
                 assert found.numbers[name] == value, rule.__name__
-            assert found.text[-1] in ".!" and found.rule in reasons.HEADLINES
+            assert found.text[-1] in ".!" and found.rule in stating.HEADLINES
             stated(found)
 
     def alike(a: DemRun, b: DemRun) -> bool:
@@ -134,7 +135,7 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
     both = [p for p in pairs if set(p) <= follow]
     sine = probe("sine")
     told(
-        reasons.sine_for_record,
+        reasons_of_motion.sine_for_record,
         rocking is not None
         and criterion is not None
         and sine is not None
@@ -151,7 +152,7 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
     without = {n for n, there in facts.bare.items() if set(there) == every}
     free = probe("without-restraints")
     told(
-        reasons.left_out,
+        reasons_of_motion.left_out,
         rocking is not None and free is not None and free.peak_rotation_ratio > 1.2 * rocking.peak_rotation_ratio,
         [p for p in pairs if "rocking" in p and set(p) & without],
         **({"rotation_ratio_without": free.peak_rotation_ratio, "rotation_ratio": rocking.peak_rotation_ratio} if free and rocking else {}),
@@ -159,7 +160,7 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
     bare, sla = probe("tilt-without"), facts.rows.get("sla")
     least = None if bare is None else min(bare.collapse_acceleration_g, bare.collapse_acceleration_opposite_g)
     told(
-        reasons.ties_of_statics,
+        reasons_of_statics.ties_of_statics,
         bare is not None
         and sla is not None
         and "tilt" in facts.rows
@@ -169,23 +170,24 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
         **({"without_ties": least, "elements": sla.capacity} if bare and sla and sla.capacity else {}),
     )
     chaotic = dem is not None and dem.decided_by_last_digits
-    told(reasons.elements_of_last_digits, chaotic, [p for p in pairs if "dem" in p])
+    told(reasons_of_motion.elements_of_last_digits, chaotic, [p for p in pairs if "dem" in p])
     share = facts.rows["probability"].demand if "probability" in facts.rows else None
     told(
-        reasons.chance,
+        reasons_of_motion.chance,
         share is not None and 0.05 < share < 0.95,
         [p for p in pairs if "probability" in p and not set(p) & {"tilt", "sla", "push-x", "push-y"}],
     )
+    meshed = ("sla",) if CONTEXT.building.meshed_by_stones else ()  # such elements do not slide either
     stuck, shortest = probe("no-sliding"), float(CONTEXT.building.blocks().length.min())
     told(
-        reasons.sliding,
+        reasons_of_motion.sliding,
         dem is not None and stuck is not None and not chaotic and dem.peak_slip_m >= 0.01 * shortest and not alike(dem, stuck),
-        [p for p in pairs if "dem" in p and set(p) & {"rocking", "assessment", "probability", "tilt"}],
+        [p for p in pairs if "dem" in p and set(p) & {"rocking", "assessment", "probability", "tilt", *meshed}],
         **({"slip_m": dem.peak_slip_m, "displacement_without_sliding_m": stuck.peak_displacement_m} if dem and stuck else {}),
     )
     one = probe("monolith")
     told(
-        reasons.drums,
+        reasons_of_motion.drums,
         dem is not None
         and one is not None
         and not chaotic
@@ -199,12 +201,12 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
     if tilt is not None and sla is not None and sla.capacity is not None and not CONTEXT.building.meshed_by_stones:
         weak, stiff = (min(t.collapse_acceleration_g, t.collapse_acceleration_opposite_g) if t else 0.0 for t in (tilt, held))
         told(
-            reasons.membrane,
+            reasons_of_statics.membrane,
             held is not None and stiff > 1.05 * weak and abs(sla.capacity - stiff) < abs(sla.capacity - weak),
             [p for p in pairs if "sla" in p and set(p) & {"tilt", "dem"}],
             **({"with_sliding": weak, "without_sliding": stiff}),
         )
-    for found in reasons.static_peak(facts, pairs):
+    for found in reasons_of_statics.static_peak(facts, pairs):
         mine = [tuple(p) for p in found.explains]
         assert mine and all(
             p in pairs and facts.split(p)[0] in ("tilt", "sla", "push-x", "push-y") and facts.split(p)[1] in follow for p in mine
@@ -336,7 +338,7 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
         whole = min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g)
         cracked = 0.0 if tilt.fracture.stands is False else tilt.fracture.collapse_acceleration_g
         told(
-            reasons.crack,
+            reasons_of_statics.crack,
             cracked < whole and whole > facts.peak_g,
             [p for p in pairs if weaker(p, "tilt")],
             cracked=cracked,
@@ -344,10 +346,10 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
             peak=facts.peak_g,
         )
     else:
-        told(reasons.crack, False, [])
+        told(reasons_of_statics.crack, False, [])
     with_mortar = {"dem", "sla"} if stones else {"dem"}
     told(
-        reasons.mortar,
+        reasons_of_statics.mortar,
         bool(building.joints.tension),
         [p for p in pairs if facts.split(p)[1] in with_mortar and facts.split(p)[0] not in with_mortar],
         **({"tension": 1e5, "cohesion": 2e5} if building.joints.tension else {}),
@@ -368,18 +370,18 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
         least = min(up if end[0] is None else end[0] for end, up in zip(ends, upper, strict=True))
         slides = any(end[2] and end[0] == least for end in ends)
         told(
-            reasons.sliding_as_collapse,
+            reasons_of_statics.sliding_as_collapse,
             slides and not dem.decided_by_last_digits and dem.outcome != "collapse" and dem.peak_slip_m >= 0.5 * dem.peak_displacement_m,
             [p for p in pairs if "dem" in p and facts.split(p)[0] in (("tilt", "sla") if stones else ("tilt",))],
             **({"static_capacity": least, "slip_m": dem.peak_slip_m} if slides else {}),
         )
-    if "rocking" in facts.results and (mine := reasons.dynamic(pairs, "dem")):
+    if "rocking" in facts.results and (mine := stating.dynamic(pairs, "dem")):
         line = facts.results["rocking"].arrays["thrust_position"].data
         moving = line[~np.isnan(line).all(axis=1)]
         out = np.array([max(max(-x, x - 1.0) for x in row if not np.isnan(x)) for row in moving])
         share = float((out > 0.01).mean()) if len(out) else 0.0
         told(
-            reasons.hinges_elsewhere,
+            reasons_of_motion.hinges_elsewhere,
             len(out) > 0 and share >= 0.1,
             mine,
             **({"share_of_time": share, "farthest_ratio": float(out.max())} if len(out) else {}),
@@ -394,14 +396,14 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
     pushes = {n: reached[n] for p in mine for n in p if n != "code-checks" and reached[n] is not None}
     first = codes.walls[0].multiplier if codes is not None and codes.walls else None
     told(
-        reasons.torn_off,
+        reasons_of_buildings.torn_off,
         first is not None and bool(pushes) and first < min(pushes.values(), default=0.0),
         mine,
         **({"multiplier": first, "whole_g": min(pushes.values())} if first is not None and pushes else {}),
     )
     both = [p for p in pairs if set(p) == {"push-x", "push-y"}]
     areas = {"push-x": 2.0 * 5.0 * 0.4, "push-y": 2.0 * 4.0 * 0.3}
-    found = reasons.weaker_direction(facts, pairs)
+    found = reasons_of_buildings.weaker_direction(facts, pairs)
     want = bool(both) and deck_of(facts) is PLAN and facts.split(both[0])[0] == "push-y"
     assert (found is not None) == want
     if found is not None:

@@ -10,9 +10,9 @@ import pytest
 from test_every_strategy import quick_save
 
 import extrados
-from extrados.analyses.assess import asking, driver, hazard, reasons, sensitivity, strategies
-from extrados.analyses.assess.asking import OutOfTime
-from extrados.analyses.assess.reasons import Facts
+from extrados.analyses.assess import budget, closer, driver, hazard, reasons, sensitivity, strategies, work
+from extrados.analyses.assess.budget import OutOfTime
+from extrados.analyses.assess.facts import Facts
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.changes import read_table
@@ -46,7 +46,7 @@ def deck(**more) -> dict:
 def patient() -> Iterator[None]:
     """On a busy machine the clock would stop what is looked for here."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(driver, "STOPPED_AFTER", 1e6)
+        patch.setattr(budget, "STOPPED_AFTER", 1e6)
         yield
 
 
@@ -90,7 +90,8 @@ def test_the_margin_of_rocking_ends_where_hinges_form_elsewhere(whole: Run) -> N
 
 def test_a_collapse_under_the_hazard_itself_bounds_the_margin_of_rocking(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where scaled motions leave the assumptions first, the run under the hazard is a factor of 1 that causes collapse."""
-    monkeypatch.setattr(driver, "scaled_margin", lambda found: (0.5, None))
+    for module in (driver, closer):
+        monkeypatch.setattr(module, "scaled_margin", lambda found: (0.5, None))
     block, friction = {"kind": "block", "width": 0.6, "height": 6.0}, {"friction": 0.9}
     asked = {"kind": "assess", "budget": 5, "strategies": ["rocking"], "advise": False}
     motion = {**PULSE, "amplitude": "0.6 g", "period": 2.0}
@@ -119,8 +120,8 @@ def test_written_and_drawn(whole: Run, tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_first_table_comes_before_the_costly_strategies(monkeypatch: pytest.MonkeyPatch) -> None:
     order: list[str] = []
-    asked = driver._Work.ask
-    monkeypatch.setattr(driver._Work, "ask", lambda work, s: (order.append(s.name), asked(work, s))[1])
+    asked = work.Work.ask
+    monkeypatch.setattr(work.Work, "ask", lambda going, s: (order.append(s.name), asked(going, s))[1])
     compute(Context(make_deck(deck(assess={"strategies": ["tilt", "dem"]})), tell=lambda text: order.append("table")))
     assert order == ["tilt", "table", "dem"]
 
@@ -168,7 +169,7 @@ def test_a_wrong_key_of_options_refuses_the_strategy_alone() -> None:
 
 
 def test_the_clock_stops_what_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(driver, "STOPPED_AFTER", 0.0)
+    monkeypatch.setattr(budget, "STOPPED_AFTER", 0.0)
     r = extrados.run(deck(assess={"strategies": ["tilt", "dem"], "options": {"dem": {"time_step": 1e-6}}}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["dem"].status == "left out" and "stopped" in rows["dem"].reason
@@ -203,15 +204,15 @@ def test_an_unexplained_contradiction_is_checked_finer(monkeypatch: pytest.Monke
 
 def test_a_finer_check_with_another_outcome_opens_the_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reasons, "RULES", ())
-    probe = driver._Work._probe
+    probe = work.Work.probe
 
-    def other(work, strategy, changed, kind, keys, *rest, **more):
-        found = probe(work, strategy, changed, kind, keys, *rest, **more)
+    def other(going, strategy, changed, kind, keys, *rest, **more):
+        found = probe(going, strategy, changed, kind, keys, *rest, **more)
         if changed == "half the time step":
-            work.probes[-1] = work.probes[-1].model_copy(update={"outcome": "collapses"})
+            going.probes[-1] = going.probes[-1].model_copy(update={"outcome": "collapses"})
         return found
 
-    monkeypatch.setattr(driver._Work, "_probe", other)
+    monkeypatch.setattr(work.Work, "probe", other)
     r = extrados.run(deck(motion={**PULSE, "amplitude": "0.6 g"}, assess={"strategies": ["tilt", "dem"]}))["assess"]
     row = next(v for v in r.verdicts if v.strategy == "dem")
     assert row.outcome == "open" and row.violated == ["A finer check gives another outcome: half the time step (collapses)."]
@@ -231,11 +232,11 @@ def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
 def test_the_stopwatch_leaves_out_the_time_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """Idle, 60 s of one thread; 60 s of four threads; of a machine that gives a fifth; of a child process that is waited for."""
     now = {"clock": 5.0, "processor": 3.0}
-    monkeypatch.setattr(asking.time, "monotonic", lambda: now["clock"])
-    monkeypatch.setattr(asking.time, "process_time", lambda: now["processor"])
+    monkeypatch.setattr(budget.time, "monotonic", lambda: now["clock"])
+    monkeypatch.setattr(budget.time, "process_time", lambda: now["processor"])
     for clock, processor, counted in ((60.0, 60.0, 60.0), (60.0, 240.0, 60.0), (60.0, 12.0, 12.0), (60.0, 0.0, 6.0)):
         now.update(clock=5.0, processor=3.0)
-        watch = asking.Stopwatch()
+        watch = budget.Stopwatch()
         now.update(clock=5.0 + clock, processor=3.0 + processor)
         assert watch() == pytest.approx(counted)
 
@@ -525,7 +526,7 @@ def test_a_strategy_that_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch
         raise ZeroDivisionError("planted")
 
     monkeypatch.setattr(strategies, "ALL", tuple(replace(s, choose=breaks) if s.name == "sla" else s for s in strategies.ALL))
-    monkeypatch.setattr(driver._Work, "refine", breaks)
+    monkeypatch.setattr(driver, "refine", breaks)
     monkeypatch.setattr(reasons, "RULES", (breaks, *reasons.RULES))
     run = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "sla"]}))
     r = run["assess"]
@@ -567,7 +568,7 @@ def test_the_budget_holds_the_sensitivity_and_keeps_what_was_moved(monkeypatch: 
         asked(margins, wanted)
 
     monkeypatch.setattr(sensitivity.Margins, "ask", ask)
-    monkeypatch.setattr(driver, "STOPPED_AFTER", 1.0)
+    monkeypatch.setattr(budget, "STOPPED_AFTER", 1.0)
     block = {"kind": "block", "width": 1.0, "height": 5.0}
     given = {"strategies": ["tilt"], "vary": {"structure.width": 0.1}, "advise": False}
     run = extrados.run({"structure": block, "motion": PULSE, "analysis": {"kind": "assess", "budget": 60, **given}})["assess"]
@@ -606,15 +607,15 @@ def test_what_only_elements_know_is_tried_on_them() -> None:
 
 def test_where_elements_turn_is_sought_between_what_stands_and_what_falls(monkeypatch: pytest.MonkeyPatch) -> None:
     """Elements that fall by decree where joints are softer than half: found by halvings of the logarithm."""
-    probed = driver._Work._probe
+    probed = work.Work.probe
 
-    def decreed(work: driver._Work, strategy: str, changed: str, kind: str, keys: dict, *rest, **more) -> Result | None:
-        found = probed(work, strategy, changed, kind, keys, *rest, **more)
+    def decreed(going: work.Work, strategy: str, changed: str, kind: str, keys: dict, *rest, **more) -> Result | None:
+        found = probed(going, strategy, changed, kind, keys, *rest, **more)
         if "as stiff" in changed and float(changed.split()[1]) < 0.5:
             found = replace(found, results=found.results.model_copy(update={"outcome": "collapse"}))
         return found
 
-    monkeypatch.setattr(driver._Work, "_probe", decreed)
+    monkeypatch.setattr(work.Work, "probe", decreed)
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.25, "embrace": 150.0, "voussoirs": 6}
     r = extrados.run(deck(structure=arch, assess={"strategies": ["dem"], "vary": {"material.density": 0.1}}))["assess"]
     row = next(m for m in r.sensitivity if m.key == "joints.normal_stiffness")
@@ -623,14 +624,14 @@ def test_where_elements_turn_is_sought_between_what_stands_and_what_falls(monkey
 
 
 def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = driver._Work.ask
+    asked = work.Work.ask
 
-    def stopped(work: driver._Work, strategy: strategies.Strategy) -> Result | None:
+    def stopped(going: work.Work, strategy: strategies.Strategy) -> Result | None:
         if strategy.name == "dem":
-            raise driver.Interrupted
-        return asked(work, strategy)
+            raise budget.Interrupted
+        return asked(going, strategy)
 
-    monkeypatch.setattr(driver._Work, "ask", stopped)
+    monkeypatch.setattr(work.Work, "ask", stopped)
     (first, *parts) = extrados.run(deck(assess={"strategies": ["tilt", "dem"]})).analyses
     assert first["status"] == "interrupted" and [p["name"] for p in parts] == ["tilt"]
     assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"]["outcome"] == "collapses"

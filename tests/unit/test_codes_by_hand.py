@@ -1,6 +1,7 @@
 """Rules of codes against hand calculation by another route, and [code] as a table."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from extrados.decks.reader import DeckError, make_deck
 from extrados.motions.code_spectra import nzs1170
 from extrados.schema.code import Code, return_factor
 from extrados.schema.constants import GRAVITY
+from extrados.show import style
+from extrados.show.codes import draw_local_mechanism
 
 WALL = {"kind": "local-mechanism", "mechanism": "wall", "height": 3.0, "thickness": 0.5}
 
@@ -319,3 +322,56 @@ def test_the_limits_of_asce_41_by_seismicity_and_limit_state() -> None:
     wall = Part("vertical-bending", 0.5, 3.9, 0.3, 0.0, None, anchored=True)
     assert asce41(wall, 0.15 * GRAVITY, "top")[0].verdict == "holds"
     assert asce41(wall, 0.15 * GRAVITY, "top", state="IO")[0].verdict == "not-applicable"
+
+
+@pytest.mark.parametrize(
+    ("keys", "joined"),
+    [
+        ({"mechanism": "facade", "height": 6.0, "thickness": 0.5, "hinge_height": 1.0}, {}),
+        (
+            {"mechanism": "vertical-bending", "height": 3.0, "thickness": 0.3, "floors": [{"height": 3.0, "load": 20e3}]},
+            {1: ("lower", "upper")},
+        ),
+        (
+            {"mechanism": "horizontal-bending", "height": 1.0, "thickness": 0.4, "width": 5.0, "abutment_force": 20e3},
+            {1: ("left", "right")},
+        ),
+    ],
+)
+def test_the_drawn_bodies_are_rigid_and_meet_at_their_hinges(keys: dict, joined: dict) -> None:
+    """Sides keep their lengths, two bodies share the hinge between them."""
+    run = extrados.run({"material": {"density": 1800.0}, "analysis": {"kind": "local-mechanism", "peak_acceleration": "0.1 g", **keys}})
+
+    def outlines(what: str) -> dict[str, np.ndarray]:
+        points, start, names = (run.arrays["local-mechanism"][f"{what}{end}"].data for end in ("", "_start", "_of"))
+        return {str(n): points[a:b] for n, a, b in zip(names, start[:-1], start[1:], strict=True)}
+
+    rest, turned = outlines("section"), outlines("section_turned")
+    hinges = run.arrays["local-mechanism"]["section_hinge"].data
+    for name, outline in rest.items():
+        sides = [np.linalg.norm(p - np.roll(p, 1, axis=0), axis=1) for p in (outline, turned[name])]
+        assert sides[1] == pytest.approx(sides[0], abs=1e-12)
+    for k, pair in joined.items():
+        for name in pair:
+            assert np.linalg.norm(turned[name] - hinges[k], axis=1).min() < 1e-9, name
+    assert max(np.abs(turned[n] - rest[n]).max() for n in rest) > 0.02
+    assert "below" not in rest or (turned["below"] == rest["below"]).all(), "the wall below the hinge is at rest"
+
+
+def test_the_first_page_shows_the_governing_wall_of_a_plan() -> None:
+    walls = [
+        {"name": "front", "start": [0, 0], "end": [6, 0], "thickness": 0.4},
+        {"name": "thin", "start": [6, 5], "end": [0, 5], "thickness": 0.2},
+    ]
+    plan = {"kind": "building", "storeys": [3.0], "walls": walls}
+    run = extrados.run(
+        {
+            "structure": plan,
+            "code": {"jurisdiction": "NTC", "accelerations": ["0.15 g"]},
+            "analysis": {"kind": "local-mechanism", "mechanism": "building"},
+        }
+    )
+    assert run["local-mechanism"].walls[0].wall == "thin"
+    with style.kept():
+        drawn = draw_local_mechanism(run, "local-mechanism", Path("."))
+    assert drawn[0][0].endswith("-mechanism") and "about the foot of storey 1" in drawn[0][1]

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from extrados.analyses.assess.reasons import HEADLINES, RULES, Facts, explained
+from extrados.analyses.assess.facts import HEADLINES, Facts
+from extrados.analyses.assess.reasons import RULES, explained
 from extrados.decks.reader import make_deck
 from extrados.model.structures.plan import Plan
 from extrados.motions import pulses

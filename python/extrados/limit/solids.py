@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import clarabel
 import highspy
@@ -21,7 +21,7 @@ from scipy import sparse
 from extrados.core.threads import Worker
 from extrados.limit.certificate import Certificate, certify_solids
 from extrados.limit.contact_points import ContactPoints, SlidingState
-from extrados.limit.errors import Immovable, NoAnswer
+from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.strands import Strand
@@ -71,6 +71,34 @@ class Falls:
     motion: np.ndarray
     power: float
     overlap: float
+
+
+@dataclass(frozen=True)
+class _Stated:
+    """A programme: least cost x with right - matrix x within the cones. lines: column of the matrix of forces that each row after the
+    first is the rate of, -1 for a bound (of a sliding corner the opening is over mu). sized: of each unknown that bounds the
+    lengthening of a strand that is sized its number, else -1."""
+
+    matrix: sparse.csr_array
+    cost: np.ndarray
+    right: np.ndarray
+    cones: list[Any]
+    lines: np.ndarray
+    sized: np.ndarray
+
+
+def _conic(matrix: sparse.csr_array, cost: np.ndarray, right: np.ndarray, cones: list[Any], method: str) -> "clarabel.DefaultSolution":
+    """The solution of a conic programme, see _Stated."""
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_iter = 200
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
+    settings.tol_infeas_abs = settings.tol_infeas_rel = 1e-9
+    settings.max_threads = 1
+    settings.direct_solve_method = method
+    nothing = sparse.csc_array((len(cost), len(cost)))
+    solver = clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, settings)
+    return _waited(solver.solve)[0]
 
 
 class SolidLimit:
@@ -222,6 +250,39 @@ class SolidLimit:
             return np.inf
         raise NoAnswer(f"the conic solver found no least force: {status}")
 
+    def least_forces(self, directions: Sequence[float], gamma: float, ties: Sequence[Sequence[int]], most: np.ndarray) -> np.ndarray:
+        """Yield forces [N] (ties) of least sum with which the blocks carry all weights pushed by gamma [g] along each direction [deg],
+        in one programme. ties: numbers of the strands of each, which have no limits of their own; most: greatest forces [N].
+
+        The dual, as in least_force: the motions of all directions, where the lengthening of a tie in all of them together is at most
+        one, or beyond it costs the greatest force. NoEquilibrium where no forces suffice, NoAnswer where the solver gives up.
+        """
+        sized = [k for group in ties for k in group]
+        cases = []
+        for direction in directions:
+            dead, live = self.ways(direction)
+            cases.append(self._stated(dead + gamma * live, None, sized))
+        among = [np.concatenate([np.isin(one.sized, group).astype(float) for one in cases]) for group in ties]
+        limited = np.flatnonzero(np.isfinite(most))
+        beyond = sparse.csr_array((-np.ones(len(limited)), (limited, np.arange(len(limited)))), shape=(len(ties), len(limited)))
+        moves = sparse.block_diag([one.matrix for one in cases], format="csr")
+        none = sparse.csr_array((moves.shape[0], len(limited)))
+        slack = sparse.hstack([sparse.csr_array((len(limited), moves.shape[1])), -sparse.eye_array(len(limited))])
+        matrix = sparse.vstack([sparse.hstack([moves, none]), slack, sparse.hstack([sparse.csr_array(np.array(among)), beyond])])
+        cost = np.concatenate([*(one.cost for one in cases), most[limited] / self.scale])
+        right = np.concatenate([*(one.right for one in cases), np.zeros(len(limited)), np.ones(len(ties))])
+        cones = [cone for one in cases for cone in one.cones] + [clarabel.NonnegativeConeT(len(limited) + len(ties))]
+        status = ""
+        for method in METHODS:
+            solution = _conic(matrix, cost, right, cones, method)
+            status, forces = str(solution.status), np.array(solution.z)[len(right) - len(ties) :]
+            total, bound = float(forces.sum()), -float(solution.obj_val)
+            if np.isfinite(total) and abs(total - bound) <= LOOSE * max(1.0, bound):
+                return np.maximum(forces, 0.0) * self.scale
+            if "DualInfeasible" in status:
+                raise NoEquilibrium("no forces of these ties suffice")
+        raise NoAnswer(f"the conic solver found no least forces: {status}")
+
     def contact_points(self, direction: float) -> ContactPoints:
         """Corners of the contacts and dowels as points of contact under a push along a direction [deg]."""
         dead, live = self.ways(direction)
@@ -330,14 +391,22 @@ class SolidLimit:
     def _solved(
         self, dead: np.ndarray, live: np.ndarray | None, method: str, sized: Sequence[int] = ()
     ) -> "tuple[clarabel.DefaultSolution, np.ndarray]":
+        """The programme of the motion, solved, and the column of each of its rows, see _stated. The lengthening of the strands that
+        are `sized` is together bounded by one, by a row at the very end whose multiplier is their force."""
+        one = self._stated(dead, live, sized)
+        if (one.sized < 0).all():
+            return _conic(one.matrix, one.cost, one.right, one.cones, method), one.lines
+        matrix = sparse.vstack([one.matrix, sparse.csr_array((one.sized >= 0).astype(float)[None])])
+        cones = [*one.cones, clarabel.NonnegativeConeT(1)]
+        return _conic(matrix, one.cost, np.append(one.right, 1.0), cones, method), np.append(one.lines, -1)
+
+    def _stated(self, dead: np.ndarray, live: np.ndarray | None, sized: Sequence[int] = ()) -> "_Stated":
         """The programme of the motion: least power of the weights lifted, less what dowels take, with a power of the push of
         one and contacts that open mu times as fast as they slide. Its multipliers are the forces.
 
         Without a push the motion is bounded instead, each rate by one: then it is the one by which the weights fall most.
-        It has a sixth of the unknowns of the programme of the forces, whose dual it is. Returns the solution, and the column
-        of the matrix that each row after the first is the rate of, -1 for a bound; a sliding corner's opening is over mu.
-        The last rows are the limits of the strands, see _limits. With strands that are `sized` their lengthening together is
-        bounded by one in place of the motion, by a row at the very end whose multiplier is their force.
+        It has a sixth of the unknowns of the programme of the forces, whose dual it is. The last rows are the limits of the
+        strands, see _limits. With strands that are `sized` nothing bounds the motion: a row on their lengthening has to.
         """
         corners, rates = len(self.mu), self.matrix.T.tocsr()
         slides = np.flatnonzero((self.mu > 0.0) & np.isfinite(self.mu))
@@ -382,6 +451,7 @@ class SolidLimit:
             cones.append(clarabel.NonnegativeConeT(2 * len(dead)))
             lines = np.concatenate([lines, np.full(2 * len(dead), -1)])
         strand, sense, most = self._limits
+        number = np.full(len(cost), -1)
         if len(strand):  # what each lengthens beyond an unknown that costs its strength is nothing
             free = np.isin(strand, sized)
             yields = np.flatnonzero(np.isfinite(most) | free)
@@ -393,18 +463,11 @@ class SolidLimit:
             matrix = sparse.hstack([matrix, sparse.csr_array((matrix.shape[0], len(yields)))])
             matrix = sparse.vstack([matrix, slack, sparse.hstack([-rate, -bound])])
             cones.append(clarabel.NonnegativeConeT(len(yields) + len(strand)))
-            together = np.concatenate([np.zeros(len(cost)), free[yields].astype(float)])
+            number = np.concatenate([np.full(len(cost), -1), np.where(free[yields], strand[yields], -1)])
             cost = np.concatenate([cost, np.where(free, 0.0, most)[yields]])
             right = np.concatenate([right, np.zeros(len(yields) + len(strand))])
             lines = np.concatenate([lines, np.full(len(yields) + len(strand), -1)])
-            if free.any():
-                matrix = sparse.vstack([matrix, sparse.csr_array(together[None])])
-                cones.append(clarabel.NonnegativeConeT(1))
-                right = np.append(right, 1.0)
-                lines = np.append(lines, -1)
-        nothing = sparse.csc_array((len(cost), len(cost)))
-        solver = clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, _settings(method))
-        return _waited(solver.solve)[0], lines
+        return _Stated(matrix, cost, right, cones, lines, number)
 
     @cached_property
     def _limits(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -14,7 +14,7 @@ import numpy as np
 import tomlkit
 
 from extrados import kinds
-from extrados.analyses.assess.asking import ENDING
+from extrados.analyses.assess.budget import ENDING
 from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context

@@ -45,7 +45,7 @@ KNOWLEDGE = {
 IMPORTANCE = {"NTC": {"I": 0.7, "II": 1.0, "III": 1.5, "IV": 2.0}, "EN1998": {"I": 0.8, "II": 1.0, "III": 1.2, "IV": 1.4}}
 #: NTC 2018 Table 3.2.I: probability of exceedance in the reference life V_R
 EXCEEDED = {"SLO": 0.81, "SLD": 0.63, "SLV": 0.10, "SLC": 0.05}
-#: NZS 1170.5 Table 3.5 (verify clause): return period [years], factor R
+#: NZS 1170.5 Table 3.5, read in two public implementations: return period [years], factor R
 RETURN_FACTOR = (
     (20.0, 0.2),
     (25.0, 0.25),

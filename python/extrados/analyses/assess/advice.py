@@ -11,7 +11,7 @@ from extrados.schema.quantities import engineering
 OUTCOMES = {"no-hinging": "does not rock", "recovery": "rocks and recovers", "collapse": "collapses"}
 
 
-def advise(asker: Asker, peak_g: float, rocks: bool) -> Advice | str:
+def size_interventions(asker: Asker, peak_g: float, rocks: bool) -> Advice | str:
     """Interventions that carry the peak of the hazard, with the outcome of rocking; why there are none, in words."""
     dropped = tuple(what for what in asker.cannot_bear("tilt") if what != "[supports] abutting_wall")
     if dropped:

@@ -1,7 +1,6 @@
 """Ask a strategy: the deck of one part, run by the driver of its kind, and the row of the table that it gives."""
 
 import copy
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -9,9 +8,9 @@ from typing import Any
 import tomlkit
 
 from extrados import interrupts, kinds
+from extrados.analyses.assess.budget import Interrupted, OutOfTime
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.assess.strategies import Strategy
-from extrados.analyses.batches import Unfinished
 from extrados.analyses.changes import lacking
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
@@ -19,7 +18,6 @@ from extrados.analyses.limit.self_weight import neglecting
 from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.core.calls import within
-from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.errors import WHOLE
 from extrados.results.assess import RowStatus, StrategyVerdict
@@ -30,37 +28,6 @@ from extrados.results.shell import Pushover
 from extrados.results.sla import Sla
 from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.verdict import Outcome, SelfWeight, judge_acceleration
-
-#: Strategies are stopped after this many budgets
-STOPPED_AFTER = 1.0
-#: Least share of the time on the clock that counts, however loaded the machine is
-SHARED = 0.1
-
-
-class Stopwatch:
-    """Seconds of computing since the start: those of the clock, but those of the processor where other programs share it.
-
-    A share of the clock always counts, because processes that this one waits for have time of their own.
-    """
-
-    def __init__(self) -> None:
-        self.begun = time.monotonic(), time.process_time()
-
-    def __call__(self) -> float:
-        clock, processor = time.monotonic() - self.begun[0], time.process_time() - self.begun[1]
-        return min(clock, max(processor, SHARED * clock))
-
-
-class Interrupted(Exception):
-    """The user has asked for the end."""
-
-
-class OutOfTime(Exception):
-    """The time limit has stopped a strategy."""
-
-
-#: Errors that end a whole assessment; any other ends one strategy
-ENDING = (Interrupted, Cancelled, Unfinished, MemoryError)
 
 
 @dataclass

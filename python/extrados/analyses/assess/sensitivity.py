@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from extrados import interrupts, kinds
-from extrados.analyses.assess.asking import Asker, OutOfTime
+from extrados.analyses.assess.asking import Asker
+from extrados.analyses.assess.budget import OutOfTime
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.changes import changed, lacking

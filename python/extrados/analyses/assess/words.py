@@ -1,6 +1,6 @@
 """What an assessment says: the table of verdicts as text, and one overall statement."""
 
-from extrados.analyses.assess.reasons import Facts, Pair
+from extrados.analyses.assess.facts import Facts, Pair
 from extrados.results.assess import Overall, Reason, StrategyVerdict, TurningValue
 from extrados.results.verdict import Outcome, outcome_words
 

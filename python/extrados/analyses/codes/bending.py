@@ -11,6 +11,7 @@ from extrados.model.errors import BadGeometry
 
 #: The crack of vertical bending lies at least this part of the height from foot and top
 LEAST_PART = 0.05
+Carried = Callable[[float, float], tuple[float, float]]
 #: Rotations at which the end of a capacity curve is looked for
 STEPS = 721
 
@@ -50,8 +51,9 @@ class VerticalBending:
         lower = self.weight * self.crack / self.height
         return lower, self.weight - lower
 
-    def places(self, rotation: float) -> tuple[np.ndarray, np.ndarray]:
-        """Horizontal and vertical positions [m] of both centres and of the top at a rotation of the lower body [rad]; +x outward."""
+    def carried(self, rotation: float) -> tuple[Carried, Carried]:
+        """Where a point (x, y) [m] of the lower and of the upper body lies at a rotation of the lower body [rad]; +x outward, the outer face at
+        0."""
         q = rotation
         t, h1, h2 = self.thickness, self.crack, self.height - self.crack
         foot, inner = -self.setback[0], -t + self.setback[1]
@@ -69,7 +71,13 @@ class VerticalBending:
         def upper(x: float, y: float) -> tuple[float, float]:
             return bx + (x - inner) * cp - (y - h1) * sp, by + (x - inner) * sp + (y - h1) * cp
 
-        found = np.array([lower(-0.5 * t, 0.5 * h1), upper(-0.5 * t, h1 + 0.5 * h2), upper(-self.arm, self.height)])
+        return lower, upper
+
+    def places(self, rotation: float) -> tuple[np.ndarray, np.ndarray]:
+        """Horizontal and vertical positions [m] of both centres and of the top at a rotation of the lower body [rad]; +x outward."""
+        lower, upper = self.carried(rotation)
+        middle, h1 = -0.5 * self.thickness, self.crack
+        found = np.array([lower(middle, 0.5 * h1), upper(middle, 0.5 * (h1 + self.height)), upper(-self.arm, self.height)])
         return found[:, 0], found[:, 1]
 
     def rates(self, rotation: float) -> tuple[np.ndarray, np.ndarray]:

@@ -138,7 +138,8 @@ def n2_factor(oscillator: Oscillator, spectrum: Spectrum, corner: float, capacit
 
 
 def annex_b_oscillator(curve: CapacityCurve, until: float) -> Oscillator | None:
-    """The oscillator of EN 1998-1 Annex B (verify clause): F_y* the greatest force up to d_m*, d_y* = 2 (d_m* - E_m*/F_y*).
+    """The oscillator of EN 1998-1 Annex B (read in prEN 1998-1:2003, Eqs B.1 to B.6): F_y* the greatest force up to d_m*, d_y* = 2
+    (d_m* - E_m*/F_y*).
     until: d_m* [m]. None where that has no elastic part."""
     gamma = curve.participation
     d, p = cut_at(curve.displacement / gamma, curve.force / gamma, until)

@@ -2,7 +2,7 @@
 
 Clauses marked "verify clause" are quoted from memory of the standards: compare with the text before use. The others were
 read: the Circolare in its text, ASCE 41-13 in the worked example of *Advanced Design Examples of Seismic Retrofit of
-Structures*, section 2.7.5, whose equations are quoted, NZS 1170.5 in a public implementation.
+Structures*, section 2.7.5, whose equations are quoted, NZS 1170.5 in public implementations, Annex B of EN 1998-1 in prEN 1998-1:2003.
 """
 
 from dataclasses import dataclass, field

@@ -11,10 +11,11 @@ from extrados.analyses.codes.code_rules import Line, table
 from extrados.analyses.codes.kinematics import Capacity, NoMechanism, Overturning, capacity, in_chain, spectral
 from extrados.analyses.codes.mechanisms import FREE_TO_VIBRATE, body_of
 from extrados.analyses.codes.parts import Part, asce41, en1998, nzsee
+from extrados.analyses.codes.sections import body_outlines, plan_outlines
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.codes.walls import WallPart, wall_parts
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.common import collapse_beside, limit_of
+from extrados.analyses.limit.common import collapse_beside, limit_of, packed
 from extrados.analyses.limit.tables import Tilt
 from extrados.core import mechanism as core_mechanism
 from extrados.core.restraints import FREE
@@ -112,7 +113,23 @@ def run(context: Context, options: LocalMechanism) -> Result:
     judged = [_judged(context, options, turning) for turning in turnings]
     context.warnings = list(dict.fromkeys(context.warnings))  # what goes for one goes for the others
     judged.sort(key=lambda j: (np.inf if (least := j.results.least()) is None else least, j.results.activation_acceleration_g))
-    return _of_walls(context, judged) if on_plan else _result(judged[0])
+    result = _of_walls(context, judged) if on_plan else _result(judged[0])
+    result.arrays |= _drawn(building, options, None if on_plan else judged[0].turning.body)
+    return result
+
+
+def _drawn(building: Building, options: LocalMechanism, body: Overturning | Bending | None) -> dict[str, Array]:
+    """What the picture shows: the bodies that turn, or the walls of a plan; nothing of stones, which limit analysis draws."""
+    if body is not None:
+        rest, turned, hinge = body_outlines(options, body)
+        return {
+            **packed("section", rest, "m", "bodies of the mechanism at rest"),
+            **packed("section_turned", turned, "m", "the same at the rotation of the picture"),
+            "section_hinge": Array(hinge, ("section_hinges", "axis"), "m", "hinges of the mechanism at that rotation"),
+        }
+    if isinstance(building.structure, Plan):
+        return packed("plan_wall", plan_outlines(building.structure), "m", "walls on the plan")
+    return {}
 
 
 def _on_floor(options: LocalMechanism, below: FloorBelow) -> LocalMechanism:

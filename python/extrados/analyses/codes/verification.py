@@ -38,7 +38,11 @@ DRAWN = np.linspace(0.0, 2.0, 201)
 #: Default method of each code
 METHODS: dict[str, out.Method] = {"ASCE41": "coefficient"}
 DEMAND_CLAUSES = {
-    "N2": {"NTC": "NTC 2018 7.8.1.6, [C7.3.8], [C7.3.9]", "EN1998": "EN 1998-1 Annex B (verify clause)", "NZSEE": "N2 (verify clause)"},
+    "N2": {
+        "NTC": "NTC 2018 7.8.1.6, [C7.3.8], [C7.3.9]",
+        "EN1998": "EN 1998-1 Annex B, by prEN 1998-1:2003",
+        "NZSEE": "N2 (verify clause)",
+    },
     "capacity-spectrum": {"NTC": "[C7.3.10]"},
     "coefficient": {"ASCE41": "ASCE 41-13 Eq. 7-28 (verify clause)"},
 }

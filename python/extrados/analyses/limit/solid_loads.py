@@ -16,11 +16,11 @@ from extrados.views.building import Building
 from extrados.views.solids.strands import strand_names
 
 
-def solid_limit(building: Building, options: Tilt) -> SolidLimit:
+def solid_limit(building: Building, options: Tilt, beams: np.ndarray | None = None) -> SolidLimit:
     """The programmes of a building's blocks with its ties and the loads of an analysis; loads that sway rest on the blocks
-    as fill does."""
+    as fill does, and so do `beams` (n, 5): block, mass [kg] and place [m] of parts of ring beams."""
     assembly = building.solids()
-    fill, resting = [assembly.fill], np.zeros((len(assembly.mass), 6))
+    fill, resting = [assembly.fill, np.empty((0, 5)) if beams is None else beams], np.zeros((len(assembly.mass), 6))
     for k, load in enumerate(options.load):
         block, point = place_of(assembly, load, k)
         force = np.array([load.horizontal, 0.0, 0.0 if load.sways else -load.force])

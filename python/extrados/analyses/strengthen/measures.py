@@ -30,6 +30,8 @@ from extrados.views.building import Building
 
 #: Of the greatest capacity: where a tie that never yields is taken to have reached it
 REACHED = 1e-6
+#: Of the target: rounding of the bisection that raises a force until it is met without dilatancy
+SLACK = 1e-3
 #: Hinges and sliding joints that are named
 MOST_NAMED = 6
 #: Keys of an analysis that limit analysis takes from this table
@@ -301,6 +303,31 @@ class Runs:
 
 
 Measure = Statics | Runs
+
+
+def reached(measure: Measure, worth: Worth) -> bool:
+    """Whether a value meets the target."""
+    if worth.value is None or np.isnan(worth.value):
+        return False
+    return worth.value >= measure.target if measure.higher_is_safer else worth.value <= measure.target
+
+
+def meets(measure: Measure, worth: Worth) -> bool:
+    """Whether a value meets the target, and the least state without dilatancy too, where one was sought beside an upper bound."""
+    return reached(measure, worth) and (worth.beside is None or worth.beside > (1.0 - SLACK) * measure.target)
+
+
+def over_demand(value: float | None, demand: float | None) -> float | None:
+    """The safety factor of a value; None without a demand."""
+    return None if value is None or not demand else value / demand
+
+
+def safest(measure: Measure, values: list[float]) -> float | None:
+    """The greatest value, of a probability the least; None without any."""
+    known = [v for v in values if np.isfinite(v)]
+    if not known:
+        return None
+    return max(known) if measure.higher_is_safer else min(known)
 
 
 def nested(context: Context, deck: Deck) -> Context:

@@ -16,6 +16,8 @@ from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.limit.strengthening import Point
 from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND
+from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
 #: Directions in plan of the load where the deck names none [deg]
@@ -36,6 +38,7 @@ class SpaceStatics(Statics):
         super().__init__(context, options, False)
         self.senses: tuple[float, ...] = tuple(options.directions) or AROUND
         self.smooth, self.reached = True, REACHED
+        self.beams = np.empty((0, 5))
 
     def of(self, building: Building, picture: bool = False) -> Worth:
         """The capacity and what governs; picture: also the mechanism carried on."""
@@ -86,8 +89,20 @@ class SpaceStatics(Statics):
         return min(values, default=None)
 
     def carrying(self, one: TieAlternative, place: int) -> "SpaceStatics":
-        """Itself: in space no weight is added with a tie."""
-        return self
+        """Itself with a ring beam along the strands of a tie: its weight is even along them and rests on the blocks at their points."""
+        if not one.beam_weight:
+            return self
+        strands = self.context.building.having(ties=(one.places[place],)).strands()
+        whole, rows = sum(strand.length for strand in strands), []
+        for strand in strands:
+            for ends in strand.segments:
+                length = float(np.linalg.norm(strand.point[ends[1]] - strand.point[ends[0]]))
+                for k in ends:
+                    half = 0.5 * one.beam_weight / GRAVITY * length / whole / len(strand.blocks[k])
+                    rows += [(block, half, *strand.point[k]) for block in strand.blocks[k] if block != GROUND]
+        loaded = SpaceStatics(self.context, self.options)
+        loaded.beams = np.array(rows)
+        return loaded
 
     def point(self, one: TieAlternative, place: int, force: float) -> Point:
         """A point of the capacity curve over the yield force; Immovable where nothing moves."""
@@ -120,8 +135,12 @@ class SpaceStatics(Statics):
         return needed if needed <= one.most else np.inf
 
     def forces(self, ties: list[tuple[TieAlternative, int]], target: float) -> np.ndarray:
-        """Not in space: the combination of ties is sized in plane sections."""
-        raise NoEquilibrium("combinations of ties are sized in plane sections alone")
+        """Yield forces [N] of least sum with which the blocks carry the target along all directions, by one cone programme."""
+        building = self.context.building
+        added = tuple(one.places[place].model_copy(update={"yield_force": None}) for one, place in ties)
+        limit = self._limit(building.having(ties=(*building.ties, *added)))
+        groups = [[k for k, s in enumerate(limit.strands) if s.tie == len(building.ties) + n] for n in range(len(ties))]
+        return limit.least_forces(self.senses, target, groups, np.array([one.most for one, _ in ties]))
 
     def unlimited(self, one: TieAlternative, place: int) -> float | None:
         """The capacity with a tie that never yields; None where it leaves no mechanism."""
@@ -150,7 +169,7 @@ class SpaceStatics(Statics):
 
     def _limit(self, building: Building) -> SolidLimit:
         building.refuse_weightless(building.solids())
-        return solid_limit(building, Tilt.model_construct(load=self.options.load))
+        return solid_limit(building, Tilt.model_construct(load=self.options.load), self.beams)
 
     def _pushed(self, limit: SolidLimit, sense: float) -> Programme:
         """Collapse along a direction; NoEquilibrium where the blocks do not stand at rest."""
@@ -176,10 +195,6 @@ def refuse_in_space(context: Context, options: Strengthen) -> None:
         "compressive_strength: limit analysis in space neglects crushing": (
             context.building.material.compressive_strength is not None,
             ("material", "compressive_strength"),
-        ),
-        "beam_weight: is considered in plane sections; in space add a load that sways": (
-            any(tie.beam_weight for tie in options.ties),
-            ("analysis", "ties"),
         ),
     }
     for text, (there, key) in wrong.items():

@@ -66,7 +66,9 @@ class TieOption(Tie):
     )
     anchorage: Anchorage | None = key(None, "strengths of bar and anchorage, for their checks")
     beam_weight: Force | None = key(
-        None, "weight of a ring beam along the tie: half of it rests on the block at each end and sways with it", gt=0
+        None,
+        "weight of a ring beam along the tie, which sways with it: half rests on the block at each end, of a hoop it is even along the hoop",
+        gt=0,
     )
 
     @property
