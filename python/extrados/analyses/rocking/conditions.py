@@ -14,6 +14,7 @@ from extrados.results.rocking import Conditions, JointTime
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.rocker import Rocker
 from extrados.views.rockers.soft_base import SoftBaseModel
+from extrados.views.rockers.stack import StackModel
 from extrados.views.rockers.watch import LOST, Watch
 
 #: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
@@ -41,6 +42,8 @@ def astray_of(rocker: Rocker) -> float:
 def not_checked(rocker: Rocker) -> str:
     """Why the joints are not checked, or not all; "" where they are."""
     watch = rocker.watch
+    if isinstance(rocker.model, StackModel):
+        return ""
     if isinstance(rocker.model, SoftBaseModel):
         return "Friction is not checked: the base is compliant."
     if watch is None:
@@ -55,8 +58,10 @@ def not_checked(rocker: Rocker) -> str:
     return ""
 
 
-def friction_of(watch: Watch) -> float:
-    """The least coefficient of friction of its joints."""
+def friction_of(watch: Watch | Rocker) -> float:
+    """The least coefficient of friction of its joints; of two stacked blocks, which the core checks, that of their body."""
+    if isinstance(watch, Rocker):
+        return float(watch.body.parameters[-2:].min())
     return float(watch.friction.min())
 
 
@@ -85,10 +90,10 @@ class Counted:
 
 def of_many(rocker: Rocker, counted: Counted, runs: str) -> dict[str, Any]:
     """Results of the conditions over many runs; `runs` calls them, "motions"."""
-    if rocker.watch is None:
+    if rocker.watch is None and not isinstance(rocker.model, StackModel):
         return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}
     total = max(counted.runs, 1)
-    given = friction_of(rocker.watch)
+    given = friction_of(rocker.watch or rocker)
     return {
         "conditions": Conditions(
             friction=given if np.isfinite(given) else None,
@@ -107,7 +112,8 @@ def of_many(rocker: Rocker, counted: Counted, runs: str) -> dict[str, Any]:
 def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     """A sentence for each condition that does not hold in some of the runs."""
     watch = rocker.watch
-    assert watch is not None
+    if watch is None:
+        return _of_stack(rocker, counted, runs)
     found = []
     if counted.sliding:
         share = _share(counted.sliding, counted.runs, runs)
@@ -124,6 +130,22 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
             if len(watch.joints) > 1
             else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
         )
+    return found
+
+
+def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
+    """The same of two stacked blocks."""
+    found = []
+    if counted.sliding:
+        share = _share(counted.sliding, counted.runs, runs)
+        found.append(
+            f"Friction {friction_of(rocker):.2f} is too low {share}: rocking needs up to {counted.friction:.2f}. Blocks slide first. Use dem, "
+            "or check the friction."
+            if np.isfinite(counted.friction)
+            else f"A joint slides or parts as a whole {share}. Use dem."
+        )
+    if counted.elsewhere:
+        found.append(f"A joint parts as a whole {_share(counted.elsewhere, counted.runs, runs)}: rocking without flight is assumed. Use dem.")
     return found
 
 

@@ -25,6 +25,8 @@ from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import FAILED, Body, Ground, Response
 from extrados.core.soft_base import KIND as SOFT_BASE
 from extrados.core.soft_base import SoftBase, SoftBaseResponse, soft_base_history, soft_base_start
+from extrados.core.stack import KIND as STACK
+from extrados.core.stack import Stack, stack_history
 from extrados.motions.from_deck import is_set
 from extrados.motions.motion import Motion
 from extrados.results import statistics as out

@@ -7,6 +7,7 @@ import numpy as np
 
 from extrados.core.stack import Stack
 from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.schema.constants import GRAVITY
 from extrados.views.blocks import Masonry
 
@@ -64,6 +65,20 @@ class StackModel:
             float(middle - foot),
             0.5 * float(contact),
         )
+
+    def friction(self, given: float | np.ndarray | None) -> tuple[float, float]:
+        """Friction of the joint on the ground and of the joint between, infinite where they do not slide; given: of the joints of the
+        assembly, or of all."""
+        if given is None or np.size(given) not in (1, 2):
+            return np.inf, np.inf
+        found = np.broadcast_to(np.asarray(given, dtype=float), 2)[self.joints]
+        ground, between = np.where(found < NO_SLIDING_COEFFICIENT, found, np.inf).tolist()
+        return ground, between
+
+    @property
+    def radius(self) -> float:
+        """Distance of the centre of both blocks from an edge of the foot [m]."""
+        return self.core.half_foot / float(np.sin(self.whole[0]))
 
     @property
     def whole(self) -> tuple[float, float]:
