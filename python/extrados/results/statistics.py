@@ -81,6 +81,7 @@ class Ensemble(Annual):
     initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     motions: int = fact("number of motions")
     conditions: Conditions = fact("over the runs: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
     collapse_probability_by_rule: dict[str, float] = maybe(
         "share of the runs that collapse by each impact rule, where their c_v differ by more than 1.3"
     )
@@ -138,6 +139,7 @@ class OverLevels(Annual):
     levels: list[float] = fact("the levels, ascending, in intensity_unit")
     motions: int = fact("number of motions")
     conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
     sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level")
     hinges_elsewhere_share: list[float | None] = fact("share in which hinges form elsewhere, at each level")
     count: list[int] = fact("motions with a result, at each level")
@@ -263,6 +265,7 @@ class OverDurations(KindResults):
     initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
     conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
 
     def judged(self, demand: Demand) -> Verdict:
         """The least and greatest share of motions that bring it down; open unless all runs agree."""
@@ -368,6 +371,7 @@ class HarmonicMap(KindResults):
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("cells of the map that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""

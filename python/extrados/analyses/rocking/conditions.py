@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from extrados.core.rocking import FAILED, JointDemand, Response
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.results import fields
 from extrados.results.rocking import Conditions, JointTime
 from extrados.schema.constants import GRAVITY
@@ -96,7 +97,7 @@ def of_many(rocker: Rocker, counted: Counted, runs: str) -> dict[str, Any]:
     given = friction_of(rocker.watch or rocker)
     return {
         "conditions": Conditions(
-            friction=given if np.isfinite(given) else None,
+            friction=given if given < NO_SLIDING_COEFFICIENT else None,
             required_friction=counted.friction,
             sliding=counted.sliding,
             sliding_share=counted.sliding / total,
@@ -145,7 +146,9 @@ def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
             else f"A joint slides or parts as a whole {share}. Use dem."
         )
     if counted.elsewhere:
-        found.append(f"A joint parts as a whole {_share(counted.elsewhere, counted.runs, runs)}: rocking without flight is assumed. Use dem.")
+        found.append(
+            f"A joint parts as a whole {_share(counted.elsewhere, counted.runs, runs)}: rocking without flight is assumed. Use dem."
+        )
     return found
 
 
@@ -245,6 +248,37 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         thrust_line_outside=outside,
         energy_astray=astray,
         not_checked=not_checked(rocker),
+        violated=[text for _, text in sorted(found)],
+    )
+
+
+def of_pair(rocker: Rocker, joints: JointDemand, handed: bool = False) -> Conditions:
+    """Conditions of one run of two stacked blocks, whose demand comes from an ensemble of one; see `of_one`."""
+    model = rocker.model
+    assert isinstance(model, StackModel)
+    names = [model.assembly.joint_names[j] for j in model.joints]
+    given, needed = friction_of(rocker), float(joints.friction[0])
+    slips_at, leaves_at = float(joints.slips_at[0]), float(joints.leaves_at[0])
+    use = "" if handed else " Use dem."
+    slides = leaves = None
+    found: list[tuple[float, str]] = []
+    if leaves_at >= 0.0:
+        leaves = JointTime(joint=names[int(joints.leaves[0])], time_s=leaves_at)
+        found.append((leaves_at, f"{_upper(leaves.joint)} parts as a whole at {leaves_at:.3f} s: rocking without flight is assumed.{use}"))
+    if slips_at >= 0.0:
+        slides = JointTime(joint=names[int(joints.slips[0])], time_s=slips_at)
+        found.append(
+            (
+                slips_at,
+                f"Friction {given:.2f} is too low, first at {slides.joint} at {slips_at:.3f} s: blocks slide."
+                f"{'' if handed else ' Use dem, or check the friction.'}",
+            )
+        )
+    return Conditions(
+        friction=given if given < NO_SLIDING_COEFFICIENT else None,
+        required_friction=needed,
+        **fields.given(slides_first=slides, leaves_first=leaves),
+        not_checked="",
         violated=[text for _, text in sorted(found)],
     )
 

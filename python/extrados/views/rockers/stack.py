@@ -120,3 +120,17 @@ class StackModel:
         ground = self.joints[0]
         at[:, :, :2] += 0.5 * (self.assembly.p[ground] + self.assembly.q[ground])
         return at[:, np.argsort(self.order)]
+
+    def velocity(self, rotation: np.ndarray, rate: np.ndarray, state: np.ndarray) -> np.ndarray:
+        """Velocity of both centres [m/s] and counter-clockwise rate of rotation [rad/s] (2, 3), in the order of the assembly; rotation (2)
+        [rad], rate (2) [rad/s], state (2) as StackResponse."""
+        s = self.core
+        foot, edge = s.half_foot * state[0], s.half_contact * state[1]
+
+        def moved(x: float, y: float, block: int) -> np.ndarray:
+            c, sn = np.cos(rotation[block]), np.sin(rotation[block])
+            return rate[block] * np.array([c * y - sn * x, -sn * y - c * x])
+
+        lower = moved(-foot, s.centre[0], 0)
+        upper = moved(edge - foot, s.height, 0) + moved(-edge, s.centre[1], 1)
+        return np.array([[*lower, -rate[0]], [*upper, -rate[1]]])[np.argsort(self.order)]
