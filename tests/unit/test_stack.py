@@ -221,7 +221,9 @@ def test_members_of_an_ensemble_are_histories() -> None:
     critical = model.whole[0], model.alone[0]
     grounds = [shaking(seed, 3.0) for seed in range(10)]
     scale = np.repeat([0.5, 1.0, 1.6, 2.5], 10)
-    found = ensemble([stack_body(s, critical, (0.5, 0.5))], grounds, np.zeros(40, dtype=int), np.tile(np.arange(10), 4), scale, 12.0, threads=2)
+    found = ensemble(
+        [stack_body(s, critical, (0.5, 0.5))], grounds, np.zeros(40, dtype=int), np.tile(np.arange(10), 4), scale, 12.0, threads=2
+    )
     for k in range(40):
         r = stack_history(s, grounds[k % 10], 12.0, 0.002, scale=float(scale[k]))
         assert OUTCOMES[found.outcome[k]] == r.outcome

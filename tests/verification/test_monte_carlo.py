@@ -88,10 +88,7 @@ def test_probabilities_are_those_of_a_monte_carlo_of_its_own() -> None:
     bound = norm.ppf(1.0 - 0.01 / (4.0 * len(LEVELS)))  # one in a hundred of all rows may lie beyond
     for k, level in enumerate(LEVELS):
         fell, slid = rock(level * G * ground, step, WIDTH * factor["width"], FRICTION * factor["friction"], factor["restitution"])
-        for name, own, found in (
-            ("collapse", fell.mean(), run.collapse_probability[k]),
-            ("sliding", slid.mean(), run.sliding_share[k]),
-        ):
+        for name, own, found in (("collapse", fell.mean(), run.collapse_probability[k]), ("sliding", slid.mean(), run.sliding_share[k])):
             both = 0.5 * (own + found)
             error = np.sqrt(2.0 * max(both * (1.0 - both), 1.0 / MOTIONS) / MOTIONS)
             print(f"{level:g} g {name}: {found:.3f}, Monte Carlo {own:.3f}, {abs(found - own) / error:.1f} standard errors")

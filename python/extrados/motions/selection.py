@@ -50,7 +50,7 @@ def choose(
     return sorted(found, key=lambda one: (one.misfit, one.number))[:count]
 
 
-def within(name: str, limits: dict[str, tuple[float, float]], folder: Path) -> set[str]:
+def within(name: str, limits: dict[str, list[float]], folder: Path) -> set[str]:
     """Names of the files (without their folder) whose values in a CSV table lie within limits; its columns: `file`, and those of the
     limits. ValueError with file and line where the table is wrong."""
     try:

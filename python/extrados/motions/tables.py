@@ -1,8 +1,8 @@
 """Motion kinds: positive ground acceleration points to +x."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from extrados.schema.quantities import Acceleration, Angle, Frequency, Time, Velocity
 from extrados.schema.spectrum import TargetSpectrum
@@ -146,7 +146,9 @@ class Selection(TargetSpectrum):
     flatfile: str | None = key(
         None, "CSV table with a column `file` and values of the records, such as magnitude, for `limits`", min_length=1, max_length=1024
     )
-    limits: dict[str, tuple[float, float]] = key({}, "column of the flatfile -> least and greatest value, such as `magnitude = [6, 7.5]`")
+    limits: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]] = key(
+        {}, "column of the flatfile -> least and greatest value, such as `magnitude = [6, 7.5]`"
+    )
 
     @model_validator(mode="after")
     def _band(self) -> "Selection":

@@ -60,6 +60,17 @@ class RotationLimit(ResultModel):
     annual_rate_interval: list[float | None] = maybe("its profile-likelihood interval", "1/year")
 
 
+class MeasureDispersion(ResultModel):
+    """How well one intensity measure of the motions tells collapse from survival."""
+
+    measure: str = fact("intensity measure")
+    unit: str = fact("unit of its median")
+    median: float = fact("median of the lognormal curve of collapse over this measure, in `unit`")
+    dispersion: float = fact("its dispersion, of the logarithm")
+    amplitude_dispersion: float = fact("the same per amplitude of the motion: half for a measure that grows with the square")
+    deviance: float = fact("-2 ln of the likelihood of the outcomes: the least predicts best")
+
+
 class Ensemble(Annual):
     """fragility: one structure under many motions, each as it is."""
 
@@ -106,6 +117,9 @@ class Ensemble(Annual):
     median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
     rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
+    measures: list[MeasureDispersion] = maybe(
+        "of a cloud: intensity measures compared by how well they tell collapse from survival, best first", source="Luco and Cornell 2007"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The share of motions that bring it down; open unless all agree."""

@@ -308,6 +308,11 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
             options.confidence,
             result,
         )
+        measures = {"PGA": (swept["pga"] / GRAVITY, "g"), "PGV": (swept["pgv"], "m/s"), "Arias intensity": (swept["arias"], "m/s")}
+        compared = cloud.compare(measures | ({name: (swept["intensity"], unit)} if options.intensity == "sa" else {}), swept["outcome"])
+        if len(compared) > 1:
+            r["measures"] = compared
+            result.answer += f" Of {', '.join(sorted(one.measure for one in compared))}, {compared[0].measure} predicts collapse best."
     if options.histories and swept.complete:
         _histories(job, base, min(options.histories, motions), result)
     if options.sensitivity is not None and swept.complete:
