@@ -313,7 +313,7 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
             f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
         )
         if isinstance(model, models.Suite) and model.selection is not None:
-            _beside_selection(result, model.selection, folder, periods, psa)
+            r |= _beside_selection(result, model.selection, folder, periods, psa)
     result.results = out.MotionSet(**r)
     for k, (name, a, step) in enumerate(shown):
         if "AT2" in options.export:
@@ -323,8 +323,9 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     return result
 
 
-def _beside_selection(result: Result, chosen: models.Selection, folder: Path, periods: np.ndarray, psa: np.ndarray) -> None:
-    """The target of a selection as an array, and the mean of ln(spectra of the records / target) over its band in the answer."""
+def _beside_selection(result: Result, chosen: models.Selection, folder: Path, periods: np.ndarray, psa: np.ndarray) -> dict[str, Any]:
+    """The target of a selection as an array, and the mean of ln(spectra of the records / target) over its band in the answer; further
+    results."""
     band = (periods >= chosen.shortest) & (periods <= chosen.longest)
     target = np.full_like(periods, np.nan)
     target[band] = target_spectrum(chosen, folder, chosen.damping)(periods[band])
@@ -334,6 +335,7 @@ def _beside_selection(result: Result, chosen: models.Selection, folder: Path, pe
         f" They are selected by spectrum: from {chosen.shortest:g} to {chosen.longest:g} s their geometric mean lies between "
         f"{ratio.min():.2f} and {ratio.max():.2f} of the target."
     )
+    return {"shortest_s": chosen.shortest, "longest_s": chosen.longest}
 
 
 def _compare_with_intensity(result: Result, r: dict[str, Any], model: models.Generated, context: Context) -> dict[str, Any]:
