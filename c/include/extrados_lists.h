@@ -23,7 +23,8 @@
   ENTRY(3, table, "table") \
   ENTRY(4, restrained, "restrained") \
   ENTRY(5, soft_base, "soft-base") \
-  ENTRY(6, watched, "watched")
+  ENTRY(6, watched, "watched") \
+  ENTRY(7, stack, "stack")
 
 #define EXTRADOS_ROCKING_OUTCOME_LIST(ENTRY) \
   ENTRY(0, no_hinging, "no-hinging") \

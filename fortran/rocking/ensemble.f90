@@ -4,7 +4,7 @@ module rocking_ensemble
    use common_cancel, only : cancel_requested
    use common_lists, only : body_arch => rocking_body_arch, body_block => rocking_body_block, &
       body_restrained => rocking_body_restrained, body_soft_base => rocking_body_soft_base, &
-      body_table => rocking_body_table, body_watched => rocking_body_watched
+      body_stack => rocking_body_stack, body_table => rocking_body_table, body_watched => rocking_body_watched
    use common_motion_set, only : motion_set, motion_signal
    use common_signal, only : signal
    use common_status, only : status_ok, status_bad_index, status_cancelled, status_invalid_argument, &
@@ -15,6 +15,7 @@ module rocking_ensemble
    use rocking_response, only : find_response, response, response_options
    use rocking_rocker, only : rocker
    use rocking_soft_base_response, only : soft_base_body, soft_base_body_new, soft_base_respond
+   use rocking_stack_response, only : stack_body, stack_body_new, stack_respond
    use rocking_table_rocker, only : table_rocker, table_rocker_new
    use rocking_watch, only : joint_watch_new
    use, intrinsic :: iso_c_binding, only : c_int
@@ -22,10 +23,11 @@ module rocking_ensemble
    private
    public :: body_data, body_list, list_body, run_ensemble
 
-   !> Room for one structure of any kind: of one coordinate, or a block on a base that gives way
+   !> Room for one structure of any kind: of one coordinate, a block on a base that gives way, or two blocks
    type :: any_body
       class(rocker), allocatable :: model
       type(soft_base_body), allocatable :: soft
+      type(stack_body), allocatable :: pair
       integer(c_int) :: status = status_ok
    end type any_body
 
@@ -114,6 +116,10 @@ contains
          body%status = status_out_of_memory
          allocate (body%soft, stat=stat)
          if (stat == 0) call soft_base_body_new(given%parameters, body%soft, body%status)
+      else if (given%kind == body_stack) then
+         body%status = status_out_of_memory
+         allocate (body%pair, stat=stat)
+         if (stat == 0) call stack_body_new(given%parameters, body%pair, body%status)
       else
          call make_body(given%kind, given%parameters, body%model, body%status)
       end if
@@ -174,6 +180,8 @@ contains
          associate (body => built(run_body(k)))
             if (allocated(body%soft)) then
                call soft_base_respond(body%soft, ground, options(k), answers(k), run_status(k))
+            else if (allocated(body%pair)) then
+               call stack_respond(body%pair, ground, options(k), answers(k), run_status(k))
             else
                call find_response(body%model, ground, options(k), answers(k), run_status(k))
             end if

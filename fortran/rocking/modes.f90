@@ -40,6 +40,7 @@ module rocking_modes
       procedure :: resting
       procedure :: upright
       procedure :: known
+      procedure :: note_demand
    end type mode_rocker
 
    !> In the caller's arrays
@@ -55,9 +56,9 @@ module rocking_modes
       integer(c_int) :: half_cycles = 0  !! begun, of structures that count them
       integer(c_int) :: steps = 0
       logical :: settled = .false.       !! came down, or can no longer fall after the motion
-      !> Least and greatest value of the first two numbers of the state
-      real(wp) :: least(2) = 0.0_wp
-      real(wp) :: most(2) = 0.0_wp
+      !> Least and greatest value of the first two numbers of the state, and of the second less the first
+      real(wp) :: least(3) = 0.0_wp
+      real(wp) :: most(3) = 0.0_wp
       real(wp) :: loss = 0.0_wp          !! energy lost at impacts [J]
       real(wp) :: stop_time = 0.0_wp     !! [s]
    contains
@@ -165,11 +166,20 @@ contains
       end associate
    end function known
 
+   !> The demand on the joints of a state; none unless a structure says otherwise
+   subroutine note_demand(body, t, y)
+      class(mode_rocker), intent(inout) :: body
+      real(wp), intent(in) :: t     !! [s]
+      real(wp), intent(in) :: y(:)  !! state
+      associate (unused => body%moved, unused_t => t, unused_y => y)
+      end associate
+   end subroutine note_demand
+
    !> The first two numbers of the state where they were farthest from zero
    pure function peak(history) result(values)
       class(mode_history), intent(in) :: history
       real(wp) :: values(2)
-      values = merge(history%most, history%least, history%most >= -history%least)
+      values = merge(history%most(1:2), history%least(1:2), history%most(1:2) >= -history%least(1:2))
    end function peak
 
    !> Keep an event, as far as there is room
@@ -205,6 +215,7 @@ contains
       do k = 1, 2
          call note_value(k, y(k))
       end do
+      call note_value(3, y(2) - y(1))
       rate_known = .false.
       t = 0.0_wp
       body%segment = 0
@@ -259,6 +270,7 @@ contains
          call note_peaks()
          y = fresh(:n)
          rate = rate_there
+         call body%note_demand(t, y)
          if (body%fallen(y) /= 0) then
             call history%note_event(event_collapse, t, body%fallen(y))
             history%outcome = outcome_collapse
@@ -266,6 +278,7 @@ contains
          end if
          if (ended) then
             call body%leave_mode(t, y, history)
+            call body%note_demand(t, y)
             rate_known = .false.
             h_next = min(h_next, 1.0e-3_wp)
          end if
@@ -352,10 +365,18 @@ contains
       subroutine note_peaks()
          integer :: k
          do k = 1, 2
-            call note_value(k, fresh(k))
-            if (rate(k) * rate_there(k) < 0.0_wp) call note_value(k, turning(k))
+            call note_within(k, y(k), fresh(k), rate(k), rate_there(k))
          end do
+         call note_within(3, y(2) - y(1), fresh(2) - fresh(1), rate(2) - rate(1), rate_there(2) - rate_there(1))
       end subroutine note_peaks
+
+      !> A number from its values and rates at both ends of the step
+      subroutine note_within(k, first, last, rate_first, rate_last)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: first, last, rate_first, rate_last
+         call note_value(k, last)
+         if (rate_first * rate_last < 0.0_wp) call note_value(k, turning(first, last, h * rate_first, h * rate_last))
+      end subroutine note_within
 
       subroutine note_value(k, value)
          integer, intent(in) :: k
@@ -364,23 +385,22 @@ contains
          history%most(k) = max(history%most(k), value)
       end subroutine note_value
 
-      !> Number k of the state where its rate changes sign within the step, by the cubic through its ends
-      pure function turning(k) result(value)
-         integer, intent(in) :: k
+      !> A number where its rate changes sign within the step, by the cubic through its ends
+      pure function turning(first, last, c, d) result(value)
+         real(wp), intent(in) :: first, last  !! values
+         real(wp), intent(in) :: c, d         !! rates times the step
          real(wp) :: value
-         real(wp) :: s, a, b, c, root, z(most_numbers)
+         real(wp) :: s, a, b, root
          ! rate over the step: a s^2 + b s + c
-         c = h * rate(k)
-         a = 3.0_wp * (c + h * rate_there(k)) - 6.0_wp * (fresh(k) - y(k))
-         b = h * rate_there(k) - c - a
+         a = 3.0_wp * (c + d) - 6.0_wp * (last - first)
+         b = d - c - a
          ! its ends are of unlike sign: one of the two roots lies within
          root = b + sign(sqrt(max(b * b - 4.0_wp * a * c, 0.0_wp)), b)
          s = -2.0_wp * c / root
          if (.not. (s >= 0.0_wp .and. s <= 1.0_wp)) s = -root / (2.0_wp * a)
-         value = fresh(k)
+         value = last
          if (.not. (s >= 0.0_wp .and. s <= 1.0_wp)) return
-         call interpolate_state(s, z(:n))
-         value = z(k)
+         value = first + s**2 * (3.0_wp - 2.0_wp * s) * (last - first) + s * (1.0_wp - s) * ((1.0_wp - s) * c - s * d)
       end function turning
 
       !> The output time that has come

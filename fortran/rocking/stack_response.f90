@@ -4,13 +4,16 @@ module rocking_stack_response
    use common_lists, only : event_impact => rocking_event_impact, event_rest => rocking_event_rest, &
       event_uplift => rocking_event_uplift
    use common_signal, only : signal
+   use common_status, only : status_invalid_argument
    use rocking_modes, only : mode_history, mode_rocker, respond_in_modes
+   use rocking_response, only : response, response_options
    use rocking_stack, only : choose_pivots, contact_forces, energies, motion_about, power, pressing, solved, stack, &
-      stack_impact
+      stack_impact, stack_new, stack_parameters
+   use rocking_watch, only : joint_demand
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: stack_rock, stack_rows
+   public :: stack_body, stack_body_new, stack_respond, stack_rock, stack_rows
 
    !> Rows of a history: q1, q2 [rad], their rates, ground to +x and up [m/s^2], kinetic and potential energy, work of
    !> the ground less loss at impacts [J], states of both contacts (0 shut, +1, -1), force of the ground on the lower
@@ -23,6 +26,11 @@ module rocking_stack_response
       type(stack) :: body
       integer :: s(2) = 0                !! pivots
       real(wp) :: scale(2) = 0.0_wp      !! moments of the weights about the edges of the contacts [N m]
+      real(wp) :: critical(2) = huge(1.0_wp)  !! |q1| and |q2 - q1| up to which joints are checked [rad]
+      real(wp) :: friction(2) = huge(1.0_wp)  !! of the contacts
+      type(joint_demand) :: demand            !! joint 1 on the ground, 2 between
+      real(wp) :: before = 0.0_wp             !! time of the demand noted last [s], and its state
+      real(wp) :: state_before(4) = 0.0_wp
    contains
       procedure :: find_rates
       procedure :: inside
@@ -33,9 +41,69 @@ module rocking_stack_response
       procedure :: resting
       procedure :: store_row
       procedure :: closes
+      procedure :: note_demand
    end type stack_rocker
 
+   !> A stack as an ensemble rocks it: its numbers (see stack_parameters), then the critical rotations of both as one and
+   !> of the upper block alone [rad], and the friction of both contacts, huge where they do not slide
+   type :: stack_body
+      type(stack) :: blocks
+      real(wp) :: critical(2) = 0.0_wp
+      real(wp) :: friction(2) = huge(1.0_wp)
+   end type stack_body
+
 contains
+
+   !> Set up from the flat parameter list
+   subroutine stack_body_new(parameters, body, status)
+      real(wp), intent(in) :: parameters(:)  !! see stack_body
+      type(stack_body), intent(out) :: body
+      integer(c_int), intent(out) :: status
+      status = status_invalid_argument
+      if (size(parameters) /= stack_parameters + 4) return
+      if (any(parameters(stack_parameters + 1:) <= 0.0_wp)) return
+      body%critical = parameters(stack_parameters + 1:stack_parameters + 2)
+      body%friction = parameters(stack_parameters + 3:)
+      call stack_new(parameters(:stack_parameters), body%blocks, status)
+   end subroutine stack_body_new
+
+   !> One member of an ensemble: started with both blocks turned as one, its outcome alone. Half cycles: one per uplift
+   !> from rest and per instant of impact
+   subroutine stack_respond(body, motion, options, answer, status)
+      type(stack_body), intent(in) :: body
+      type(signal), intent(in) :: motion
+      type(response_options), intent(in) :: options
+      type(response), intent(out) :: answer
+      integer(c_int), intent(out) :: status
+      type(stack_rocker) :: rocker
+      type(mode_history) :: record
+      real(wp) :: q, v, work, own(2), reached(2)
+      real(wp), target :: no_time(0), no_rows(0, 0), no_events(2, 0)
+      integer(c_int), target :: no_kinds(0)
+      integer :: greater
+
+      record%time => no_time
+      record%state => no_rows
+      record%event_kind => no_kinds
+      record%event => no_events
+      rocker%critical = body%critical
+      rocker%friction = body%friction
+      q = real(options%start_side, wp) * options%start_q
+      v = real(options%start_side, wp) * options%start_v
+      call rock_blocks(rocker, body%blocks, motion, [q, q, v, v], options%end_time, options%tolerance, record, work, status)
+      own = merge(record%most([1, 3]), record%least([1, 3]), record%most([1, 3]) >= -record%least([1, 3]))
+      reached = abs(own) / body%critical
+      greater = maxloc(reached, dim=1)
+      answer%outcome = record%outcome
+      answer%half_cycles = record%half_cycles
+      answer%impacts = sum(record%impacts)
+      answer%peak = own(greater)
+      answer%peak_ratio = reached(greater)
+      answer%stop_time = record%stop_time
+      answer%steps = record%steps
+      answer%settled = record%settled
+      answer%joints = rocker%demand
+   end subroutine stack_respond
 
    !> Rock the stack from a state until the end time or collapse
    subroutine stack_rock(body, motion, start, end_time, tolerance, history, work, status)
@@ -48,6 +116,20 @@ contains
       real(wp), intent(out) :: work       !! of the ground [J]
       integer(c_int), intent(out) :: status
       type(stack_rocker) :: rocker
+      call rock_blocks(rocker, body, motion, start, end_time, tolerance, history, work, status)
+   end subroutine stack_rock
+
+   !> The same of a rocker that knows what is asked
+   subroutine rock_blocks(rocker, body, motion, start, end_time, tolerance, history, work, status)
+      type(stack_rocker), intent(inout) :: rocker
+      type(stack), intent(in) :: body
+      type(signal), intent(in) :: motion
+      real(wp), intent(in) :: start(4)    !! q1, q2 [rad], rates [rad/s]; at rest where zero
+      real(wp), intent(in) :: end_time    !! [s]
+      real(wp), intent(in) :: tolerance   !! relative, per step
+      type(mode_history), intent(inout) :: history
+      real(wp), intent(out) :: work       !! of the ground [J]
+      integer(c_int), intent(out) :: status
       real(wp) :: y(5), atol(5), r
 
       rocker%body = body
@@ -60,12 +142,14 @@ contains
       r = merge(y(2) - y(1), y(4) - y(3), abs(y(2) - y(1)) > 0.0_wp)
       if (abs(r) > 0.0_wp) rocker%s(2) = nint(sign(1.0_wp, r))
       rocker%moved = any(rocker%s /= 0)
+      if (rocker%moved) history%half_cycles = 1
+      rocker%state_before = start
       atol(1:2) = 0.01_wp * tolerance * maxval(body%limit)
       atol(3:4) = 10.0_wp * tolerance * maxval(body%rest_rate)
       atol(5) = tolerance * sum(body%mass) * gravity * body%half(1) * maxval(body%limit)
       call respond_in_modes(rocker, y, end_time, atol, tolerance, history, status)
       work = y(5)
-   end subroutine stack_rock
+   end subroutine rock_blocks
 
    !> Rates of the state
    subroutine find_rates(system, t, y, rate)
@@ -150,6 +234,7 @@ contains
 
       at = body%closes(y)
       if (any(at)) then
+         history%half_cycles = history%half_cycles + 1
          do contact = 1, 2
             if (.not. at(contact)) cycle
             history%impacts(contact) = history%impacts(contact) + 1
@@ -187,8 +272,95 @@ contains
       do contact = 1, 2
          if (before(contact) == 0 .and. body%s(contact) /= 0) call history%note_event(event_uplift, t, contact)
       end do
+      if (all(touching) .and. any(body%s /= 0)) history%half_cycles = history%half_cycles + 1
       body%moved = body%moved .or. any(body%s /= 0)
    end subroutine renew_mode
+
+   !> Friction that both joints need, and whether one parts as a whole, up to the critical rotations; the first time of
+   !> each lies within the step since the state before
+   subroutine note_demand(body, t, y)
+      class(stack_rocker), intent(inout) :: body
+      real(wp), intent(in) :: t
+      real(wp), intent(in) :: y(:)
+      integer, parameter :: looks = 4, halvings = 30
+      real(wp) :: needed(2), low, high, middle
+      integer :: i, k, joint
+      logical :: first(2)  ! sliding and parting have not come before this step
+
+      first = [body%demand%slips_at, body%demand%leaves_at] < 0.0_wp
+      do i = 1, looks
+         ! looks within the step serve the first time alone
+         if (i < looks .and. .not. (any(first) .and. t > body%before)) cycle
+         high = real(i, wp) / real(looks, wp)
+         needed = needed_at(high)
+         if (any(body%s /= 0)) body%demand%friction = max(body%demand%friction, maxval(needed))
+         do k = 1, 2
+            joint = fails(k, needed)
+            if (.not. first(k) .or. joint == 0) cycle
+            low = high - 1.0_wp / real(looks, wp)
+            do while (high - low > 0.5_wp**halvings)
+               middle = 0.5_wp * (low + high)
+               if (fails(k, needed_at(middle)) == 0) then
+                  low = middle
+               else
+                  high = middle
+               end if
+            end do
+            first(k) = .false.
+            if (k == 1) then
+               body%demand%slips_at = body%before + high * (t - body%before)
+               body%demand%slips = joint
+            else
+               body%demand%leaves_at = body%before + high * (t - body%before)
+               body%demand%leaves = joint
+            end if
+            high = real(i, wp) / real(looks, wp)
+         end do
+      end do
+      body%before = t
+      body%state_before = y(1:4)
+
+   contains
+
+      !> The joint that slides (k = 1) or parts (k = 2), 0 none
+      pure function fails(k, demand) result(joint_found)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: demand(2)
+         integer :: joint_found
+         joint_found = findloc(demand > merge(body%friction, 0.5_wp * huge(1.0_wp), k == 1), .true., dim=1)
+      end function fails
+
+      !> Friction that both joints need at a fraction of the step, huge where a joint parts; 0 beyond the critical rotations
+      function needed_at(s) result(demand)
+         real(wp), intent(in) :: s
+         real(wp) :: demand(2)
+         real(wp) :: h, at(4), shaking(2), a(2), force(4), normal(2)
+         h = t - body%before
+         at = y(1:4)
+         if (s < 1.0_wp) then
+            ! rotations by the cubic through both ends, rates linear
+            associate (p => body%state_before)
+               at(1:2) = p(1:2) + s**2 * (3.0_wp - 2.0_wp * s) * (y(1:2) - p(1:2)) &
+                  + h * s * (1.0_wp - s) * ((1.0_wp - s) * p(3:4) - s * y(3:4))
+               at(3:4) = p(3:4) + s * (y(3:4) - p(3:4))
+            end associate
+         end if
+         demand = 0.0_wp
+         if (any(abs([at(1), at(2) - at(1)]) > body%critical)) return
+         shaking = body%ground(body%before + s * h)
+         a = solved(motion_about(body%body, body%s, at(1:2), at(3:4), shaking), body%s)
+         force = contact_forces(body%body, body%s, at(1:2), at(3:4), a, shaking)
+         ! the joint between turns with the lower block
+         normal = [force(2), sin(at(1)) * force(3) + cos(at(1)) * force(4)]
+         demand = abs([force(1), cos(at(1)) * force(3) - sin(at(1)) * force(4)])
+         where (normal > 0.0_wp)
+            demand = demand / normal
+         else where
+            demand = huge(1.0_wp)
+         end where
+      end function needed_at
+
+   end subroutine note_demand
 
    !> What is stored of a state, see stack_rows
    subroutine store_row(body, t, y, loss, values)

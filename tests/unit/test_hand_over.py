@@ -209,3 +209,55 @@ def test_a_mirrored_motion_slides_to_the_other_side() -> None:
         x, y = one.arrays[name].data, other.arrays[name].data
         shared = min(len(x), len(y))  # they come to rest within a step of each other
         assert np.abs(x).max() > 1e-3 and x[:shared] == pytest.approx(-y[:shared], abs=5e-3 * np.abs(x).max())
+
+
+STACK = {"kind": "stack", "lower_width": 1.0, "lower_height": 1.5, "upper_width": 0.8, "upper_height": 1.5}
+#: Friction, period [s], amplitude [g] of sines on the stack
+PAIRS = [(mu, period, a) for mu in (0.3, 0.45, 0.6, 0.75) for period in (0.5, 0.9, 1.4) for a in (0.4, 0.6, 0.9)]
+
+
+@pytest.mark.parametrize("chosen", [pytest.param(PAIRS, marks=pytest.mark.verify), [(0.3, 0.9, 0.6), (0.6, 0.9, 0.6)]])
+def test_stacks_that_slide_end_as_on_rigid_contacts(chosen: list) -> None:
+    """Outcome of the whole motion, and how far the blocks slide, against contacts from rest."""
+    over, wrong = 0, []
+    for friction, period, amplitude in chosen:
+        found, contacts = both(STACK, friction, sine(amplitude, period), 0.0)
+        r = found.results
+        if r.hand_over is None:
+            continue
+        over += 1
+        assert r.hand_over.reason and not found.arrays["time"].data[-1] > r.hand_over.time_s
+        if r.outcome != WORDS[contacts.outcome] and not (contacts.decided_by_last_digits or r.decided_by_last_digits):
+            wrong.append((friction, period, amplitude, r.outcome, contacts.outcome))
+        elif r.outcome != "collapse":
+            assert r.hand_over.contacts.peak_slip_m == pytest.approx(contacts.peak_slip_m, rel=2e-3, abs=2e-4)
+    assert over >= min(2, len(chosen)) and not wrong, wrong
+
+
+def test_the_state_of_a_stack_is_handed_over_with_its_rates() -> None:
+    """Velocities of both centres against differences of their places, in each mode."""
+    model = building_of(STACK).rocker(soft_base=True).model
+    rotation, rate, step = np.array([0.05, -0.02]), np.array([0.4, -0.3]), 1e-6
+    for state in ((1, -1), (-1, 1), (1, 0), (0, -1)):
+        contacts = np.array(state, dtype=float)
+        q = np.array([0.0 if state[0] == 0 else rotation[0], rotation[0] if state[1] == 0 else rotation[1]])
+        v = np.array([0.0 if state[0] == 0 else rate[0], rate[0] if state[1] == 0 else rate[1]])
+        places = model.pose(np.array([q - step * v, q + step * v]), np.array([contacts, contacts]))
+        assert model.velocity(q, v, contacts) == pytest.approx((places[1] - places[0]) / (2.0 * step), abs=1e-8)
+
+
+def test_cells_of_a_harmonic_map_are_decided_by_contacts() -> None:
+    """A block at friction .35: the map with hand-over against single runs, and the warning where cells are too many."""
+    block = {"kind": "block", "width": 0.3, "height": 0.9}
+    harmonic = {"kind": "harmonic-map", "cycles": 2, "frequencies": [0.8, 2.0], "amplitudes": 4, "max_amplitude": "1.2 g"}
+    deck = {"structure": block, "joints": {"friction": 0.35}, "analysis": harmonic}
+    found = extrados.run(deck).results[0]
+    codes = found.arrays["outcome"].data
+    assert found.results.handed_over and not found.results.conditions.violated
+    for i, frequency in enumerate((0.8, 2.0)):
+        for k in range(4):
+            motion = {"kind": "harmonic", "amplitude": f"{0.3 * (k + 1)} g", "frequency": frequency, "duration": 2 / frequency}
+            one, _ = both(block, 0.35, motion, 0.0)
+            assert (codes[i, k] == 2) == (one.results.outcome == "collapse"), (frequency, k)
+    few = extrados.run(deck | {"analysis": harmonic | {"hand_over_cells": 1}}).results[0]
+    assert few.results.handed_over is None and few.results.conditions.violated

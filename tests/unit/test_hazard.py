@@ -12,6 +12,7 @@ from scipy.stats import norm, qmc
 
 from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
+from extrados.analyses.statistics import cloud
 from extrados.analyses.statistics.annual import rates
 from extrados.analyses.statistics.cloud import fit_cloud
 from extrados.analyses.statistics.uncertain import Sample
@@ -315,3 +316,21 @@ def test_structure_and_motion_together_by_sobol_indices() -> None:
     assert set(index) == {*uncertain, "motion"}
     assert index["corners"] == pytest.approx(0.0, abs=1e-3) and index["density"] == pytest.approx(0.0, abs=1e-3)
     assert max(index["thickness"], index["motion"]) > 0.2
+
+
+def test_the_measure_that_decides_collapse_is_ranked_first() -> None:
+    """Capacities in PGV of known scatter, PGA and Arias intensity related to it with more: order, dispersions, and the deviance."""
+    random = np.random.default_rng(8)
+    n = 4000
+    pgv = np.exp(random.normal(0.0, 0.5, n))
+    pga = pgv * np.exp(random.normal(0.0, 0.6, n))
+    arias = (pgv * np.exp(random.normal(0.0, 0.3, n))) ** 2
+    outcome = np.where(np.exp(random.normal(0.0, 0.2, n)) < pgv, 2, 1)
+    found = cloud.compare({"PGA": (pga, "g"), "PGV": (pgv, "m/s"), "Arias intensity": (arias, "m/s")}, outcome)
+    assert [one.measure for one in found] == ["PGV", "Arias intensity", "PGA"]
+    assert found[0].dispersion == pytest.approx(0.2, abs=0.02) and found[0].median == pytest.approx(1.0, abs=0.02)
+    p = ndtr(np.log(pgv / found[0].median) / found[0].dispersion)
+    assert found[0].deviance == pytest.approx(-2.0 * np.log(np.where(outcome == 2, p, 1.0 - p)).sum(), rel=1e-9)
+    assert found[1].amplitude_dispersion == pytest.approx(0.5 * found[1].dispersion)
+    assert found[1].amplitude_dispersion < found[2].amplitude_dispersion
+    assert [one.measure for one in cloud.compare({"PGA": (pga, "g"), "PGV": (pgv, "m/s")}, np.full(n, 1))] == []

@@ -6,10 +6,11 @@ import pytest
 import extrados
 from extrados.core import mechanism as core_mechanism
 from extrados.core.ground import Ground
-from extrados.core.rocking import history
-from extrados.core.stack import Stack, stack_history, stack_impact
+from extrados.core.rocking import OUTCOMES, ensemble, history
+from extrados.core.stack import Stack, stack_body, stack_history, stack_impact
 from extrados.model.properties import Initial
 from extrados.model.structures.block import Block
+from extrados.model.structures.stack import Stack as Stacked
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
@@ -208,3 +209,32 @@ def test_two_blocks_drawn_one_by_one_rock_as_a_stack(upper_first: bool) -> None:
     assert y.stack.peak_rotation_upper_rad == pytest.approx(x.stack.peak_rotation_upper_rad, rel=1e-6)
     pose = other.arrays["snapshot_pose"].data - [3.0, 1.0, 0.0]
     assert (pose[:, ::-1] if upper_first else pose) == pytest.approx(one.arrays["snapshot_pose"].data, abs=1e-6)
+
+
+def test_members_of_an_ensemble_are_histories() -> None:
+    """Outcome, peaks and friction needed of forty runs as by their histories; half cycles begin with uplifts and impacts."""
+    s = stack((1.0, 1.5), (0.8, 1.5))
+    model = (
+        Building(Stacked(kind="stack", lower_width=1.0, lower_height=1.5, upper_width=0.8, upper_height=1.5)).rocker(soft_base=True).model
+    )
+    assert model.core.numbers == pytest.approx(s.numbers)
+    critical = model.whole[0], model.alone[0]
+    grounds = [shaking(seed, 3.0) for seed in range(10)]
+    scale = np.repeat([0.5, 1.0, 1.6, 2.5], 10)
+    found = ensemble(
+        [stack_body(s, critical, (0.5, 0.5))], grounds, np.zeros(40, dtype=int), np.tile(np.arange(10), 4), scale, 12.0, threads=2
+    )
+    for k in range(40):
+        r = stack_history(s, grounds[k % 10], 12.0, 0.002, scale=float(scale[k]))
+        assert OUTCOMES[found.outcome[k]] == r.outcome
+        apart = r.rotation[:, 1] - r.rotation[:, 0]
+        ratio = max(np.abs(r.rotation[:, 0]).max() / critical[0], np.abs(apart).max() / critical[1])
+        assert found.peak_ratio[k] == pytest.approx(ratio, rel=1e-3 if r.outcome != "collapse" else 0.05, abs=1e-5)
+        moving = (r.state != 0).any(axis=1) & (np.abs(r.rotation[:, 0]) < critical[0]) & (np.abs(apart) < critical[1])
+        c, sn = np.cos(r.rotation[:, 0]), np.sin(r.rotation[:, 0])
+        x, y = r.force[:, 1].T
+        normal, shear = np.column_stack([r.force[:, 0, 1], sn * x + c * y]), np.column_stack([r.force[:, 0, 0], c * x - sn * y])
+        if moving.any() and (normal[moving] > 0.0).all() and np.isfinite(found.joints.friction[k]):
+            assert found.joints.friction[k] >= (np.abs(shear) / normal)[moving].max() * 0.98 - 1e-9
+        assert (found.half_cycles[k] > 0) == (r.outcome != "no-hinging")
+    assert set(found.outcome) == {0, 1, 2} or set(found.outcome) == {1, 2}

@@ -6,10 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core
+from extrados.core import lists
 from extrados.core.calls import long_call, real
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
-from extrados.core.rocking import EVENTS, OUTCOMES, Outcome, output_times
+from extrados.core.rocking import EVENTS, OUTCOMES, Body, Outcome, output_times
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,26 @@ class Stack:
         """The flat list (9,) of the core, SI."""
         rows = [v for pair in zip(self.mass, self.inertia, self.centre, strict=True) for v in pair]
         return np.array([*rows, self.half_foot, self.height, self.half_contact])
+
+    @classmethod
+    def of(cls, body: Body) -> "Stack":
+        """The blocks of which `stack_body` made a body."""
+        a, b, c, d, e, f, foot, height, contact = (float(x) for x in body.parameters[:9])
+        return cls((a, d), (b, e), (c, f), foot, height, contact)
+
+
+#: Kind of bodies of two blocks
+KIND = lists.number("rocking_body", "stack")
+
+
+def stack_body(stack: Stack, critical: tuple[float, float], friction: tuple[float, float]) -> Body:
+    """The blocks for ensembles. critical: rotations of unstable equilibrium of both as one and of the upper block alone [rad]; friction of
+    the joint on the ground and of the joint between, infinite where they do not slide. A member starts with both turned as one. A half
+    cycle begins with each uplift from rest and with each instant of impact; `joints` numbers the ground 0, the joint between 1.
+    """
+    if not (np.isfinite(critical).all() and min(critical) > 0.0):
+        raise ValueError(f"critical rotations are {critical}, expected two above zero")
+    return Body(KIND, np.concatenate([stack.numbers, critical, np.minimum(friction, np.finfo(float).max)]))
 
 
 @dataclass(frozen=True)

@@ -125,31 +125,65 @@ def tabulated(period: np.ndarray, acceleration: np.ndarray) -> Spectrum:
 
 
 def read_table(name: str | Path, folder: Path | None = None) -> Spectrum:
-    """A CSV file period_s,sa_g that a deck in `folder` names; ValueError with file and line."""
+    """A CSV file period_s,sa_g that a deck in `folder` names, other columns beside them; ValueError with file and line."""
+    period, value = _columns(name, folder, ("period_s", "sa_g")).T
+    return tabulated(period, value * GRAVITY)
+
+
+def conditional_mean(name: str | Path, folder: Path | None, at: float, acceleration: float) -> Spectrum:
+    """The mean of the logarithms of spectra whose acceleration at a period [s] is given [m/s^2] (Baker 2011).
+
+    ln SA(T) = ln median + rho(T, at) epsilon sigma, epsilon the number of standard deviations by which the acceleration given exceeds the
+    median at that period; medians and standard deviations from a CSV file period_s,sa_g,sigma_ln.
+    """
+    period, median, sigma = _columns(name, folder, ("period_s", "sa_g", "sigma_ln")).T
+    if not period[0] <= at <= period[-1]:
+        raise ValueError(f"conditional_period {at:g} s lies outside the table, {period[0]:g} to {period[-1]:g} s")
+    low, high = max(period[0], 0.01), min(period[-1], 10.0)
+    t = np.unique(np.concatenate([period[(period >= low) & (period <= high)], [low, at, high]]))
+    middle, spread = np.exp(np.interp(t, period, np.log(median))), np.interp(t, period, sigma)
+    k = int(np.searchsorted(t, at))
+    epsilon = np.log(acceleration / GRAVITY / middle[k]) / spread[k]
+    return tabulated(t, middle * np.exp(correlation(t, at) * epsilon * spread) * GRAVITY)
+
+
+def correlation(period: np.ndarray, at: float) -> np.ndarray:
+    """Correlation of the logarithms of spectral accelerations at periods and at another, .01 to 10 s (Baker and Jayaram 2008)."""
+    low, high = np.minimum(period, at), np.maximum(period, at)
+    c1 = 1.0 - np.cos(0.5 * np.pi - 0.366 * np.log(high / np.maximum(low, 0.109)))
+    short = np.minimum(high, 0.2)
+    c2 = np.where(high < 0.2, 1.0 - 0.105 * (1.0 - 1.0 / (1.0 + np.exp(100.0 * short - 5.0))) * (high - low) / (high - 0.0099), 0.0)
+    c3 = np.where(high < 0.109, c2, c1)
+    c4 = c1 + 0.5 * (np.sqrt(c3) - c3) * (1.0 + np.cos(np.pi * low / 0.109))
+    return np.select([high < 0.109, low > 0.109, high < 0.2], [c2, c1, np.minimum(c2, c4)], c4)
+
+
+def _columns(name: str | Path, folder: Path | None, names: tuple[str, ...]) -> np.ndarray:
+    """Columns of a CSV file by their names (rows, columns); ValueError with file and line."""
     try:
         file = read(name, LARGEST, folder)
-        return _parse(file.path, file.text())
+        return _parse(file.path, file.text(), names)
     except (BadFile, csv.Error) as error:
-        raise ValueError(f"{error}; expected a CSV file period_s,sa_g") from None
+        raise ValueError(f"{error}; expected a CSV file {','.join(names)}") from None
 
 
-def _parse(path: Path, text: str) -> Spectrum:
+def _parse(path: Path, text: str, names: tuple[str, ...]) -> np.ndarray:
     reader = csv.reader(text.splitlines())
     header = [word.strip() for word in next(reader, [])]
-    if header != ["period_s", "sa_g"]:
-        raise ValueError(f"{path}:1: header is {','.join(header)[:60]!r}, expected period_s,sa_g")
-    rows: list[tuple[float, float]] = []
+    if tuple(header[: len(names)]) != names:
+        raise ValueError(f"{path}:1: header is {','.join(header)[:60]!r}, expected {','.join(names)}")
+    rows: list[list[float]] = []
     for row in reader:
         if not row:
             continue
         try:
-            period, value = (float(word) for word in row)
+            period, *values = (float(word) for word in row[: len(names)])
         except ValueError:
-            raise ValueError(f"{path}:{reader.line_num}: expected two numbers, got {','.join(row)[:60]!r}") from None
-        if not (0.0 <= period < 100.0 and 0.0 < value < 100.0) or (rows and period <= rows[-1][0]):
+            raise ValueError(f"{path}:{reader.line_num}: expected {len(names)} numbers, got {','.join(row)[:60]!r}") from None
+        good = len(values) == len(names) - 1 and all(0.0 < v < 100.0 for v in values)
+        if not (good and 0.0 <= period < 100.0) or (rows and period <= rows[-1][0]):
             raise ValueError(f"{path}:{reader.line_num}: expected ascending periods and accelerations above zero")
-        rows.append((period, value))
+        rows.append([period, *values])
     if len(rows) < 2:
         raise ValueError(f"{path}: expected two rows or more")
-    period, value = np.array(rows).T
-    return tabulated(period, value * GRAVITY)
+    return np.array(rows)

@@ -1,7 +1,8 @@
 """The motion, or the motions, that a deck asks for."""
 
 from collections.abc import Iterator
-from dataclasses import fields, replace
+from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,8 @@ from extrados.motions.floors import on_floor, sway_of
 from extrados.motions.formats.record import Record, RecordError
 from extrados.motions.generated import GeneratedSet, Window, generated
 from extrados.motions.motion import Motion
-from extrados.schema.spectrum import CodeSpectrum
+from extrados.motions.selection import PERIODS, choose, spectrum_of, within
+from extrados.schema.spectrum import CodeSpectrum, TargetSpectrum
 from extrados.schema.table import Motion as Model
 from extrados.schema.text import printable
 
@@ -86,8 +88,67 @@ def refuse_set(model: Sets, folder: Path) -> None:
         compatible_set(model, folder)
 
 
+class Selected(models.Components):
+    """A record of a suite that a selection takes, with its factor, and the root mean square of ln(its spectrum / target)."""
+
+    factor: float = 1.0
+    misfit: float = 0.0
+
+
 def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
-    """The records of a suite, not yet read."""
+    """The records of a suite, not yet read; of a selection the best first."""
+    members = _all_members(model, folder)
+    if model.selection is None:
+        return members
+    try:
+        # a file that changes has another stamp
+        stamps = tuple((m.file, records.locate(m.file, folder).stat().st_mtime_ns) for m in members if not m.file.startswith("extrados:"))
+        return list(_selected(_Wanted(model.model_dump_json(), folder, stamps, model)))
+    except (ValueError, OSError) as error:
+        raise RecordError(f"[motion.selection]: {error}") from None
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """A suite with a selection, by its words, its folder and the times at which its files were written."""
+
+    words: str
+    folder: Path
+    stamps: tuple[tuple[str, int], ...]
+    model: models.Suite = field(compare=False)
+
+
+@lru_cache(maxsize=8)
+def _selected(wanted: _Wanted) -> tuple[models.Components, ...]:
+    """The records that the selection of a suite takes; ValueError where its target or its table is wrong."""
+    model, place = wanted.model, wanted.folder
+    chosen = model.selection
+    assert chosen is not None
+    members = _all_members(model, place)
+    if chosen.flatfile is not None:
+        good = within(chosen.flatfile, chosen.limits, place)
+        members = [m for m in members if Path(m.file).name in good]
+        if not members:
+            raise ValueError(f"{chosen.flatfile}: no record of the suite lies within the limits")
+    periods = np.geomspace(chosen.shortest, chosen.longest, PERIODS)
+    plain = model.model_copy(update={"selection": None})
+    found: list[np.ndarray | None] = []
+    for member in members:
+        try:
+            found.append(spectrum_of(suite_motion(plain, member, place), periods, chosen.damping))
+        except RecordError:  # told where the suite is read
+            found.append(None)
+    factors = chosen.least_factor, chosen.greatest_factor
+    target = target_spectrum(chosen, place, chosen.damping)
+    best = choose(found, periods, target, chosen.count, factors, chosen.conditional_period)
+    return tuple(
+        Selected.model_construct(**dict(members[one.number]), factor=one.factor, misfit=one.misfit)  # its paths were found
+        for one in best
+    )
+
+
+def _all_members(model: models.Suite, folder: Path) -> list[models.Components]:
+    """The records of a suite without its selection."""
     if model.records is not None:
         return model.records
     found = records.list_suite(model.files, model.pattern, model.folder, folder)
@@ -103,7 +164,16 @@ def member_name(member: models.Components) -> str:
 
 def suite_motion(model: models.Suite, member: models.Components, folder: Path) -> Motion:
     """One record of a suite as a motion; RecordError where it, or a component of it, cannot be read."""
-    return on_floor(replace(_record(member, _treatment(model), folder), name=member_name(member)), model.floor)
+    treatment = _treatment(model)
+    if isinstance(member, Selected):
+        treatment = replace(treatment, scale=treatment.scale * member.factor)
+    made = replace(_record(member, treatment, folder), name=member_name(member))
+    if isinstance(member, Selected):
+        note = (
+            f"{made.name}: selected with the factor {member.factor:.3g}; its spectrum lies {member.misfit:.2f} (rms of ln) from the target."
+        )
+        made = replace(made, notes=[*made.notes, note])
+    return on_floor(made, model.floor)
 
 
 def generated_set(model: models.Generated, folder: Path, seed: int | None = None) -> GeneratedSet:
@@ -162,9 +232,16 @@ def code_spectrum(model: CodeSpectrum, folder: Path, damping: float = 0.05) -> c
     return code_spectra.read_table(model.table, folder)  # type: ignore[arg-type]
 
 
+def target_spectrum(model: TargetSpectrum, folder: Path, damping: float) -> code_spectra.Spectrum:
+    """The target of motions that a table describes; ValueError where its file is wrong."""
+    if model.conditional_period is not None and model.conditional_sa is not None and model.table is not None:
+        return code_spectra.conditional_mean(model.table, folder, model.conditional_period, model.conditional_sa)
+    return code_spectrum(model, folder, damping)
+
+
 def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
     """The target spectrum of a deck's `compatible` motion."""
-    spectrum = code_spectrum(model, folder, model.damping)
+    spectrum = target_spectrum(model, folder, model.damping)
     spectrum(model.longest)  # refuses a table that ends before the band
     return spectrum
 

@@ -1,11 +1,11 @@
 """Motion kinds: positive ground acceleration points to +x."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from extrados.schema.quantities import Acceleration, Angle, Frequency, Time, Velocity
-from extrados.schema.spectrum import CodeSpectrum
+from extrados.schema.spectrum import TargetSpectrum
 from extrados.schema.table import Motion, Table, key
 
 
@@ -134,6 +134,35 @@ class Record(Components, Treated):
     kind: Literal["record"]
 
 
+class Selection(TargetSpectrum):
+    """The records of a suite whose response spectra, each times a factor, come closest to a target."""
+
+    count: int = key(about="number of records that are taken, those of the least misfit", ge=1, le=2000)
+    shortest: Time = key(0.05, "shortest period that is compared", ge=0.01)
+    longest: Time = key(2.0, "longest period that is compared", le=10)
+    damping: float = key(0.05, "damping ratio of the spectra", ge=0.005, le=0.3)
+    least_factor: float = key(0.25, "least factor on a record", gt=0)
+    greatest_factor: float = key(4.0, "greatest factor on a record", gt=0, le=100)
+    flatfile: str | None = key(
+        None, "CSV table with a column `file` and values of the records, such as magnitude, for `limits`", min_length=1, max_length=1024
+    )
+    limits: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]] = key(
+        {}, "column of the flatfile -> least and greatest value, such as `magnitude = [6, 7.5]`"
+    )
+
+    @model_validator(mode="after")
+    def _band(self) -> "Selection":
+        if self.longest <= self.shortest:
+            raise ValueError("longest must be above shortest")
+        if self.least_factor > self.greatest_factor:
+            raise ValueError("least_factor is above greatest_factor")
+        if bool(self.limits) != (self.flatfile is not None):
+            raise ValueError("flatfile and limits go together")
+        if self.code == "ASCE7" and self.damping != 0.05:
+            raise ValueError("the spectrum of ASCE 7 is that of 5 % damping")
+        return self
+
+
 class Suite(Treated):
     """Several records: a list, a pattern or a folder inside the deck's folder, or a table for each with its components.
 
@@ -149,6 +178,15 @@ class Suite(Treated):
         None, "[[motion.records]], records of several components or channels", min_length=1, max_length=2000
     )
     member: int = key(1, "which record a single run takes, from 1", ge=1)
+    selection: Selection | None = key(
+        None, "[motion.selection], the records closest to a target spectrum alone, each times a factor", source="Baker and Lee 2018"
+    )
+
+    @model_validator(mode="after")
+    def _selected(self) -> "Suite":
+        if self.selection is not None and any(v is not None for v in (self.pga, self.pgv, self.arias, self.sa)):
+            raise ValueError("a selection has a factor for each record: remove pga, pgv, arias and sa")
+        return self
 
     @model_validator(mode="after")
     def _one_source(self) -> "Suite":
@@ -201,7 +239,7 @@ class Generated(Motion):
         return self
 
 
-class Compatible(CodeSpectrum, Motion):
+class Compatible(TargetSpectrum, Motion):
     """Random earthquakes whose response spectrum matches that of a code or table, baseline corrected."""
 
     kind: Literal["compatible"]

@@ -60,6 +60,17 @@ class RotationLimit(ResultModel):
     annual_rate_interval: list[float | None] = maybe("its profile-likelihood interval", "1/year")
 
 
+class MeasureDispersion(ResultModel):
+    """How well one intensity measure of the motions tells collapse from survival."""
+
+    measure: str = fact("intensity measure")
+    unit: str = fact("unit of its median")
+    median: float = fact("median of the lognormal curve of collapse over this measure, in `unit`")
+    dispersion: float = fact("its dispersion, of the logarithm")
+    amplitude_dispersion: float = fact("the same per amplitude of the motion: half for a measure that grows with the square")
+    deviance: float = fact("-2 ln of the likelihood of the outcomes: the least predicts best")
+
+
 class Ensemble(Annual):
     """fragility: one structure under many motions, each as it is."""
 
@@ -81,6 +92,7 @@ class Ensemble(Annual):
     initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     motions: int = fact("number of motions")
     conditions: Conditions = fact("over the runs: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
     collapse_probability_by_rule: dict[str, float] = maybe(
         "share of the runs that collapse by each impact rule, where their c_v differ by more than 1.3"
     )
@@ -105,6 +117,9 @@ class Ensemble(Annual):
     median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
     rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
+    measures: list[MeasureDispersion] = maybe(
+        "of a cloud: intensity measures compared by how well they tell collapse from survival, best first", source="Luco and Cornell 2007"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The share of motions that bring it down; open unless all agree."""
@@ -138,6 +153,7 @@ class OverLevels(Annual):
     levels: list[float] = fact("the levels, ascending, in intensity_unit")
     motions: int = fact("number of motions")
     conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
     sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level")
     hinges_elsewhere_share: list[float | None] = fact("share in which hinges form elsewhere, at each level")
     count: list[int] = fact("motions with a result, at each level")
@@ -263,6 +279,7 @@ class OverDurations(KindResults):
     initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
     conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
 
     def judged(self, demand: Demand) -> Verdict:
         """The least and greatest share of motions that bring it down; open unless all runs agree."""
@@ -368,6 +385,7 @@ class HarmonicMap(KindResults):
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe("cells of the map that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""

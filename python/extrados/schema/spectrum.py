@@ -40,3 +40,26 @@ class CodeSpectrum(Table):
         if missing:
             raise ValueError(f"code {self.code} needs {' and '.join(missing)}")
         return self
+
+
+class TargetSpectrum(CodeSpectrum):
+    """The target of motions: the spectrum of a code, a table such as a uniform hazard spectrum, or the conditional mean of a table of
+    medians and standard deviations."""
+
+    conditional_period: Time | None = key(
+        None,
+        "conditional mean spectrum: the period at which `conditional_sa` is given; the table has the columns period_s,sa_g,sigma_ln, medians "
+        "and standard deviations of the logarithm by a ground-motion model",
+        ge=0.01,
+        le=10,
+        source="Baker 2011; Baker and Jayaram 2008",
+    )
+    conditional_sa: Acceleration | None = key(None, "spectral acceleration of the hazard at `conditional_period`", gt=0)
+
+    @model_validator(mode="after")
+    def _conditional(self) -> "TargetSpectrum":
+        if (self.conditional_period is None) != (self.conditional_sa is None):
+            raise ValueError("conditional_period and conditional_sa go together")
+        if self.conditional_period is not None and self.code != "table":
+            raise ValueError('conditional_period needs code = "table" with the column sigma_ln')
+        return self

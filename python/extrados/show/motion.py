@@ -128,8 +128,9 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         if "target" in arrays:
             target = run.array(name, "target") / GRAVITY
             ax.plot(period, target, "k", label="target")
-            ax.plot(period, 0.9 * target, "k:", linewidth=0.7)
-            ax.plot(period, 1.1 * target, "k:", linewidth=0.7)
+            if r.seed is not None:  # matched, not selected
+                ax.plot(period, 0.9 * target, "k:", linewidth=0.7)
+                ax.plot(period, 1.1 * target, "k:", linewidth=0.7)
             for at in (r.shortest_s, r.longest_s):
                 ax.axvline(at, color=style.EDGE, linewidth=0.6, linestyle="--")
         ax.set_xscale("log")

@@ -34,11 +34,16 @@ class Begin:
     state: Callable[[float], tuple[np.ndarray, np.ndarray]]
 
 
+def domain_of(model: Model, options: Dem | None = None) -> tuple[float, float, float, float]:
+    """Least and greatest x and y [m] beyond which a block is no longer followed; options: default those of the table."""
+    outline = np.concatenate(model.assembly.outlines)
+    reach = (options or Dem(kind="dem")).domain * model.size
+    (left, low), (right, high) = (outline.min(axis=0) - reach).tolist(), (outline.max(axis=0) + reach).tolist()
+    return left, right, low, high
+
+
 def core_options(context: Context, options: Dem, model: Model, begin: float = 0.0) -> dem.Options:
     """Options of the core for a run of this deck; begin: its time by the clock of the motion [s]."""
-    outline = np.concatenate(model.assembly.outlines)
-    reach = options.domain * model.size
-    low, high = outline.min(axis=0) - reach, outline.max(axis=0) + reach
     moved = [m.start + m.duration for m in context.building.initial.movements]
     quiet = max([context.motion.end if context.deck.motion else 0.0, *moved])
     return dem.Options(
@@ -47,7 +52,7 @@ def core_options(context: Context, options: Dem, model: Model, begin: float = 0.
         step=options.time_step or 0.0,
         fraction=options.fraction,
         settle_damping=model.values.settle_damping,
-        domain=(low[0], high[0], low[1], high[1]),
+        domain=domain_of(model, options),
         stop_at_rest=options.end_time is None,
         moving_base=options.base == "moving",
         mass_damping=options.mass_damping,

@@ -1,5 +1,6 @@
 """motion: what a ground motion is, alone or as a set: peaks, measures, spectra, pulses, export."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from extrados.core.calls import interruptible
 from extrados.motions import directions, export
 from extrados.motions import tables as models
 from extrados.motions.formats.record import RecordError
-from extrados.motions.from_deck import compatible_motion, compatible_set, generated_set, is_set, suite_motions
+from extrados.motions.from_deck import compatible_motion, compatible_set, generated_set, is_set, suite_motions, target_spectrum
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.measures import BANDWIDTH, HOUSNER_BAND, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
@@ -311,6 +312,8 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
             f"{count} records: median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s, "
             f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
         )
+        if isinstance(model, models.Suite) and model.selection is not None:
+            r |= _beside_selection(result, model.selection, folder, periods, psa)
     result.results = out.MotionSet(**r)
     for k, (name, a, step) in enumerate(shown):
         if "AT2" in options.export:
@@ -318,6 +321,21 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         if "columns" in options.export:
             result.files[f"motion_{k + 1}.csv"] = export.columns(name, a, step)
     return result
+
+
+def _beside_selection(result: Result, chosen: models.Selection, folder: Path, periods: np.ndarray, psa: np.ndarray) -> dict[str, Any]:
+    """The target of a selection as an array, and the mean of ln(spectra of the records / target) over its band in the answer; further
+    results."""
+    band = (periods >= chosen.shortest) & (periods <= chosen.longest)
+    target = np.full_like(periods, np.nan)
+    target[band] = target_spectrum(chosen, folder, chosen.damping)(periods[band])
+    result.arrays["target"] = Array(target, ("period",), "m/s^2", "target spectrum of the selection")
+    ratio = np.exp(np.log(psa[:, band] / target[band]).mean(axis=0))
+    result.answer += (
+        f" They are selected by spectrum: from {chosen.shortest:g} to {chosen.longest:g} s their geometric mean lies between "
+        f"{ratio.min():.2f} and {ratio.max():.2f} of the target."
+    )
+    return {"shortest_s": chosen.shortest, "longest_s": chosen.longest}
 
 
 def _compare_with_intensity(result: Result, r: dict[str, Any], model: models.Generated, context: Context) -> dict[str, Any]:

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from extrados.core.rocking import FAILED, JointDemand, Response
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.results import fields
 from extrados.results.rocking import Conditions, JointTime
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.rocker import Rocker
 from extrados.views.rockers.soft_base import SoftBaseModel
+from extrados.views.rockers.stack import StackModel
 from extrados.views.rockers.watch import LOST, Watch
 
 #: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
@@ -41,6 +43,8 @@ def astray_of(rocker: Rocker) -> float:
 def not_checked(rocker: Rocker) -> str:
     """Why the joints are not checked, or not all; "" where they are."""
     watch = rocker.watch
+    if isinstance(rocker.model, StackModel):
+        return ""
     if isinstance(rocker.model, SoftBaseModel):
         return "Friction is not checked: the base is compliant."
     if watch is None:
@@ -55,8 +59,10 @@ def not_checked(rocker: Rocker) -> str:
     return ""
 
 
-def friction_of(watch: Watch) -> float:
-    """The least coefficient of friction of its joints."""
+def friction_of(watch: Watch | Rocker) -> float:
+    """The least coefficient of friction of its joints; of two stacked blocks, which the core checks, that of their body."""
+    if isinstance(watch, Rocker):
+        return float(watch.body.parameters[-2:].min())
     return float(watch.friction.min())
 
 
@@ -85,13 +91,13 @@ class Counted:
 
 def of_many(rocker: Rocker, counted: Counted, runs: str) -> dict[str, Any]:
     """Results of the conditions over many runs; `runs` calls them, "motions"."""
-    if rocker.watch is None:
+    if rocker.watch is None and not isinstance(rocker.model, StackModel):
         return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}
     total = max(counted.runs, 1)
-    given = friction_of(rocker.watch)
+    given = friction_of(rocker.watch or rocker)
     return {
         "conditions": Conditions(
-            friction=given if np.isfinite(given) else None,
+            friction=given if given < NO_SLIDING_COEFFICIENT else None,
             required_friction=counted.friction,
             sliding=counted.sliding,
             sliding_share=counted.sliding / total,
@@ -107,7 +113,8 @@ def of_many(rocker: Rocker, counted: Counted, runs: str) -> dict[str, Any]:
 def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     """A sentence for each condition that does not hold in some of the runs."""
     watch = rocker.watch
-    assert watch is not None
+    if watch is None:
+        return _of_stack(rocker, counted, runs)
     found = []
     if counted.sliding:
         share = _share(counted.sliding, counted.runs, runs)
@@ -123,6 +130,24 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
             f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem."
             if len(watch.joints) > 1
             else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
+        )
+    return found
+
+
+def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
+    """The same of two stacked blocks."""
+    found = []
+    if counted.sliding:
+        share = _share(counted.sliding, counted.runs, runs)
+        found.append(
+            f"Friction {friction_of(rocker):.2f} is too low {share}: rocking needs up to {counted.friction:.2f}. Blocks slide first. Use dem, "
+            "or check the friction."
+            if np.isfinite(counted.friction)
+            else f"A joint slides or parts as a whole {share}. Use dem."
+        )
+    if counted.elsewhere:
+        found.append(
+            f"A joint parts as a whole {_share(counted.elsewhere, counted.runs, runs)}: rocking without flight is assumed. Use dem."
         )
     return found
 
@@ -223,6 +248,37 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         thrust_line_outside=outside,
         energy_astray=astray,
         not_checked=not_checked(rocker),
+        violated=[text for _, text in sorted(found)],
+    )
+
+
+def of_pair(rocker: Rocker, joints: JointDemand, handed: bool = False) -> Conditions:
+    """Conditions of one run of two stacked blocks, whose demand comes from an ensemble of one; see `of_one`."""
+    model = rocker.model
+    assert isinstance(model, StackModel)
+    names = [model.assembly.joint_names[j] for j in model.joints]
+    given, needed = friction_of(rocker), float(joints.friction[0])
+    slips_at, leaves_at = float(joints.slips_at[0]), float(joints.leaves_at[0])
+    use = "" if handed else " Use dem."
+    slides = leaves = None
+    found: list[tuple[float, str]] = []
+    if leaves_at >= 0.0:
+        leaves = JointTime(joint=names[int(joints.leaves[0])], time_s=leaves_at)
+        found.append((leaves_at, f"{_upper(leaves.joint)} parts as a whole at {leaves_at:.3f} s: rocking without flight is assumed.{use}"))
+    if slips_at >= 0.0:
+        slides = JointTime(joint=names[int(joints.slips[0])], time_s=slips_at)
+        found.append(
+            (
+                slips_at,
+                f"Friction {given:.2f} is too low, first at {slides.joint} at {slips_at:.3f} s: blocks slide."
+                f"{'' if handed else ' Use dem, or check the friction.'}",
+            )
+        )
+    return Conditions(
+        friction=given if given < NO_SLIDING_COEFFICIENT else None,
+        required_friction=needed,
+        **fields.given(slides_first=slides, leaves_first=leaves),
+        not_checked="",
         violated=[text for _, text in sorted(found)],
     )
 

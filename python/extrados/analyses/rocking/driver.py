@@ -5,7 +5,7 @@ from extrados.analyses.rocking import arch as arch_rocking
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
 from extrados.analyses.rocking import soft_base as soft_base_rocking
-from extrados.analyses.rocking import stack as stack_rocking
+from extrados.analyses.rocking import stack_contacts
 from extrados.analyses.rocking.common import with_moving_supports
 from extrados.analyses.rocking.shapes import film_arrays, on_contacts
 from extrados.analyses.rocking.tables import Rocking
@@ -21,7 +21,7 @@ def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
     context = with_moving_supports(context)
     if rocks_as_stack(context.building):
-        return _with_friction(context, stack_rocking.run(context, options))
+        return _with_friction(context, stack_contacts.run(context, options))
     if context.building.supports.stiffness is not None:
         return _with_friction(context, soft_base_rocking.run(context, options))
     rocker = context.building.rocker(options.form == "linear")

@@ -15,7 +15,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import DIFFER
-from extrados.analyses.rocking.hand_over import UNKNOWN, contacts_of, decide
+from extrados.analyses.rocking.hand_over import decide_cells
 from extrados.analyses.rocking.job import RunsJob, runs_job
 from extrados.analyses.rocking.tables import FailureDomain
 from extrados.core.calls import interruptible
@@ -29,6 +29,7 @@ from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.rocker import Rocker
+from extrados.views.rockers.soft_base import SoftBaseModel
 
 #: Codes of the map: those of the outcomes, with collapse told apart by its mode
 MODE_I, MODE_II = COLLAPSE, COLLAPSE + 1
@@ -396,19 +397,9 @@ def _by_contacts(
         return None
 
     def decided(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        if not len(index):
-            return np.zeros(0, dtype=int)
-        contacts = contacts_of(model, context.building, options.form == "linear")
-        if contacts is None or len(index) > options.hand_over_cells:
-            if contacts is not None:
-                context.warnings.append(
-                    f"Joints slide or hinges form elsewhere in {len(index)} pulses of the map; rigid contacts decide up to "
-                    f"hand_over_cells = {options.hand_over_cells}."
-                )
-            return np.full(len(index), UNKNOWN)
         ends = np.array([m.end for m in mapper.motions]) + mapper.settle
         grounds = [m.ground for m in mapper.motions]
-        return decide(context, "failure-domain-contacts", contacts, grounds, index, amplitude, ends[index])
+        return decide_cells(context, model, options.hand_over_cells, options.form == "linear", grounds, index, amplitude, ends[index])
 
     return decided
 
@@ -508,7 +499,7 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
     governing = np.nanmin(curves.mode_i) / GRAVITY
     shortest = durations[np.isfinite(curves.mode_i)].min()
     start = "hinge" if model.what == "arch" else "rock"
-    if model.restitution is None:
+    if isinstance(model.model, SoftBaseModel):
         start = "lift an edge (held on)"
     below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
     modes = (

@@ -6,6 +6,7 @@ contacts without springs (Moreau 1988), which open and slide wherever the state 
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,13 +20,14 @@ from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.trial import Begin, Trial, core_options
+from extrados.analyses.dem.trial import Begin, Trial, core_options, domain_of
 from extrados.analyses.rocking.conditions import astray_of
 from extrados.core import dem
 from extrados.core import mechanism as core_mechanism
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground
-from extrados.core.rocking import OUTCOMES, Body, Response, history
+from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, ensemble, history
+from extrados.core.stack import StackResponse, stack_history
 from extrados.limit.linkage import Linkage
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
@@ -34,6 +36,7 @@ from extrados.results.model import Array, Result
 from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, WholeOutcome
 from extrados.views.building import Building
 from extrados.views.rockers.rocker import Rocker
+from extrados.views.rockers.stack import StackModel
 from extrados.views.rockers.watch import LOST
 
 #: Handed over so much before the condition fails, over the time unit of the structure: contacts take an impact themselves
@@ -44,6 +47,8 @@ COARSE = 0.02
 LEVEL = 1e-6
 #: Outcome of `rocking` for one of contacts; of many runs sliding counts as recovery
 WORDS: dict[str, WholeOutcome] = {"at-rest": "no-hinging", "slid": "slid", "rocked": "recovery", "collapse": "collapse"}
+#: Outcome of a member whose contacts gave no result
+UNKNOWN = -2
 CODES = {"no-hinging": NO_HINGING, "slid": RECOVERY, "recovery": RECOVERY, "collapse": COLLAPSE}
 
 
@@ -52,10 +57,26 @@ def leaving_time(response: Response, astray: float, time_unit: float) -> float |
     rocking.conditions; time_unit: of the structure [s]."""
     if response.joints is None:
         return None
-    times = [float(t) for t in (response.joints.slips_at, response.joints.leaves_at) if t >= 0.0]
+    times = [float(response.joints.slips_at), float(response.joints.leaves_at)]
     if astray > LOST:
         times += [t for kind, t, _ in response.events if kind == "impact"][:1]
-    return max(min(times) - BEFORE * time_unit, 0.0) if times else None
+    return _first(times, time_unit)
+
+
+def _first(times: list[float], time_unit: float) -> float | None:
+    """Just before the first of some times [s], of which those below zero never come."""
+    come = [t for t in times if t >= 0.0]
+    return max(min(come) - BEFORE * time_unit, 0.0) if come else None
+
+
+class Left(NamedTuple):
+    """When a run leaves its mechanism [s], None where all conditions hold; whether it rocks before, its outcome in OUTCOMES by the
+    mechanism, FAILED where it has none, and its greatest rotation [rad]."""
+
+    time: float | None
+    rocks: bool
+    outcome: int
+    peak: float
 
 
 @dataclass(frozen=True)
@@ -84,6 +105,13 @@ class Leaving:
             start_rotation=abs(self.start),
         )
 
+    def leave(self, ground: Ground, end_time: float, scale: float) -> Left:
+        """When and how a run leaves the mechanism."""
+        response = self.respond(ground, end_time, end_time, scale)
+        time = leaving_time(response, self.astray, self.time_unit)
+        rocks = bool(self.start) or any(kind == "uplift" and t <= (time or 0.0) for kind, t, _ in response.events)
+        return Left(time, rocks, OUTCOMES.index(response.outcome), float(response.peak))
+
     def state(self, ground: Ground, time: float, scale: float, bodies: int) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and velocities (bodies, 3) of blocks and supports at a time [s] under the motion times a factor."""
         q, v = self.start, 0.0
@@ -101,11 +129,58 @@ class Leaving:
 
 
 @dataclass(frozen=True)
+class StackLeaving:
+    """Two stacked blocks until a joint slides or parts as a whole; see Leaving."""
+
+    body: Body
+    pair: StackModel
+    start: float
+    time_unit: float
+    tolerance: float = 1e-8
+
+    @property
+    def blocks(self) -> Assembly:
+        """The blocks."""
+        return self.pair.assembly
+
+    def leave(self, ground: Ground, end_time: float, scale: float) -> Left:
+        """When and how a run leaves the assumption that joints neither slide nor part as a whole."""
+        one = np.zeros(1, dtype=int)
+        found = ensemble([self.body], [ground], one, one, [scale], end_time, start_rotation=self.start, tolerance=self.tolerance, threads=1)
+        if found.interrupted:
+            raise Cancelled(status_code("cancelled"), "rocking of two blocks interrupted")
+        outcome = int(found.outcome[0])
+        if outcome == FAILED:
+            return Left(None, False, outcome, 0.0)
+        time = _first([float(found.joints.slips_at[0]), float(found.joints.leaves_at[0])], self.time_unit)
+        rocks = bool(time) and self._until(ground, time or 0.0, scale).outcome != "no-hinging"
+        return Left(time, rocks, outcome, float(found.peak[0]))
+
+    def _until(self, ground: Ground, time: float, scale: float) -> StackResponse:
+        """The response up to a time [s] above zero."""
+        start = (self.start, self.start, 0.0, 0.0)
+        return stack_history(self.pair.core, ground, time, time, scale=scale, tolerance=self.tolerance, start=start)
+
+    def state(self, ground: Ground, time: float, scale: float, bodies: int) -> tuple[np.ndarray, np.ndarray]:
+        """See Leaving."""
+        rotation, rate, contacts = np.full(2, self.start), np.zeros(2), np.array([np.sign(self.start), 0.0])
+        if time > 0.0:
+            r = self._until(ground, time, scale)
+            rotation, rate, contacts = r.rotation[-1], r.rate[-1], r.state[-1]
+        shift, speed = np.zeros((2, bodies, 3))
+        n = len(self.blocks.mass)
+        shift[:n] = self.pair.pose(rotation[None, :], contacts[None, :])[0]
+        shift[:n, :2] -= self.blocks.centroid
+        speed[:n] = self.pair.velocity(rotation, rate, contacts)
+        return shift, speed
+
+
+@dataclass(frozen=True)
 class Contacts:
     """The blocks of a building on rigid contacts, and the mechanism that they leave; floor: height of the level ground on which they
     slide [m], None where they stand on footings."""
 
-    leaving: Leaving
+    leaving: Leaving | StackLeaving
     model: Model
     floor: float | None
 
@@ -124,23 +199,27 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
     """The blocks of a rocking structure on rigid contacts; None where its joints are not watched, where it is not made of blocks,
     or where the equations are those of slender blocks."""
     watch = rocker.watch
-    if watch is None or not len(watch.joints) or linear:
+    pair = rocker.model if isinstance(rocker.model, StackModel) else None
+    if pair is None and (watch is None or not len(watch.joints) or linear):
         return None
     try:
-        blocks = building.blocks()
+        blocks = building.blocks() if pair is None else pair.assembly
         floor = level_of(blocks)
         rigid = building.rigid((), floor)
     except BadGeometry:
         return None
+    values = joint_values(building, rigid=True)
+    nothing = np.zeros_like(values.cohesion)  # a mechanism has no mortar either
+    model = Model(blocks, rigid, replace(values, cohesion=nothing, tension=nothing))
+    if pair is not None:
+        return Contacts(StackLeaving(rocker.body, pair, rocker.start_rotation, rocker.time_unit, tolerance), model, floor)
+    assert watch is not None
     linkages = watch.linkages
     if len(blocks.mass) != len(watch.assembly.mass):  # a wall that rocks as one pier, of all of its bricks
         if any(len(one.mass) > 1 for one in linkages):
             return None
         right, left = (replace(one, part=np.ones(len(blocks.mass), dtype=int)) for one in linkages)
         linkages = right, left
-    values = joint_values(building, rigid=True)
-    nothing = np.zeros_like(values.cohesion)  # a mechanism has no mortar either
-    model = Model(blocks, rigid, replace(values, cohesion=nothing, tension=nothing))
     leaving = Leaving(rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, tolerance)
     return Contacts(leaving, model, floor)
 
@@ -180,51 +259,81 @@ def stored(result: Result) -> dict[str, Array]:
     }
 
 
-@dataclass(frozen=True)
-class ContactRuns:
-    """Member k: motion[k] times scale[k] until end[k] [s], whose mechanism a condition leaves: its outcome on contacts.
+class Fate(NamedTuple):
+    """How a run ends on contacts, in OUTCOMES or UNKNOWN, its greatest rotation of any block from there on [rad], and whether it only
+    slides."""
 
-    options: of contacts; their end_time [s] counts from the end of each motion.
-    """
+    outcome: int
+    rotation: float
+    slides: bool = False
+
+
+@dataclass(frozen=True)
+class Fates:
+    """Outcomes on rigid contacts of the runs of one structure; options: of contacts, their end_time [s] counts from the end of each
+    motion."""
 
     contacts: Contacts
-    grounds: list[Ground]
-    motion: np.ndarray
-    scale: np.ndarray
-    end: np.ndarray
     options: dem.Options
     collapse: Collapse
 
-    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
-        members = range(first, first + count)
-        found = [self.member(k, threads) for k in members]
-        return {"outcome": np.array(found, dtype=np.int8)}
+    @classmethod
+    def of(cls, context: Context, contacts: Contacts) -> "Fates":
+        """Of a structure of the deck."""
+        options, model = Dem(kind="dem", solver="nonsmooth", floor=contacts.floor), contacts.model
+        step = COARSE * contacts.leaving.time_unit
+        asked = core_options(context, options, model)
+        collapse = Collapse.of(0.2 * model.size, model.size)
+        brief = replace(asked, end_time=dem_model.settle_time(model), output_step=step, stop_at_rest=True)
+        return cls(contacts, brief, collapse)
 
-    def member(self, k: int, threads: int) -> int:
-        """Outcome of one run; FAILED where contacts have no result."""
-        c, ground, scale = self.contacts, self.grounds[self.motion[k]], float(self.scale[k])
-        end = float(self.end[k])
-        response = c.leaving.respond(ground, end, end, scale)
-        time = leaving_time(response, c.leaving.astray, c.leaving.time_unit)
-        if time is None:  # at the edge of its tolerance
-            return OUTCOMES.index(response.outcome)
-        shift, rate = c.begin(ground, time).state(scale)
+    def alike(self, contacts: Contacts) -> "Fates":
+        """The same of another building of the same joints."""
+        model = contacts.model
+        options = replace(
+            self.options, settle_damping=model.values.settle_damping, end_time=dem_model.settle_time(model), domain=domain_of(model)
+        )
+        return Fates(contacts, options, Collapse.of(0.2 * model.size, model.size))
+
+    def follow(self, ground: Ground, scale: float, end: float, threads: int = 1) -> Fate:
+        """The run of a motion times a factor, whose mechanism is followed until `end` [s]; its outcome is UNKNOWN where contacts have no
+        result."""
+        c = self.contacts
+        left = c.leaving.leave(ground, end, scale)
+        if left.time is None:  # at the edge of its tolerance
+            return Fate(left.outcome, left.peak)
+        shift, rate = c.begin(ground, left.time).state(scale)
         many = len(c.bodies.mass) >= BODIES_FOR_THREADS
-        left = ground.end + self.options.end_time - time
-        options = replace(self.options, end_time=left, threads=threads if many else 1)
-        run = dem.run(c.bodies, options, ground.seen_from(time), scale=scale, shift=shift, rate=rate)
+        rest = ground.end + self.options.end_time - left.time
+        options = replace(self.options, end_time=rest, threads=threads if many else 1)
+        run = dem.run(c.bodies, options, ground.seen_from(left.time), scale=scale, shift=shift, rate=rate)
         if run.interrupted:
             raise Cancelled(status_code("cancelled"), "rigid contacts interrupted")
         try:
             dem_model.checked(run, c.model)
         except Refused:
-            return UNKNOWN
-        fate = Seen.of(c.model, run, c.floor is not None).fate(self.collapse)
-        return CODES[outcome_of(bool(response.half_cycles), fate.outcome)]
+            return Fate(UNKNOWN, 0.0)
+        seen = Seen.of(c.model, run, c.floor is not None)
+        turned = seen.rotation.ravel()
+        greatest = float(turned[np.abs(turned).argmax()]) if turned.size else 0.0
+        outcome = outcome_of(left.rocks, seen.fate(self.collapse).outcome)
+        return Fate(CODES[outcome], greatest, outcome == "slid")
 
 
-#: Outcome of a member whose contacts gave no result
-UNKNOWN = -2
+@dataclass(frozen=True)
+class ContactRuns:
+    """Member k: motion[k] times scale[k] until end[k] [s], whose mechanism a condition leaves: its outcome on contacts."""
+
+    fates: Fates
+    grounds: list[Ground]
+    motion: np.ndarray
+    scale: np.ndarray
+    end: np.ndarray
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        members = range(first, first + count)
+        found = [self.fates.follow(self.grounds[self.motion[k]], float(self.scale[k]), float(self.end[k]), threads) for k in members]
+        return {"outcome": np.array([one.outcome for one in found], dtype=np.int8), "peak": np.array([one.rotation for one in found])}
 
 
 def decide(
@@ -232,10 +341,24 @@ def decide(
 ) -> np.ndarray:
     """Outcomes (runs) on contacts of runs whose mechanism a condition leaves, UNKNOWN where contacts gave no result; see
     ContactRuns."""
-    options, model = Dem(kind="dem", solver="nonsmooth", floor=contacts.floor), contacts.model
-    step = COARSE * contacts.leaving.time_unit
-    asked = core_options(context, options, model)
-    collapse = Collapse.of(0.2 * model.size, model.size)
-    brief = replace(asked, end_time=dem_model.settle_time(model), output_step=step, stop_at_rest=True)
-    job = ContactRuns(contacts, grounds, motion, scale, end, brief, collapse)
+    job = ContactRuns(Fates.of(context, contacts), grounds, motion, scale, end)
     return sweep(context, name, job, len(motion), "rigid contacts", slow=True, parallel=True).whole()["outcome"]
+
+
+def decide_cells(
+    context: Context, rocker: Rocker, limit: int, linear: bool, grounds: list[Ground], index: np.ndarray, scale: np.ndarray, end: np.ndarray
+) -> np.ndarray:
+    """Outcomes (runs) of cells of a map whose mechanism a condition leaves: motion index[k] times scale[k] until end[k] [s]; UNKNOWN where
+    contacts do not decide them, or where they are more than `limit`, with a warning."""
+    unknown = np.full(len(index), UNKNOWN)
+    if not len(index):
+        return unknown
+    contacts = contacts_of(rocker, context.building, linear)
+    if contacts is None:
+        return unknown
+    if len(index) > limit:
+        context.warnings.append(
+            f"Joints slide or hinges form elsewhere in {len(index)} cells of the map; rigid contacts decide up to hand_over_cells = {limit}."
+        )
+        return unknown
+    return decide(context, "map-contacts", contacts, grounds, index, scale, end)

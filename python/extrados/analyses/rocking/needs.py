@@ -11,7 +11,7 @@ from extrados.model.errors import BadGeometry
 from extrados.model.structure import Structure
 from extrados.views.building import Building
 from extrados.views.rockers.stack import rocks_as_stack
-from extrados.views.rockers.words import refuse_words
+from extrados.views.rockers.words import refuse_stack, refuse_words
 
 
 def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
@@ -21,8 +21,8 @@ def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
         return
     stones = building.pier_blocks if structure.rocks_as == "piers" else building.blocks
     yield lambda: building.refuse_weightless(stones())
-    if isinstance(options, tables.Rocking) and rocks_as_stack(building):
-        yield functools.partial(_refuse_stack, building, options)
+    if options.soft_base and rocks_as_stack(building):
+        yield functools.partial(refuse_stack, building, options.form == "linear")
     elif building.supports.stiffness is not None and options.soft_base:
         yield lambda: _refuse_soft_base(building, options)
     else:
@@ -60,19 +60,3 @@ def _refuse_soft_base(building: Building, options: tables.RockingTable) -> None:
     from extrados.views.rockers.soft_base import soft_base_model
 
     _ = soft_base_model(building, options.form == "linear").rest
-
-
-def _refuse_stack(building: Building, options: tables.Rocking) -> None:
-    """Refused where two stacked blocks are asked for what `rocking` does not know of them."""
-    for key in building.special_keys.values():
-        raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
-    if building.supports.stiffness is not None:
-        raise Refused(
-            "two stacked blocks rock on rigid ground here: remove it, or use `dem`, which follows a compliant base under any blocks",
-            ("supports", "stiffness"),
-        )
-    if options.form == "linear":
-        raise Refused('form = "linear" applies to blocks and columns only', ("analysis", "form"))
-    if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):
-        name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
-        raise Refused("two stacked blocks take plastic impacts at all edges: remove restitution and energy_ratio", ("joints", name))

@@ -1,6 +1,6 @@
 """Analysis kinds of the arch: rocking, failure domain, assessment."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -15,6 +15,17 @@ from extrados.views.building import Building
 HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
 #: What says of [supports] stiffness how the base gives way
 SOFT_BASE = ("[supports] foundation", "[supports] damping_ratio")
+
+
+def hand_over_cells() -> Any:
+    """Key of analyses that draw a map."""
+    return key(
+        100,
+        "rigid contacts decide cells of the map in which joints slide or hinges form elsewhere, where these are not more; 0: never",
+        ge=0,
+        le=1_000_000,
+        source="Moreau 1988",
+    )
 
 
 class RockingTable(BuildingAnalysis):
@@ -93,13 +104,7 @@ class FailureDomain(RockingTable):
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the curves, in g (and of durations in s)", ge=1e-9, le=0.1)
-    hand_over_cells: int = key(
-        100,
-        "rigid contacts decide pulses of the map in which joints slide or hinges form elsewhere, where these are not more; 0: never",
-        ge=0,
-        le=1_000_000,
-        source="Moreau 1988",
-    )
+    hand_over_cells: int = hand_over_cells()
     at_amplitudes: list[Annotated[Acceleration, Field(gt=0)]] = key(
         [], "also find the shortest failing durations at these amplitudes", max_length=200
     )

@@ -101,6 +101,42 @@ def describe(
     return r
 
 
+#: Measure -> its power of the amplitude of a motion
+POWERS = {"PGA": 1, "PGV": 1, "Arias intensity": 2}
+
+
+def compare(measures: dict[str, tuple[np.ndarray, str]], outcome: np.ndarray) -> list[out.MeasureDispersion]:
+    """Intensity measures of the same motions, best first: how well each alone tells collapse from survival (efficiency, Luco and Cornell
+    2007). measures: values of each motion, and their unit; outcome of each motion.
+
+    Each has its curve by maximum likelihood; the one of the greatest likelihood predicts best. Dispersions are compared per amplitude: that
+    of a measure that grows with its square counts half. A measure without a curve is left out.
+    """
+    ok = outcome != FAILED
+    for values, _ in measures.values():
+        ok &= np.isfinite(values) & (values > 0.0)
+    fell = outcome[ok] == COLLAPSE
+    rows = []
+    for name, (values, unit) in measures.items():
+        try:
+            found = likelihood.fit(likelihood.stripes(values[ok], fell.astype(float), np.ones(len(fell))))
+        except NoFit:
+            continue
+        p = np.clip(found.probability(values[ok]), 1e-300, 1.0 - 1e-16)
+        loss = -2.0 * float(np.where(fell, np.log(p), np.log1p(-p)).sum())
+        rows.append(
+            out.MeasureDispersion(
+                measure=name,
+                unit=unit,
+                median=found.median,
+                dispersion=found.dispersion,
+                amplitude_dispersion=found.dispersion / POWERS.get(name, 1),
+                deviance=loss,
+            )
+        )
+    return sorted(rows, key=lambda row: row.deviance)
+
+
 def _curve(key: str, what: str, found: Lognormal, region: Region, grid: np.ndarray, columns: dict[str, np.ndarray], result: Result) -> None:
     """A curve with its band into the table and the arrays; those of rotations as series."""
     low, high = region.band(grid)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_ma
 from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.statistics import cloud
 from extrados.analyses.statistics.annual import hazard_curve
+from extrados.analyses.statistics.handed import Handed, handed_of
 from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe, shares_at
 from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import median, shares, shares_of
@@ -25,6 +26,8 @@ from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import FAILED, Body, Ground, Response
 from extrados.core.soft_base import KIND as SOFT_BASE
 from extrados.core.soft_base import SoftBase, SoftBaseResponse, soft_base_history, soft_base_start
+from extrados.core.stack import KIND as STACK
+from extrados.core.stack import Stack, stack_history
 from extrados.motions.from_deck import is_set
 from extrados.motions.hazard import HazardCurve
 from extrados.motions.motion import Motion
@@ -65,6 +68,7 @@ class EnsembleJob:
     settle: float
     tolerance: float
     astray: float = 0.0
+    handed: Handed | None = None
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         per_motion = 1 if self.levels is None else len(self.levels)
@@ -86,6 +90,7 @@ class EnsembleJob:
             },
             "slips": np.zeros(count, np.int8),
             "strays": np.zeros(count, np.int8),
+            "handed": np.zeros(count, np.int8),
         }
         whose = member // per_motion if len(self.bodies) > 1 else np.zeros(count, int)
         without = np.array([self.bodies[b] if isinstance(self.bodies[b], str) else "" for b in whose])
@@ -127,6 +132,11 @@ class EnsembleJob:
                 rows[name][good] = getattr(e, name)
             for name, values in rows_of(e.joints, e.half_cycles, self.astray).items():
                 rows[name][good] = values
+            if self.handed is not None:
+                rows["scale"][good] = scale
+                fails = ((rows["slips"][good] > 0) | (rows["strays"][good] > 0)) & ~self.fallen[whose[good]] & (e.outcome != FAILED)
+                left = good[fails]
+                self.handed.settle(rows, left, whose[left], [grounds[k] for k in index[fails]], self.settle, threads)
             down = good[self.fallen[whose[good]]]
             rows["outcome"][down], rows["half_cycles"][down] = COLLAPSE, 0
             rows["peak_ratio"][down], rows["stop_time"][down] = 1.0, 0.0
@@ -152,13 +162,17 @@ def run(context: Context, options: Fragility) -> Result:
     result = Result("fragility")
     if options.durations is None:
         job, count, motions = job_of(context, options, base, None)
-        swept = sweep(context, "fragility", job, count, "fragility", large=not options.cloud)
+        swept = sweep(
+            context, "fragility", job, count, "fragility", large=not options.cloud, slow=options.hand_over, parallel=options.hand_over
+        )
         _describe(context, options, base, job, swept, motions, result)
     else:
         parts = []
         for duration in options.durations:
             job, count, motions = job_of(context, options, base, duration)
-            swept = sweep(context, "fragility", job, count, f"fragility, {duration:g} s")
+            swept = sweep(
+                context, "fragility", job, count, f"fragility, {duration:g} s", slow=options.hand_over, parallel=options.hand_over
+            )
             parts.append((duration, swept))
             if not swept.complete:
                 break
@@ -184,7 +198,10 @@ def job_of(context: Context, options: Fragility, base: Rocker, duration: float |
         measure, unit = "pgv", base.unit_acceleration * GRAVITY * base.time_unit
     sa = (options.sa_period, options.sa_damping) if options.sa_period and (options.levels or options.cloud) else None
     settle = 40.0 * base.time_unit if options.settle is None else options.settle
-    job = EnsembleJob(source, made.bodies, made.starts, made.fallen, measure, unit, levels, sa, settle, options.tolerance, astray_of(base))
+    handed = handed_of(context, options, base, made.sample)
+    job = EnsembleJob(
+        source, made.bodies, made.starts, made.fallen, measure, unit, levels, sa, settle, options.tolerance, astray_of(base), handed
+    )
     if made.fallen.any():
         context.warnings.append(
             f"{int(made.fallen.sum())} of {len(made.fallen)} sampled buildings cannot stand under their own weight: they count as collapsed"
@@ -211,7 +228,7 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
         "critical_rotation_rad": base.critical[0],
         "initial_rotation_ratio": initial,
         "motions": motions,
-        **_conditions(options, base, [rows for _, rows in swept.pieces("outcome", "pga", *ROWS)]),
+        **_conditions(options, base, [rows for _, rows in swept.pieces("outcome", "pga", "handed", *ROWS)]),
     }
     result.warnings += told(r["conditions"])
     _tell_failures(job, swept, per_motion, result)
@@ -241,6 +258,11 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
             options.confidence,
             result,
         )
+        measures = {"PGA": (swept["pga"] / GRAVITY, "g"), "PGV": (swept["pgv"], "m/s"), "Arias intensity": (swept["arias"], "m/s")}
+        compared = cloud.compare(measures | ({name: (swept["intensity"], unit)} if options.intensity == "sa" else {}), swept["outcome"])
+        if len(compared) > 1:
+            r["measures"] = compared
+            result.answer += f" Of {', '.join(sorted(one.measure for one in compared))}, {compared[0].measure} predicts collapse best."
     if options.histories and swept.complete:
         _histories(job, base, min(options.histories, motions), result)
     if options.sensitivity is not None and swept.complete:
@@ -349,19 +371,26 @@ def _sensitivity(context: Context, options: Fragility, base: Rocker, job: Ensemb
 def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarray]]) -> dict[str, Any]:
     """Whether blocks slide or hinges form elsewhere; of sampled buildings of several stones only whether the nominal one slides
     before it rocks."""
-    if options.uncertain and base.watch is not None and not isinstance(base.model, BlockModel):
+    if options.uncertain and base.watch is not None and not isinstance(base.model, BlockModel) and not options.watches_samples:
         why = (
             "Friction and thrust line are not checked: the forces at the joints are those of the nominal building, not of the sampled ones."
         )
         return {"conditions": Conditions(not_checked=why, violated=slides_at_rest(base, rows, "motions"))}
-    return of_many(base, Counted.of(rows), "motions")
+    found = of_many(base, Counted.of(rows), "motions")
+    if options.hand_over:
+        handed = sum(int(piece["handed"].sum()) for piece in rows)
+        failing = sum(int((((piece["slips"] > 0) | (piece["strays"] > 0)) & (piece["outcome"] != FAILED)).sum()) for piece in rows)
+        if handed == failing:
+            found["conditions"] = found["conditions"].model_copy(update={"violated": []})
+        found["handed_over"] = handed
+    return found
 
 
 def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJob, count: int, result: Result) -> dict[str, Any]:
     """Share of the runs that collapse by each impact rule, at each level where there are any, where their c_v differ by more than
     DIFFER and the runs are few enough."""
     rivals = base.rivals(DIFFER)
-    if not rivals or options.uncertain:
+    if not rivals or options.uncertain or options.hand_over:
         return {}
     each = ", ".join(f'"{rule}" {c_v:.3f}' for rule, (c_v, _) in rivals.items())
     if count > MOST_BY_RULE:
@@ -373,7 +402,8 @@ def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJo
     found = {}
     levels = 1 if job.levels is None else len(job.levels)
     for rule, (_, body) in rivals.items():
-        swept = sweep(context, "fragility", replace(job, bodies=[base.held(body)]), count, f"fragility by the rule {rule}").whole()
+        rival = replace(job, bodies=[base.held(body)], handed=None)
+        swept = sweep(context, "fragility", rival, count, f"fragility by the rule {rule}").whole()
         good = swept["outcome"] != FAILED
         at = swept.members % levels
         hits, runs = (np.bincount(at, weight, levels) for weight in (swept["outcome"] == COLLAPSE, good))
@@ -422,8 +452,19 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
             result.arrays[f"history_{what}_{k + 1}"] = Array(data, (f"{axis}_{k + 1}",), unit, about, series=f"history_{what}")
 
 
-def _response(body: Body, ground: Ground, end: float, start: float, tolerance: float) -> Response | SoftBaseResponse:
+class Shown(NamedTuple):
+    """Of two stacked blocks: the rotation of the lower one [rad] over time [s]."""
+
+    time: np.ndarray
+    rotation: np.ndarray
+    outcome: str
+
+
+def _response(body: Body, ground: Ground, end: float, start: float, tolerance: float) -> "Response | SoftBaseResponse | Shown":
     """A body under a motion until a time [s], from a rotation [rad]."""
+    if body.kind == STACK:
+        r = stack_history(Stack.of(body), ground, end, end / POINTS, tolerance=tolerance, start=(start, start, 0.0, 0.0))
+        return Shown(r.time, r.rotation[:, 0], r.outcome)
     if body.kind == SOFT_BASE:
         base = SoftBase.of(body)
         return soft_base_history(base, ground, end, end / POINTS, tolerance=tolerance, start=soft_base_start(base, start))

@@ -7,10 +7,12 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import too_fast
+from extrados.analyses.rocking.hand_over import decide_cells
 from extrados.analyses.rocking.job import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
 from extrados.motions import pulses
 from extrados.results import statistics as out
+from extrados.results.fields import given
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
@@ -45,7 +47,25 @@ def run(context: Context, options: HarmonicMap) -> Result:
         result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
         return result
     shape = (len(frequency), len(amplitude))
-    outcome = swept["outcome"].reshape(shape)
+    outcome = swept["outcome"].copy()
+    fails = (swept["slips"] > 0) | (swept["strays"] > 0)
+    conditions = of_many(model, Counted.of([swept.arrays]), "motions of the map")["conditions"]
+    handed = 0
+    if options.hand_over_cells and fails.any():
+        at = np.flatnonzero(fails)
+        linear = options.form == "linear"
+        found = decide_cells(context, model, options.hand_over_cells, linear, grounds, motion[at], job.scale[at], job.end[at])
+        known = found >= 0
+        outcome[at[known]], handed = found[known], int(known.sum())
+        if handed == len(at):
+            conditions = conditions.model_copy(update={"violated": []})
+        if handed:
+            result.warnings.append(
+                f"Rigid contacts decided {handed} of {outcome.size} motions of the map: joints slide in {conditions.sliding}, and hinges form "
+                f"elsewhere in {conditions.hinges_elsewhere}. Their greatest rotations are not given."
+            )
+            swept["peak_ratio"][at[known]] = np.nan
+    outcome = outcome.reshape(shape)
     over = outcome == COLLAPSE
     ratio = np.where(over, np.nan, swept["peak_ratio"].reshape(shape))
     lowest = np.where(over.any(axis=1), amplitude[over.argmax(axis=1)], np.nan) / GRAVITY
@@ -58,7 +78,8 @@ def run(context: Context, options: HarmonicMap) -> Result:
         lowest_overturning_amplitude_g=lowest.tolist(),
         safe_pocket_cells=pockets,
         restitution=model.restitution,
-        **of_many(model, Counted.of([swept.arrays]), "motions of the map"),
+        conditions=conditions,
+        **given(handed_over=handed or None),
     )
     result.warnings += told(result.results.conditions)
     result.tables["harmonic_map"] = TableData(

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.rocking.tables import HOLDS, SOFT_BASE, RockingTable
+from extrados.analyses.rocking.tables import HOLDS, SOFT_BASE, RockingTable, hand_over_cells
 from extrados.schema.quantities import Acceleration, Angle, Frequency, OrText, Time, factor, parse
 from extrados.schema.table import Table, key
 
@@ -18,11 +18,14 @@ WITHOUT_UNIT = ["pga-ratio", "pgv-ratio", "scale"]
 Level = Annotated[float, OrText()]
 #: Uncertain values by the kind of structure; others that rock by a mechanism know those of STONES
 UNCERTAIN = {
-    "block": ("width", "height", "centre_height", "toe_right", "toe_left", "restitution"),
-    "column": ("width", "top_width", "height", "density", "restitution"),
-    "arch": ("radius", "thickness", "corners", "density", "imperfection", "restitution"),
+    "block": ("width", "height", "centre_height", "toe_right", "toe_left", "friction", "restitution"),
+    "column": ("width", "top_width", "height", "density", "friction", "restitution"),
+    "arch": ("radius", "thickness", "corners", "density", "friction", "imperfection", "restitution"),
+    "stack": ("lower_width", "lower_height", "upper_width", "upper_height", "density", "friction"),
 }
-STONES = ("density", "imperfection", "restitution")
+STONES = ("density", "friction", "imperfection", "restitution")
+#: Of two free blocks that rock as a stack: impacts have no rule that could vary
+STACK = ("density", "friction")
 #: Keys of [supports] that are uncertain where the base gives way, instead of restitution
 BASE = ("stiffness", "damping_ratio")
 Rate = Annotated[float, Field(gt=0, le=100)]
@@ -100,7 +103,7 @@ class Fragility(RockingTable):
     uncertain: dict[str, float] = key(
         {},
         "coefficients of variation of width, height, thickness, restitution, of the thickness lost at worn `corners`, of "
-        "the `density` from stone to stone; `imperfection`: how far corners and joints of stones stray, over the shortest "
+        "the `density` from stone to stone, of the `friction` of all joints alike; `imperfection`: how far corners and joints of stones stray, over the shortest "
         "joint; `stiffness` and `damping_ratio` of a compliant base; sampled by a Sobol sequence",
     )
     sensitivity: int | None = key(
@@ -114,6 +117,11 @@ class Fragility(RockingTable):
     bootstrap: int = key(500, "draws for the band of the fitted curve", ge=0, le=100_000)
     bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
     settle: Time | None = key(None, "time after the motion; default 40 natural time units", ge=0)
+    hand_over: bool = key(
+        False,
+        "rigid contacts decide each run in which joints slide or hinges form elsewhere; false leaves the share of these runs as a warning",
+        source="Moreau 1988",
+    )
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
 
     @model_validator(mode="before")
@@ -129,8 +137,17 @@ class Fragility(RockingTable):
             found = {**found, "hazard": {**hazard, "intensities": numbers}}
         return found
 
+    @property
+    def watches_samples(self) -> bool:
+        """Whether the joints of each sampled building are checked, and not those of the nominal one alone."""
+        return self.hand_over or "friction" in self.uncertain
+
     @model_validator(mode="after")
     def _sensible(self) -> "Fragility":
+        if self.hand_over and {"density", "imperfection"} & set(self.uncertain):
+            raise ValueError("hand_over follows the nominal blocks: remove uncertain.density and uncertain.imperfection")
+        if self.hand_over and self.sensitivity is not None:
+            raise ValueError("sensitivity counts runs of the mechanism alone: remove sensitivity or hand_over")
         if self.levels is not None and min(self.levels) <= 0.0:
             raise ValueError("levels must be above zero")
         if self.levels is not None and self.durations is not None:
@@ -229,3 +246,4 @@ class HarmonicMap(RockingTable):
     max_amplitude: Acceleration | None = key(None, "default 6 times uplift", gt=0)
     amplitudes: int = key(48, "number of amplitudes", ge=2, le=1000)
     cycles: int = key(30, "cycles of the motion", ge=2, le=1000, source="Spanos and Koh 1984")
+    hand_over_cells: int = hand_over_cells()

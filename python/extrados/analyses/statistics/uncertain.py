@@ -8,7 +8,7 @@ from scipy.stats import norm, qmc
 
 from extrados.analyses.batches import computed, stacked
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.statistics.tables import BASE, STONES, UNCERTAIN, Fragility
+from extrados.analyses.statistics.tables import BASE, STACK, STONES, UNCERTAIN, Fragility
 from extrados.core.rocking import Body
 from extrados.limit.errors import CannotStand
 from extrados.model.errors import BadGeometry, NoView
@@ -17,6 +17,7 @@ from extrados.model.geometry.deviation import resurveyed
 from extrados.views.building import Building
 from extrados.views.rockers.block import BlockModel
 from extrados.views.rockers.rocker import Rocker, make_rocker
+from extrados.views.rockers.stack import rocks_as_stack
 
 #: What is drawn stone by stone, by a generator that the point of the cube seeds
 BY_STONE = ("density", "imperfection")
@@ -43,6 +44,10 @@ class Sample:
 
     def rocker(self, k: int) -> Rocker:
         """BadGeometry where that building does not rock, as one that cannot stand."""
+        return self.rocker_and_building(k)[0]
+
+    def rocker_and_building(self, k: int) -> tuple[Rocker, Building]:
+        """The same with the building itself, whose stones are the nominal ones where `density` or `imperfection` vary."""
         names = sorted(self.options.uncertain)
         spread = np.sqrt(np.log1p(np.array([self.options.uncertain[n] for n in names]) ** 2))
         draw = self.draws[k]
@@ -84,6 +89,7 @@ class Bodies:
     bodies: list[Body | str]
     starts: np.ndarray
     fallen: np.ndarray
+    sample: Sample | None = None
 
 
 def sampled(context: Context, options: Fragility, base: Rocker, count: int) -> Bodies:
@@ -104,7 +110,7 @@ def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndar
     ]
     fallen = rows["kind"] == FALLEN
     stand_in = next((body for body in bodies if isinstance(body, Body)), base.body)
-    return Bodies([stand_in if down else body for body, down in zip(bodies, fallen, strict=True)], rows["start"], fallen)
+    return Bodies([stand_in if down else body for body, down in zip(bodies, fallen, strict=True)], rows["start"], fallen, job)
 
 
 def refuse_unknown(building: Building, names: list[str]) -> None:
@@ -112,7 +118,8 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
     structure = building.structure
     assert structure is not None
     what = structure.kind
-    known = UNCERTAIN.get(what, ("restitution",) if structure.rocks_as == "piers" else STONES)
+    stack = rocks_as_stack(building)
+    known = UNCERTAIN.get(what, STACK if stack else ("restitution",) if structure.rocks_as == "piers" else STONES)
     if building.supports.stiffness is not None:
         known = tuple(name for name in known if name != "restitution") + tuple(name for name in BASE if getattr(building.supports, name))
     for name in names:
@@ -127,15 +134,23 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
             "uncertain stones make an arch unsymmetric, where the balance of the thesis says nothing: give another joints.restitution",
             ("analysis", "uncertain"),
         )
+    if "friction" in names and (building.joints.coefficient is None or any(t.friction is not None for t in building.joints.types)):
+        raise Refused(
+            "friction varies for all joints alike: give [joints] friction as a number, and no friction of joint types",
+            ("analysis", "uncertain", "friction"),
+        )
     if "corners" in names and getattr(structure, "thickness_factor", 1.0) == 1.0:
         raise Refused("thickness_factor is 1, so no thickness is lost that could vary", ("analysis", "uncertain", "corners"))
 
 
-def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> Rocker:
+def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> tuple[Rocker, Building]:
     structure = building.require_structure()
     update: dict[str, Any] = {
         name: getattr(structure, name) * value for name, value in factor.items() if name not in (*STONES, *BASE, "corners")
     }
+    joints = building.joints
+    if "friction" in factor and joints.coefficient is not None:
+        joints = joints.model_copy(update={"friction": joints.coefficient * factor["friction"]})
     base = {name: getattr(building.supports, name) * factor[name] for name in BASE if name in factor}
     if "corners" in factor:
         given: float | None = getattr(structure, "thickness_factor", None)
@@ -145,12 +160,14 @@ def _model(building: Building, options: Fragility, factor: dict[str, float], see
         if left <= 0.0:
             raise NoView("its corners are worn away", ("analysis", "uncertain", "corners"))
         update["thickness_factor"] = left
-    changed = building.having(structure=structure.model_copy(update=update), supports=building.supports.model_copy(update=base)).apart()
+    changed = building.having(
+        structure=structure.model_copy(update=update), supports=building.supports.model_copy(update=base), joints=joints
+    ).apart()
     stones = _stones(changed.blocks(), options, seeds) if seeds else None
     rocker = make_rocker(changed, options.form == "linear", stones, options.soft_base)
-    if not isinstance(rocker.model, BlockModel):
+    if not isinstance(rocker.model, BlockModel) and not options.watches_samples:
         rocker = rocker.unwatched()  # tables of the joints of many stones are long
-    return rocker.rebounding(factor["restitution"]) if "restitution" in factor else rocker
+    return (rocker.rebounding(factor["restitution"]) if "restitution" in factor else rocker), changed
 
 
 def _stones(assembly: Assembly, options: Fragility, seeds: dict[str, int]) -> Assembly:

@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.core.rocking import Body, limits
 from extrados.core.soft_base import soft_base_body
+from extrados.core.stack import stack_body
 from extrados.limit.linkage import Linkage
 from extrados.limit.loads import tilt_loads
 from extrados.model.errors import WHOLE, NoView
@@ -21,8 +22,9 @@ from extrados.views.rockers.frame import FrameModel
 from extrados.views.rockers.mechanism import MechanismModel
 from extrados.views.rockers.restraints import Restraints, block_linkages, block_reach, members_of, three_impacts
 from extrados.views.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
+from extrados.views.rockers.stack import StackModel, rocks_as_stack
 from extrados.views.rockers.watch import Watch, sliding_capacity
-from extrados.views.rockers.words import refuse_words, rocks_as_block
+from extrados.views.rockers.words import refuse_stack, refuse_words, rocks_as_block
 
 OTHER_RULE = 'the impact rule "thesis" is of circular arches without restraints: "energy-safe" replaces it'
 
@@ -40,7 +42,7 @@ class Rocker:
 
     what: str
     word: str
-    model: BlockModel | ArchModel | MechanismModel | SoftBaseModel
+    model: BlockModel | ArchModel | MechanismModel | SoftBaseModel | StackModel
     body: Body
     uplift: float
     critical: tuple[float, float]
@@ -64,17 +66,17 @@ class Rocker:
 
     def unwatched(self) -> "Rocker":
         """The same without the tables of its joints."""
-        if self.watch is None or isinstance(self.model, SoftBaseModel):
+        if self.watch is None or isinstance(self.model, SoftBaseModel | StackModel):
             return self
         return replace(self, body=self.model.body, watch=None)
 
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
         """Rule -> (c_v, structure) of all impact rules where they differ by more than the factor; none where there is one."""
-        return {} if isinstance(self.model, SoftBaseModel) else self.model.rivals(factor)
+        return {} if isinstance(self.model, SoftBaseModel | StackModel) else self.model.rivals(factor)
 
     def rebounding(self, factor: float) -> "Rocker":
         """The same with c_v times a factor, as long as an impact creates no energy."""
-        assert not isinstance(self.model, SoftBaseModel) and self.restitution is not None
+        assert not isinstance(self.model, SoftBaseModel | StackModel) and self.restitution is not None
         return replace(self, body=self.held(self.model.rebounding(factor)), restitution=min(1.0, factor * self.restitution))
 
     @property
@@ -97,7 +99,7 @@ class Rocker:
 def make_rocker(building: Masonry, linear: bool = False, stones: Assembly | None = None, soft_base: bool = False) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none.
 
-    soft_base: also a block on a base that gives way, which only ensembles and `core.soft_base` rock.
+    soft_base: also what moves in two coordinates, a block on a base that gives way and two stacked blocks.
 
     stones: instead of the building's own, as they might be too; an arch of these need not be symmetric and rocks by
     two mechanisms.
@@ -105,6 +107,8 @@ def make_rocker(building: Masonry, linear: bool = False, stones: Assembly | None
     structure, ratio = building.structure, building.initial.rotation_ratio
     if structure is None:
         raise NoView("the deck has no [structure]", WHOLE)
+    if soft_base and rocks_as_stack(building):
+        return _as_stack(building, linear, stones)
     if soft_base and building.supports.stiffness is not None:
         return _on_soft_base(building, linear, stones)
     refuse_words(building, linear)
@@ -212,6 +216,28 @@ def _watched(
     return replace(free, body=watch.watched(free.body), watch=watch)
 
 
+def _as_stack(building: Masonry, linear: bool, stones: Assembly | None) -> Rocker:
+    """Two blocks upon each other, in two coordinates."""
+    structure = building.structure
+    assert structure is not None
+    refuse_stack(building, linear)
+    model = StackModel(building.blocks() if stones is None else stones)
+    building.refuse_weightless(model.assembly)
+    alpha, unit = model.whole
+    return Rocker(
+        structure.kind,
+        structure.word,
+        model,
+        stack_body(model.core, (alpha, model.alone[0]), model.friction(building.friction())),
+        min(model.uplift),
+        (alpha, alpha),
+        None,
+        max(unit, model.alone[1]),
+        model.radius,
+        building.initial.rotation_ratio * alpha,
+    )
+
+
 def _on_soft_base(building: Masonry, linear: bool, stones: Assembly | None) -> Rocker:
     """A block, a column or a wall taken as one body, on a base that gives way."""
     structure, ratio = building.structure, building.initial.rotation_ratio
@@ -246,7 +272,7 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
     if not _is_restrained(building):
         return None
     model = free.model
-    assert not isinstance(model, ArchModel | SoftBaseModel) and building.structure is not None
+    assert not isinstance(model, ArchModel | SoftBaseModel | StackModel) and building.structure is not None
     wall = building.supports.abutting_wall
     sides = (wall != "right", wall != "left")
     rebound = (0.0, 0.0)

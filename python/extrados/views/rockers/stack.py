@@ -7,6 +7,7 @@ import numpy as np
 
 from extrados.core.stack import Stack
 from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.schema.constants import GRAVITY
 from extrados.views.blocks import Masonry
 
@@ -65,6 +66,20 @@ class StackModel:
             0.5 * float(contact),
         )
 
+    def friction(self, given: float | np.ndarray | None) -> tuple[float, float]:
+        """Friction of the joint on the ground and of the joint between, infinite where they do not slide; given: of the joints of the
+        assembly, or of all."""
+        if given is None or np.size(given) not in (1, 2):
+            return np.inf, np.inf
+        found = np.broadcast_to(np.asarray(given, dtype=float), 2)[self.joints]
+        ground, between = np.where(found < NO_SLIDING_COEFFICIENT, found, np.inf).tolist()
+        return ground, between
+
+    @property
+    def radius(self) -> float:
+        """Distance of the centre of both blocks from an edge of the foot [m]."""
+        return self.core.half_foot / float(np.sin(self.whole[0]))
+
     @property
     def whole(self) -> tuple[float, float]:
         """Slenderness angle of both as one block [rad], and the time 1/p in which it turns [s]."""
@@ -105,3 +120,17 @@ class StackModel:
         ground = self.joints[0]
         at[:, :, :2] += 0.5 * (self.assembly.p[ground] + self.assembly.q[ground])
         return at[:, np.argsort(self.order)]
+
+    def velocity(self, rotation: np.ndarray, rate: np.ndarray, state: np.ndarray) -> np.ndarray:
+        """Velocity of both centres [m/s] and counter-clockwise rate of rotation [rad/s] (2, 3), in the order of the assembly; rotation (2)
+        [rad], rate (2) [rad/s], state (2) as StackResponse."""
+        s = self.core
+        foot, edge = s.half_foot * state[0], s.half_contact * state[1]
+
+        def moved(x: float, y: float, block: int) -> np.ndarray:
+            c, sn = np.cos(rotation[block]), np.sin(rotation[block])
+            return rate[block] * np.array([c * y - sn * x, -sn * y - c * x])
+
+        lower = moved(-foot, s.centre[0], 0)
+        upper = moved(edge - foot, s.height, 0) + moved(-edge, s.centre[1], 1)
+        return np.array([[*lower, -rate[0]], [*upper, -rate[1]]])[np.argsort(self.order)]

@@ -16,7 +16,11 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
     wall, ratio = building.supports.abutting_wall, building.initial.rotation_ratio
     assert building.structure is not None
     if building.structure.rocks_as == "stack":
-        raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow", ("structure", "kind"))
+        raise NoView(
+            "two stacked blocks rock in two coordinates, which `rocking`, `fragility`, `failure-domain`, `failure-curves`, `harmonic-map` "
+            "and `dem` follow",
+            ("structure", "kind"),
+        )
     if building.supports.stiffness is not None:
         raise NoView(
             "on a compliant base a building moves in more than one coordinate, which `rocking`, `fragility`, "
@@ -55,3 +59,19 @@ def refuse_soft_base(building: Masonry) -> None:
             "give [supports] damping_ratio",
             ("joints", name),
         )
+
+
+def refuse_stack(building: Masonry, linear: bool = False) -> None:
+    """NoView, with the key, where two stacked blocks have what their rocking does not consider."""
+    for key in building.special_keys.values():
+        raise NoView("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
+    if building.supports.stiffness is not None:
+        raise NoView(
+            "two stacked blocks rock on rigid ground here: remove it, or use `dem`, which follows a compliant base under any blocks",
+            ("supports", "stiffness"),
+        )
+    if linear:
+        raise NoView('form = "linear" applies to blocks and columns only', ("analysis", "form"))
+    if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):
+        name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
+        raise NoView("two stacked blocks take plastic impacts at all edges: remove restitution and energy_ratio", ("joints", name))

@@ -1,0 +1,58 @@
+"""Members of an ensemble in which joints slide or hinges form elsewhere: rigid contacts decide them, one by one."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.hand_over import Fates, contacts_of
+from extrados.analyses.statistics.tables import Fragility
+from extrados.analyses.statistics.uncertain import Sample
+from extrados.core.rocking import Ground
+from extrados.results.rocking import COLLAPSE, NO_HINGING
+from extrados.views.rockers.rocker import Rocker
+
+
+@dataclass(frozen=True)
+class Handed:
+    """fates, critical [rad]: of the nominal building; sample: of buildings of uncertain values."""
+
+    fates: Fates
+    critical: float
+    sample: Sample | None = None
+
+    def settle(
+        self, rows: dict[str, np.ndarray], members: np.ndarray, buildings: np.ndarray, grounds: list[Ground], settle: float, threads: int
+    ) -> None:
+        """Put the outcomes and greatest rotations by contacts into the rows of some members, and mark them as handed. buildings, grounds: of
+        these members; settle: time after a motion [s]. The greatest rotation is that of any block, over the critical one. A building that only slides does not
+        rock."""
+        for k, building, ground in zip(members, buildings, grounds, strict=True):
+            fates, critical = self.fates, self.critical
+            if self.sample is not None:
+                rocker, varied = self.sample.rocker_and_building(int(building))
+                contacts = contacts_of(rocker, varied)
+                if contacts is None:
+                    continue
+                fates, critical = fates.alike(contacts), min(rocker.critical)
+            found = fates.follow(ground, float(rows["scale"][k]), ground.end + settle, threads)
+            if found.outcome < 0:
+                continue
+            rows["outcome"][k], rows["handed"][k] = NO_HINGING if found.slides else found.outcome, 1
+            ratio = abs(found.rotation) / critical
+            rows["peak"][k] = found.rotation
+            rows["peak_ratio"][k] = max(1.0, ratio) if found.outcome == COLLAPSE else ratio
+
+
+def handed_of(context: Context, options: Fragility, base: Rocker, sample: Sample | None) -> Handed | None:
+    """How contacts decide members, where the deck wants it; Refused where they cannot."""
+    if not options.hand_over:
+        return None
+    contacts = contacts_of(base, context.building, options.form == "linear")
+    if contacts is None:
+        raise Refused(
+            "rigid contacts do not follow this building: its joints are not watched (ties, dampers, a wall, a compliant base, piers "
+            'without blocks, form = "linear")',
+            ("analysis", "hand_over"),
+        )
+    return Handed(Fates.of(context, contacts), min(base.critical), sample)
