@@ -44,6 +44,7 @@ CHAPTERS = (
     "meanings",
     "outputs",
     "joins",
+    "ways",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
