@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from asking import Answer, Deck, ask, at_most, must, near
+from asking import Answer, Deck, ask, at_most, must, near, same
 from buildings import changed, decks, number
 from definitions_codes import code_spectrum
 from definitions_keys import EFFECTS
+from fields import dimension, leaning, numbers, questions
+from hypothesis import reject
 from hypothesis import strategies as st
 from relations import GRAVITY, RIGID, ok, relation
 
@@ -200,8 +202,8 @@ def dowels_of_a_column_at_rest(width: float, slender: float, friction: float, wa
     near("dowel", weak.capacity, np.minimum(friction + strength / above, rough.capacity), 1e-3, 1.0)
 
 
-def moved_model(text: str, shift: list[float], turn: int, skew: float) -> str:
-    """A model of COMPAS moved, its axes exchanged, and the far side of its first block moved by `skew`."""
+def moved_model(text: str, shift: list[float], turn: int, skew: float, noise: float = 0.0) -> str:
+    """A model of COMPAS moved, its axes exchanged, the far side of its first block moved by `skew`, and of every block by a `noise` of its size."""
     import json
 
     data = json.loads(text)
@@ -214,8 +216,10 @@ def moved_model(text: str, shift: list[float], turn: int, skew: float) -> str:
 
     for k, vertices in enumerate(meshes(data)):
         depth = max(v["y"] for v in vertices.values())
+        size = max(max(v[c] for v in vertices.values()) - min(v[c] for v in vertices.values()) for c in "xyz")
         for v in vertices.values():
             x, y, z = v["x"], v["y"], v["z"]
+            x += noise * size if y == depth else 0.0
             x += skew if k == 0 and y == depth else 0.0
             one = [x + shift[0], y + shift[1], z + shift[2]]
             v["x"], v["y"], v["z"] = [one, [one[1], one[0], one[2]]][turn]
@@ -239,12 +243,12 @@ def models_anywhere(deck: Deck, shift: tuple, turn: int, skew: float, within: fl
     text = extrados.export({**deck, "analysis": [{"kind": "tilt"}]}, "compas")
     with tempfile.TemporaryDirectory() as name:
         there = {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}}
-        (Path(name) / "stones.json").write_text(moved_model(text, list(shift), turn, 0.0))
+        (Path(name) / "stones.json").write_text(moved_model(text, list(shift), turn, 0.0, 8e-7))
         back = ask(there, "tilt", Path(name))
         (Path(name) / "stones.json").write_text(moved_model(text, list(shift), turn, skew))
         try:
             other = ask(there, "tilt", Path(name))
-            must(deck["structure"]["kind"] == "block" or other.status != "ok", f"a block that is no prism: {other.capacity}")
+            must(deck["structure"]["kind"] != "arch" or other.status != "ok", f"a block that is no prism: {other.capacity}")
         except DeckError:
             pass
     ok(one, back)
@@ -348,3 +352,119 @@ def motions_that_cannot_be_used_are_named(deck: Deck, zeros: int, amplitude: flo
         must(f"r{k} has no result: r{k}.csv: the peak is 0 g in 'g': below 0.0001 g" in every.warnings, every.warnings)
     must(every.results.failed == 2 * zeros, f"{every.results.failed} of {zeros} motions without acceleration")
     near("shares", every.results.collapse_probability, good.results.collapse_probability, 1e-9)
+
+
+SECTIONED = questions("tilt", "thrust", "moving-load", "rocking", "failure-domain", "local-mechanism", "supports")
+
+
+def deeper(deck: Deck, factor: float) -> Deck:
+    """A drawn deck with its depth and all its forces times a factor."""
+    made = changed(deck, structure={"depth": deck["structure"].get("depth", 1.0) * factor})
+    for tie in made.get("ties", []):
+        tie |= {k: tie[k] * factor for k in ("stiffness", "yield_force") if k in tie}
+    return made
+
+
+def per_depth(unit: str, factor: float) -> float:
+    """What a number of a unit is multiplied by in a section that is so many times as deep: mass and force, but none per area or length of it."""
+    length, mass, time = dimension(unit)
+    return factor if mass > 0 and (length > 0 or time == 0) else 1.0
+
+
+@relation(
+    "tilt thrust moving-load rocking failure-domain local-mechanism supports", st.tuples(SECTIONED, number(0.4, 3.0), st.booleans()), 2e-5
+)
+def a_deeper_section_is_as_many_slices(question: tuple, factor: float, crushable: bool, within: float) -> None:
+    """With depth and forces times a factor, forces, masses and energies go as the factor, and lengths, accelerations and times remain."""
+    deck, kind, table = question
+    if "depth" not in deck["structure"]:
+        reject()
+    if crushable:
+        deck = changed(deck, material={"compressive_strength": 4e6})
+    more = {k: [f * factor for f in v] if k == "axle_loads" else v * factor if k == "force" else v for k, v in table.items()}
+    if kind == "moving-load" and "axle_loads" not in table:
+        table, more = {**table, "axle_loads": [2e4]}, {**more, "axle_loads": [2e4 * factor]}
+    one, other = ask(deck, kind, **table), ask(deeper(deck, factor), kind, **more)
+    same("deeper", one, other)
+    ok(one, other)
+    a, b = numbers(one), numbers(other)
+    must(set(a) == set(b), f"other results: {sorted(set(a) ^ set(b))[:8]}")
+    loose = 50.0 if kind == "failure-domain" else 1.0
+    for name, (unit, value) in a.items():
+        if isinstance(value, float | np.ndarray) and "depth" not in name and "intercept" not in name:
+            x, y = np.asarray(value, dtype=float) * per_depth(unit, factor), np.asarray(b[name][1], dtype=float)
+            if x.shape == y.shape:
+                scale = float(np.abs(x[np.isfinite(x)]).max(initial=0.0))
+                near(f"{kind} {name} [{unit}]", x, y, within * loose, max(scale, 1e-3 if unit == "rad" else 1e-9 * abs(factor)))
+
+
+@relation("moving-load", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(2.0, 8.0), number(0.5, 2.0)), 1e-5)
+def zones_of_thrust_carry_their_forces(deck: Deck, strength: float, depth: float, within: float) -> None:
+    """The zone of thrust at a joint is about the thrust line, as wide as its compression needs at the strength over the depth."""
+    deck = changed(deck, structure={"depth": depth}, material={"compressive_strength": strength * 1e6})
+    answer = ask(deck, "moving-load", count=5, axle_loads=[1e4], axles=[0.0])
+    ok(answer)
+    a = {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
+    middle, width = 0.5 * (a["zone_inner"] + a["zone_outer"]), np.linalg.norm(a["zone_outer"] - a["zone_inner"], axis=1)
+    same_ = [k for k in a if k.endswith("_point") and a[k].shape == middle.shape and np.allclose(a[k], middle, atol=1e-6, equal_nan=True)]
+    must(bool(same_), f"the zone is about no thrust line: {sorted(k for k in a if k.endswith('_point'))}")
+    normal = a["envelope_normal"][int(np.abs(a["place"] - answer.results.worst_place_m).argmin())]
+    near("zone", width * depth * strength * 1e6, normal, within, float(np.nanmax(np.abs(normal))))
+
+
+@relation(
+    "moving-load", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), st.integers(5, 9), st.booleans(), number(0.1, 0.6)), 1e-5
+)
+def places_of_a_train(deck: Deck, count: int, both: bool, apart: float, within: float) -> None:
+    """Places of a train lie evenly from the first axle on the one end to the last on the other; each by itself has the same factor; the least governs."""
+    table = {"axle_loads": [2e4, 3e4], "axles": [0.0, apart], "both_ways": both}
+    answer = ask(deck, "moving-load", count=count, **table)
+    ok(answer)
+    a = {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
+    ahead = a["place"][:count]
+    steps = np.diff(ahead)
+    near("steps", steps, np.full(count - 1, steps.mean()), 1e-6)
+    if both:
+        near("back", a["place"][count:], (ahead[0] + ahead[-1] - apart) - ahead, 1e-6, 1.0)
+    k = count // 2
+    alone = ask(deck, "moving-load", places=[float(ahead[k])], **{**table, "both_ways": False})
+    ok(alone)
+    near("one place", np.asarray(alone.result.arrays["capacity"].data)[0], a["capacity"][k], within)
+    least = int(np.nanargmin(a["capacity"]))
+    near("worst place", a["capacity"][least], np.asarray(a["capacity"])[np.abs(a["place"] - answer.results.worst_place_m).argmin()], within)
+
+
+@relation("failure-domain", st.tuples(number(1.0, 6.0), st.sampled_from(["step", "sine"])), 2e-3, share=0.3)
+def durations_that_are_not_given(radius: float, pulse: str, within: float) -> None:
+    """Without durations an arch is tried by those of its natural time: four times as large, twice as long, at the same amplitudes."""
+    found = []
+    for size in (radius, 4.0 * radius):
+        deck = {"structure": {"kind": "arch", "radius": size, "thickness": 0.15 * size, "embrace": 157.5, "voussoirs": 7}}
+        found.append(ask(deck, "failure-domain", pulse=pulse, amplitudes=2, accuracy=0.05, hand_over_cells=0))
+    ok(*found)
+    one, other = (np.asarray(f.result.arrays["duration"].data) for f in found)
+    must(len(one) > 2, f"durations {one}")
+    high = {"step": 1.0, "sine": 2.4}[pulse]
+    unit = math.sqrt(radius / GRAVITY)
+    near("durations", [one[0], one[-1]], [0.1 * high * unit, high * unit], within)
+    near("durations", 2.0 * one, other, within)
+
+
+@relation("local-mechanism", st.tuples(decks("arch", "column", "brickwork", "pointed-arch", "blocks", "stack"), number(0.02, 0.08)), 1e-9)
+def heights_of_mechanisms(deck: Deck, lean: float, within: float) -> None:
+    """A mechanism some blocks of which rest on the ground is at the ground, however the others hinge above; any other is not."""
+    bare = leaning(deck, lean)
+    answer = ask(bare, "local-mechanism", mechanism="building")
+    ok(answer)
+    ground = np.array(bare["structure"]["ground"], dtype=float)
+    base = float(ground[:, [1, 3]].min())
+    tilt = ask(bare, "tilt")
+    ok(tilt)
+    if not tilt.capacity[0] < 0.999 * tilt.capacity[1]:
+        reject()  # the mechanism to the other side, or either, is judged
+    arrays = {k: np.asarray(v.data) for k, v in tilt.result.arrays.items()}
+    speed = np.abs(arrays["velocity"]).max(axis=1)
+    moving = [str(b) for b, v in zip(arrays["block_name"], speed, strict=True) if v > 1e-6 * speed.max()]
+    points = {b["name"]: np.array(b["points"], dtype=float) for b in bare["structure"]["block"]}
+    on = [b for b in moving if points[b][:, 1].min() < base + 1e-9]
+    must((answer.results.base_height_m == 0.0) == bool(on), f"z {answer.results.base_height_m}, on the ground {on}")
