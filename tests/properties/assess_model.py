@@ -18,7 +18,7 @@ from extrados.results.verdict import Verdict
 from trials import count_of
 
 QUICK = settings(
-    max_examples=count_of(500, 60),
+    max_examples=count_of(500, 200),
     database=None,
     deadline=None,
     derandomize=True,

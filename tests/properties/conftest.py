@@ -150,7 +150,7 @@ def _noted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> I
         "chapter": chapter.name,
         "source": hashlib.sha256(chapter.read_bytes()).hexdigest(),
         "seconds": time.process_time() - begin,
-        "answers": digest.hexdigest(),
+        "results": digest.hexdigest(),
         "lines": found,
     }
     with open(place, "a", encoding="utf-8") as file:

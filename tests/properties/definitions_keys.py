@@ -124,7 +124,7 @@ EFFECTS: tuple[tuple[Deck, str, Deck, Deck], ...] = (
             "base_height": 4.0,
             "building_height": 8.0,
             "building_period": 0.5,
-            "storeys": 3,
+            "storeys": 5,
             "peak_acceleration": "0.3 g",
             "collapse_spectrum": {"code": "NTC", "acceleration": "0.2 g"},
             "one_second_acceleration": "0.2 g",

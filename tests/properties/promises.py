@@ -79,6 +79,28 @@ def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency:
         must(silent == 0, f"{silent} of {len(runs)} say nothing of it: {[r.results.outcome for r in runs]}")
 
 
+@relation(
+    "dem",
+    st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5), st.booleans()),
+    0.0,
+    examples=((1.0, 5.0, 1.0, 2.0, True),),
+)
+def chaos_of_elements_is_told(width: float, slenderness: float, amplitude: float, frequency: float, rigid: bool, within: float) -> None:
+    """Of elements, too, every run from the first turn of the outcome to the last says that last digits decide."""
+    joints = {"friction": 2.0, **({} if rigid else {"normal_stiffness": 1e9})}
+    deck = {"structure": {"kind": "block", "width": width, "height": width * slenderness}, "joints": joints}
+    motion = {"kind": "harmonic", "frequency": frequency, "duration": 8.0}
+    runs = [
+        ask(changed(deck, motion={**motion, "amplitude": f"{amplitude + k * 1e-5!r} g"}), "dem", end_time=10.0, **(RIGID if rigid else {}))
+        for k in range(8)
+    ]
+    ok(*runs)
+    turns = [k for k, (a, b) in enumerate(itertools.pairwise(runs)) if a.results.outcome != b.results.outcome]
+    if len(turns) > 1:
+        silent = [k for k in range(turns[0], turns[-1] + 2) if not runs[k].results.decided_by_last_digits]
+        must(not silent, f"{silent} say nothing of it: {[(r.results.outcome, r.results.perturbation_growth) for r in runs]}")
+
+
 @relation("dem", st.tuples(decks("block", "column"), st.sampled_from([0.0, 0.01])), 0.0)
 def little_damping(deck: Deck, ratio: float, within: float) -> None:
     """A wall that stands is looked at with springs that are not damped too."""

@@ -44,6 +44,7 @@ CHAPTERS = (
     "meanings",
     "outputs",
     "joins",
+    "ways",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
@@ -60,8 +61,11 @@ SLOW = {
     "a-plinth-by-codes",
     "a-section-through-files",
     "a-stronger-tie",
+    "arrays-tables-and-results-of-one-name",
     "bounds-of-solids",
     "dilatancy-helps",
+    "dowels-of-a-column-at-rest",
+    "heights-of-mechanisms",
     "layers-that-are-switched-off",
     "noise-of-solids",
     "rougher",

@@ -639,7 +639,7 @@ def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
     """A run whose perturbed run ends otherwise leaves the verdict of elements open, without runs at other factors."""
-    monkeypatch.setattr(perturbed, "chaos_of", lambda outcome, other, grown: chaos_of(outcome, "collapse", 1e5))
+    monkeypatch.setattr(perturbed, "chaos_of", lambda other, grown, turns: chaos_of("collapse", 1e5, turns))
     r = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "dem"], "budget": 20}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["dem"].outcome == "open" and "Chaotic" in rows["dem"].statement

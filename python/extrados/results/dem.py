@@ -90,7 +90,7 @@ class DemRun(KindResults):
     off_footing: list[str] = fact("blocks that slid beyond their footings, without a named floor")
     decided_by_last_digits: bool = fact(
         "chaotic response: under the motion times 1 + 1e-6 the displacements differ by more than a hundredth of the one that counts "
-        "as collapse, or only one of the two runs collapses; false without this check"
+        "as collapse, or only one of both runs collapses; beyond a thousandth, also under motions up to 1e-4 apart; false without this check"
     )
     perturbation_growth: float | None = fact(
         "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
@@ -191,7 +191,7 @@ class SolidDemRun(KindResults):
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest displacement of a support, settling included", "m")
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, settling included", "m")
     dowels_out: int = fact("how many of them came out")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse, unless the block only slides", "m")
@@ -208,7 +208,7 @@ class SolidDemRun(KindResults):
     off_footing: list[str] = fact("blocks that slid beyond their footings, without a named floor")
     decided_by_last_digits: bool = fact(
         "chaotic response: under the motion times 1 + 1e-6 the displacements differ by more than a hundredth of the one that counts "
-        "as collapse, or only one of the two runs collapses; false without this check"
+        "as collapse, or only one of both runs collapses; beyond a thousandth, also under motions up to 1e-4 apart; false without this check"
     )
     perturbation_growth: float | None = fact(
         "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "

@@ -11,9 +11,9 @@ from extrados.analyses.dem import files as dem_files
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.friction import friction_threshold
-from extrados.analyses.dem.job import watched
+from extrados.analyses.dem.job import Runs, watched
 from extrados.analyses.dem.model import Model
-from extrados.analyses.dem.perturbed import FACTOR, probe_chaos
+from extrados.analyses.dem.perturbed import probe_chaos
 from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.ties import section_arrays, tie_arrays, tie_columns, tie_rows
@@ -47,12 +47,24 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     again = "; --resume continues from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
-    shadow = trial.job([model.values], FACTOR, output_step=step) if options.perturbed else None
 
     def outcome_of(one: dem.Run) -> str:
         return Seen.of(model, one, options.floor is not None).fate(trial.collapse).outcome
 
-    chaos = probe_chaos(context, shadow, trial.idle, found, model.rigid.count, trial.collapse, outcome_of, result, f"{name}-perturbed")
+    def job_of(factor: float) -> Runs:
+        return trial.job([model.values], factor, output_step=step)
+
+    chaos = probe_chaos(
+        context,
+        job_of if options.perturbed else None,
+        trial.idle,
+        found,
+        model.rigid.count,
+        trial.collapse,
+        outcome_of,
+        result,
+        f"{name}-perturbed",
+    )
     numbers = _numbers(options, trial, seen, ground) | chaos | {"animation": options.animation}
     _store(options, seen, ground, result)
     if seen.slides:

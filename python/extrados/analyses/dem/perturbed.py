@@ -1,10 +1,11 @@
-"""Whether a run is chaotic: one further run, under the motion times 1 + 1e-6, which takes as long as the run itself."""
+"""Whether a run is chaotic: one further run, under the motion times 1 + 1e-6, which takes as long as the run itself; where the
+perturbation has grown, nine more under other factors that no instrument distinguishes."""
 
 from collections.abc import Callable
 from typing import Any
 
 from extrados.analyses.batches import Unfinished
-from extrados.analyses.chaos import NUDGE, growth, violated_by_chaos
+from extrados.analyses.chaos import CHAOTIC, NUDGE, growth, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
 from extrados.analyses.dem.job import Runs, SolidRuns, answered
@@ -13,11 +14,13 @@ from extrados.results.model import Result
 
 #: Factor on what moves the building
 FACTOR = 1.0 + NUDGE
+#: Greatest growth of a perturbation in a smooth response (analyses.chaos): beyond it other factors are tried
+SMOOTH = 1e3
 
 
-def chaos_of(outcome: str, other: str, grown: float) -> dict[str, Any]:
-    """Results on chaos, by both outcomes and the growth of the perturbation (see analyses.chaos)."""
-    turns = NUDGE if (outcome == "collapse") != (other == "collapse") else 0.0
+def chaos_of(other: str, grown: float, turns: float) -> dict[str, Any]:
+    """Results on chaos, by the outcome under the motion times FACTOR, the growth of the perturbation and the least one that turns
+    the outcome, 0 where none does (see analyses.chaos)."""
     violated = violated_by_chaos(
         grown, turns, "the displacement of a block", "the one that counts as collapse", "repeat it under other factors on the motion"
     )
@@ -26,7 +29,7 @@ def chaos_of(outcome: str, other: str, grown: float) -> dict[str, Any]:
 
 def probe_chaos(
     context: Context,
-    job: Runs | SolidRuns | None,
+    job_of: Callable[[float], Runs | SolidRuns] | None,
     idle: bool,
     found: dem.Run | dem3.Run,
     count: int,
@@ -35,18 +38,31 @@ def probe_chaos(
     result: Result,
     name: str = "dem-perturbed",
 ) -> dict[str, Any]:
-    """Results on chaos of a run of `count` bodies. job: the run under the motion times FACTOR, None where it is not wanted; idle:
-    nothing moves the building; outcome_of: of a run; name: of what is kept of it. An interruption is told in `result`."""
+    """Results on chaos of a run of `count` bodies. job_of: the run under the motion times a factor, None where it is not wanted;
+    idle: nothing moves the building; outcome_of: of a run; name: of what is kept of it. An interruption is told in `result`."""
     if idle:
-        return chaos_of(outcome_of(found), outcome_of(found), 0.0)
+        return chaos_of(outcome_of(found), 0.0, 0.0)
     unknown: dict[str, Any] = {"decided_by_last_digits": False, "perturbation_growth": None, "perturbed_outcome": None, "violated": []}
-    if job is None or result.status != "ok":
+    if job_of is None or result.status != "ok":
         return unknown
+    outcome, limit = outcome_of(found), collapse.displacement
+
+    def grown(run: Any) -> float:
+        return growth([measures.shares(one, count, limit) for one in (found, run)])
+
     try:
-        (other,) = answered(context, name, job, "perturbed motion")
+        (first,) = answered(context, name, job_of(FACTOR), "perturbed motion")
+        most, ends = grown(first), {FACTOR: outcome_of(first)}
+        turns = NUDGE if turning(outcome, list(ends.values())) else 0.0
+        if not turns and SMOOTH < most <= CHAOTIC:
+            for k, factor in enumerate(perturbed()):
+                if factor != FACTOR:
+                    (other,) = answered(context, f"{name}-{k}", job_of(factor), "perturbed motion")
+                    ends[factor] = outcome_of(other)
+                    most = max(most, grown(other)) if abs(factor - 1.0) < 1.5 * NUDGE else most
+            turns = turning(outcome, [ends[factor] for factor in perturbed()])
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
         result.reason = f"under the perturbed motion: {error}; the run before it is complete"
         return unknown
-    grown = growth([measures.shares(one, count, collapse.displacement) for one in (found, other)])
-    return chaos_of(outcome_of(found), outcome_of(other), grown)
+    return chaos_of(ends[FACTOR], most, turns)

@@ -9,7 +9,7 @@ from extrados.analyses.dem import measures, solid_measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.files import MOST_FRAMES
 from extrados.analyses.dem.job import SolidRuns, SolidTask, watched
-from extrados.analyses.dem.perturbed import FACTOR, probe_chaos
+from extrados.analyses.dem.perturbed import probe_chaos
 from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import farthest_settlement
@@ -69,8 +69,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     def outcome_of(one: dem3.Run) -> str:
         return solid_measures.look(model, one, options.floor is not None).fate(collapse).outcome
 
-    shadow = job_of(FACTOR) if options.perturbed else None
-    chaos = probe_chaos(context, shadow, moved is None, found, model.count, collapse, outcome_of, result)
+    chaos = probe_chaos(context, job_of if options.perturbed else None, moved is None, found, model.count, collapse, outcome_of, result)
     numbers = _numbers(options, seen) | chaos
     result.results = r = out.SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
     _store(options, seen, ground, result)

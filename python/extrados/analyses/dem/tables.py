@@ -164,7 +164,9 @@ class Dem(SpatialDem, Animated):
     domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
     stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
     perturbed: bool = key(
-        True, "also follow the motion times 1 + 1e-6, to find whether the response is chaotic; takes as long as the run itself"
+        True,
+        "also follow the motion times 1 + 1e-6, to find whether the response is chaotic; takes as long as the run itself, ten times as "
+        "long where the perturbation grows a thousandfold",
     )
     track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "draw the structure at these times; default six characteristic ones", max_length=24)
