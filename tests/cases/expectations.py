@@ -23,6 +23,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from jsonschema import Draft202012Validator
 
 from extrados.results.explain import json_schema
@@ -186,6 +187,18 @@ def summary_schema() -> Draft202012Validator:
     return Draft202012Validator(json_schema())
 
 
+#: Part of the work of the loads that the energy lost may fall by from a state to the next: rounding, and the trapezium rule of steps
+REGAINED = 1e-3
+
+
+def energy_regained(event: dict[str, np.ndarray]) -> float:
+    """The greatest fall of the energy lost (events) [J] between two states that follow each other, over the greatest work of the loads."""
+    known = (event["state"] == 1) & (event["equilibrium"] == 1)
+    work = float(np.abs(event["external"][known]).max(initial=0.0))
+    falls = -np.diff(event["lost"])[known[1:] & known[:-1]]
+    return float(falls.max(initial=0.0)) / work if work > 0.0 else 0.0
+
+
 def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dict[str, Any]]:
     """Run the deck with the change, as a user would through Python; analysis name -> results."""
     from extrados.analyses.context import Context
@@ -195,5 +208,9 @@ def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dic
     data = changed(tomllib.loads(case.deck.read_text(encoding="utf-8")), change)
     run = compute(Context(make_deck(data, case.deck.parent), threads=2))
     summary_schema().validate(run.summary)
+    for name, arrays in run.arrays.items():
+        for prefix in {array.removesuffix("event_lost") for array in arrays if array.endswith("event_lost")}:
+            fallen = energy_regained({key: arrays[f"{prefix}event_{key}"].data for key in ("lost", "external", "equilibrium", "state")})
+            assert fallen <= REGAINED, f"{name}, {prefix}curve: energy lost falls by {fallen:.2g} of the work of the loads"
     # A refusal is a result too: its status and reason can be expected
     return {a["name"]: {**a["results"], "status": a["status"], "reason": a["reason"]} for a in run.analyses}
