@@ -173,7 +173,7 @@ contains
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: points
-      real(c_double), intent(out) :: values(7, points)
+      real(c_double), intent(out) :: values(8, points)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       values = 0.0_c_double
@@ -199,7 +199,7 @@ contains
       integer(c_int), intent(in) :: nodes
       real(c_double), intent(in) :: displacement(freedoms, nodes)     !! [m], [rad]
       integer(c_int), intent(in) :: points
-      real(c_double), intent(in) :: values(7, points)   !! see histories; none: those of the teeth so far
+      real(c_double), intent(in) :: values(8, points)   !! see histories; none: those of the teeth so far
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       call model_take(handle, stage_loaded, stage_loaded, model, status)

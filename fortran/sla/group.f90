@@ -49,7 +49,7 @@ module sla_group
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19
    !> Most rows of a point's history
-   integer, parameter :: history_rows = 7
+   integer, parameter :: history_rows = 8
 
    !> A point of a model
    type :: point_place

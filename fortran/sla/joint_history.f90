@@ -104,6 +104,7 @@ contains
                group%kept(:, p) = history
                call joint_response(law, d, history, history, by_secant, state)
                history(6) = state%history(6)
+               history(8) = state%history(8)
             end associate
          end do
       end do

@@ -21,8 +21,9 @@ module sla_joint_law
    public :: joint_material, joint_state, joint_response, joint_rows
 
    !> Rows of the history of a point: greatest opening and shortening [m], slip of the cohesion's law [m], slip that
-   !> stays in both directions [m], pressure of the last update [Pa], energy lost so far [J/m^2]
-   integer, parameter :: joint_rows = 7
+   !> stays in both directions [m], pressure of the last update [Pa], energy lost so far [J/m^2], jump across at the last
+   !> update [m]
+   integer, parameter :: joint_rows = 8
    !> Stiffness along a sliding point in the matrix, over that of one that sticks
    real(wp), parameter :: soft = 1.0e-5_wp
 
@@ -83,6 +84,7 @@ contains
       pressure = -state%stress(1)
       if (how == by_frozen) pressure = history(6)
       state%history(6) = pressure
+      state%history(8) = d(1)
       rate = state%normal
       if (law%friction < 0.0_wp) then
          state%stress(2:3) = law%ks * d(2:3)
@@ -189,9 +191,19 @@ contains
       state%energy = 0.5_wp * limit**2 / law%ks
       if (how == by_frozen) state%energy = limit * way - 0.5_wp * limit**2 / law%ks
       way = norm2(state%history(4:5) - kept(4:5))
-      state%history(7) = kept(7) + 0.5_wp * law%friction * max(pressure + kept(6), 0.0_wp) * way
+      state%history(7) = kept(7) + law%friction * mean_pressure(pressure, state%history(8), kept) * way
       if (law%coheres) state%history(7) = state%history(7) + bond_work(law, start, state%history, way)
    end subroutine respond_along
+
+   !> Mean pressure of a step whose jumps go the straight way: a joint that opens or closes presses for a part of it [Pa]
+   pure function mean_pressure(pressure, jump, kept) result(mean)
+      real(wp), intent(in) :: pressure              !! at the end of the step [Pa]
+      real(wp), intent(in) :: jump                  !! across at its end [m]
+      real(wp), intent(in) :: kept(joint_rows)
+      real(wp) :: mean
+      mean = 0.5_wp * (max(pressure, 0.0_wp) + max(kept(6), 0.0_wp))
+      if (jump * kept(8) < 0.0_wp) mean = mean * min(jump, kept(8)) / (min(jump, kept(8)) - max(jump, kept(8)))
+   end function mean_pressure
 
    !> Work of the cohesion on a slip that stays [J/m^2]: the area of its law by p, that by w less the elastic part
    pure function bond_work(law, start, history, slip) result(work)
@@ -236,7 +248,7 @@ contains
       real(wp), intent(in) :: opening               !! [m]
       real(wp), intent(in) :: kept(joint_rows)
       real(wp), intent(in) :: history(joint_rows)
-      real(wp) :: lost, was, is
+      real(wp) :: lost, was, is, reached
       lost = 0.0_wp
       if (law%crushes) lost = law%compression%lost(history(2)) - law%compression%lost(kept(2))
       if (.not. law%cracks .or. opening <= 0.0_wp) return
@@ -244,11 +256,10 @@ contains
       is = law%progress(history)
       if (is <= was) return
       associate (from => law%tension%strain_of(was), to => law%tension%strain_of(is))
-         if (opening >= to * (1.0_wp - 1.0e-9_wp)) then
-            lost = lost + law%tension%lost(to) - law%tension%lost(from)
-         else
-            lost = lost + 0.5_wp * (law%tension%secant(from) - law%tension%secant(to)) * opening**2
-         end if
+         ! Along the law as far as the joint opens; what slip takes from the bond, it takes at that opening
+         reached = min(max(opening, from), to)
+         lost = lost + law%tension%lost(reached) - law%tension%lost(from)
+         if (reached < to) lost = lost + 0.5_wp * (law%tension%secant(reached) - law%tension%secant(to)) * opening**2
       end associate
    end function lost_across
 

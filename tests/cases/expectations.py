@@ -23,6 +23,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from jsonschema import Draft202012Validator
 
 from extrados.analyses.context import Context
@@ -187,6 +188,29 @@ def pick(results: dict[str, dict[str, Any]], quantity: str) -> Any:
 def summary_schema() -> Draft202012Validator:
     """The schema that every summary.json meets."""
     return Draft202012Validator(json_schema())
+
+
+#: Part of the work of the loads that the energy lost may fall by from a state to the next: rounding, and the trapezium rule of steps
+REGAINED = 1e-3
+
+
+def energy_regained(event: dict[str, np.ndarray]) -> float:
+    """The greatest fall of the energy lost (events) [J] between two states that follow each other, over the greatest work of the loads."""
+    known = (event["state"] == 1) & (event["equilibrium"] == 1)
+    work = float(np.abs(event["external"][known]).max(initial=0.0))
+    falls = -np.diff(event["lost"])[known[1:] & known[:-1]]
+    return float(falls.max(initial=0.0)) / work if work > 0.0 else 0.0
+
+
+def falling_energies(run: Run) -> list[str]:
+    """The curves of a run whose energy lost falls by more than REGAINED of the work of the loads, in words."""
+    found = []
+    for name, arrays in run.arrays.items():
+        for prefix in {array.removesuffix("event_lost") for array in arrays if array.endswith("event_lost")}:
+            fallen = energy_regained({key: arrays[f"{prefix}event_{key}"].data for key in ("lost", "external", "equilibrium", "state")})
+            if fallen > REGAINED:
+                found.append(f"{name}, {prefix}curve: energy lost falls by {fallen:.2g} of the work of the loads")
+    return found
 
 
 def run_of(case: Case, change: tuple[tuple[str, Any], ...]) -> Run:

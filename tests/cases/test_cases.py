@@ -4,8 +4,9 @@ import os
 from pathlib import Path
 
 import kept
+import numpy as np
 import pytest
-from expectations import CASES, Case, load_cases
+from expectations import CASES, Case, energy_regained, falling_energies, load_cases
 from figure_faults import watch_figures
 
 import extrados
@@ -37,6 +38,7 @@ def test_case(case: Case, change: tuple, tmp_path: Path, monkeypatch: pytest.Mon
         for row, found in zip(rows, values, strict=True)
         if not row.fits(found)
     ]
+    wrong += falling_energies(run)
     assert not wrong, "\n".join(wrong)
     if case.deck in DRAWN and not change:
         assert not watch_figures(run, tmp_path, monkeypatch).wrong
@@ -47,3 +49,11 @@ def test_case(case: Case, change: tuple, tmp_path: Path, monkeypatch: pytest.Mon
 def test_figures_can_be_read(deck: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """No figure has text that is cut by its edge or covers another."""
     assert not watch_figures(extrados.run(deck), tmp_path, monkeypatch).wrong
+
+
+def test_an_energy_that_falls_between_states_is_seen() -> None:
+    """Between two states alone: events without equilibrium, and rows that are no states, are no path of the structure."""
+    columns = {"lost": [0.0, 2.0, 1.5, 1.0, 3.0], "external": [0.0, 5.0, 6.0, 7.0, 10.0], "equilibrium": [1, 1, 1, 0, 1], "state": [1] * 5}
+    event = {name: np.array(values) for name, values in columns.items()}
+    assert energy_regained(event) == pytest.approx(0.05)
+    assert energy_regained({**event, "equilibrium": np.array([1, 1, 0, 0, 1])}) == 0.0

@@ -228,6 +228,25 @@ WRONG = {
         ROOMS + '[[structure.rods]] # here\nstart = [9, 9, 3]\nend = [0, 0, 3]\narea = 1e-4\nmaterial = "steel"\n' + STEEL + PUSH,
     ),
     "prestress above its wall": ("has no storey 5", ROOMS + '[[structure.prestress]]\nwall = "a"\nforce = 1e4\nlevel = 5 # here\n' + PUSH),
+    "beam beside its wall": (
+        "does not lie on wall 'a', which is 3 m long",
+        ROOMS + '[[structure.prestress]]\nwall = "a"\nforce = 1e4\nx = [2.5, 3.5] # here\n' + PUSH,
+    ),
+    "ring beam through a window": (
+        "wall 'a', opening 1 reaches 2.9 m",
+        WALL
+        + 'openings = [{ x = [1, 2], z = [1, 2.9] }]\n[[structure.ring_beams]]\nstorey = 1\ndepth = 0.2 # here\nmaterial = "steel"\n'
+        + STEEL
+        + PUSH,
+    ),
+    "ring beam of nothing": (
+        "no [materials.gold]",
+        ROOMS + '[[structure.ring_beams]] # here\nstorey = 1\ndepth = 0.2\nmaterial = "gold"\n' + PUSH,
+    ),
+    "materials of two storeys of three": (
+        "3 materials for 1 storeys",
+        WALL + 'materials = ["steel", "steel", "steel"] # here\n' + STEEL + PUSH,
+    ),
     "prop above its wall": ("has no storey 3", ROOMS + '[[structure.props]]\nwall = "a"\nstorey = 3 # here\n' + PUSH),
     "too many shells": ("the most are", ROOMS + PUSH.replace("mesh.layers = 3", "mesh = { size = 1e-5, layers = 3 } # here")),
     "drive on no wall": ("no wall 'b'", HOUSE + 'drives = [{ wall = "b", storey = 1 }] # here\n'),

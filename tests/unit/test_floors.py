@@ -124,6 +124,53 @@ def test_a_rod_keeps_what_the_walls_leave_of_its_prestress():
     assert rest[tops & np.isclose(mesh.xyz[:, 1], 0.0), 1] == pytest.approx(left / wall, rel=0.01)
 
 
+def layered(**more):
+    """A wall without lateral strain of two storeys of other masonry, under a force on its top."""
+    wall = {"name": "a", "start": [0.0, 0.0], "end": [2.0, 0.0], "thickness": 0.3, "materials": ["soft", "hard"]}
+    return {"storeys": [3.0, 2.0], "walls": [wall], "prestress": [{"wall": "a", "force": 6e5}], **more}
+
+
+@pytest.mark.parametrize("beam", [0.0, 0.4])
+def test_materials_by_storey_and_a_ring_beam_shorten_in_series(beam: float) -> None:
+    """Top displacement: stress times the sum of heights over moduli, plus the weights above each height. The beam stays elastic."""
+    kinds = {"soft": (1e9, 2200.0), "hard": (2e9, 1600.0), "concrete": (30e9, 2500.0)}
+    materials = {name: Material(density=density, young=young, poisson=0.0) for name, (young, density) in kinds.items()}
+    beams = [{"storey": 2, "depth": beam, "material": "concrete"}] if beam else []
+    options = Pushover(kind="pushover", mesh=ShellOptions(size=0.25, layers=3))
+    mesh = Building(Plan(kind="building", **layered(ring_beams=beams)), MASONRY, materials=materials).shell(options.mesh)
+    model = build(mesh, options)
+    with model.open(options, 1) as core_model:
+        core_model.loads(model.constant, model.reference)
+        moved = core_model.displacement(0.0)
+    height, above = {"soft": 3.0, "hard": 2.0 - beam, "concrete": beam}, 6e5 / 0.6
+    sinks = 0.0
+    for name in ("concrete", "hard", "soft"):
+        young, density = kinds[name]
+        own = density * GRAVITY * height[name]
+        sinks += (above + 0.5 * own) * height[name] / young
+        above += own
+    top = np.isclose(mesh.xyz[:, 2], 5.0)
+    assert moved[top, 2] == pytest.approx(-sinks, rel=2e-3)
+    low, high = (mesh.xyz[mesh.parts[0].connect[mesh.parts[0].linear], 2].ravel() for _ in range(2))
+    assert mesh.parts[0].linear.any() == (beam > 0.0)
+    assert not beam or (low.min() == pytest.approx(5.0 - beam) and high.max() == pytest.approx(5.0))
+
+
+def test_a_beam_that_rests_on_a_part_of_a_wall_turns_its_foot() -> None:
+    """Force and moment of a force on x 1.5 to 2 m, in shells and in the frame; grid lines end at its bearing."""
+    wall = {"name": "a", "start": [0.0, 0.0], "end": [2.0, 0.0], "thickness": 0.3}
+    plan = {"storeys": [3.0], "walls": [wall], "prestress": [{"wall": "a", "force": 5e4, "x": [1.45, 2.0]}]}
+    mesh, *_ = solved(plan)
+    assert mesh.push[:, 2].sum() == pytest.approx(-5e4)
+    assert mesh.push[:, 2] @ mesh.xyz[:, 0] == pytest.approx(-5e4 * 1.725)
+    assert mesh.xyz[mesh.push[:, 2] < 0.0, 0].min() == pytest.approx(1.45)
+    loaded, bare = (Building(Plan(kind="building", **{**plan, **less}), MASONRY).frame() for less in ({}, {"prestress": []}))
+    change = loaded.weight - bare.weight
+    node = next(node for node in loaded.nodes if node.level == 1)
+    assert change[node.freedoms[0]] == pytest.approx(-5e4)
+    assert change[node.freedoms[1]] == pytest.approx(-5e4 * (1.725 - node.s))
+
+
 def test_a_propped_wall_is_a_propped_cantilever():
     """Under its mass pushed across it: the greatest deflection of the clamped and propped beam, q h^4 / (185 E I)."""
     wall = {"name": "a", "start": [0.0, 0.0], "end": [0.5, 0.0], "thickness": 0.1}

@@ -11,6 +11,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
 import wall_tests as tool
 
+import extrados
+
 TABLE = Path(__file__).parent / "wall-tests.csv"
 
 
@@ -38,6 +40,18 @@ def test_membranes_of_tested_walls_stay_within_plastic_flexure() -> None:
     bias, scatter, count = tool.statistics(list(zip(walls, found, strict=True)))
     print(f"predicted over measured: {bias:.3f}, scatter {scatter:.3f}, {count} walls")
     assert math.isfinite(bias)
+
+
+@pytest.mark.verify
+def test_a_bed_that_slides_at_once_dissipates_what_the_loads_supply(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wall 1 of units: its upper bed loses the bond in one step, its head joints open. Work, stored and dissipated energy balance."""
+    decks: list[dict] = []
+    monkeypatch.setattr(tool, "_followed", lambda _, deck: decks.append(deck) or tool.Predicted())
+    tool.by_units(tool.read_walls(TABLE)[0])
+    decks[0]["analysis"][0]["target_displacement"] = 1.48e-3
+    results = extrados.run(decks[0], threads=1).analyses[0]["results"]
+    assert results["greatest_load_N"] > 1.03 * results["last_load_N"]
+    assert results["step_balance_ratio"] < 0.03
 
 
 @pytest.mark.verify

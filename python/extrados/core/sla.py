@@ -105,7 +105,7 @@ VARIANTS = tuple(lists.numbers("sla_variant"))
 #: How a run goes on without equilibrium, in the order of fortran/api/api_sla.f90 (follow)
 CONTINUATIONS = ("newton", "implicit-explicit")
 #: Rows of the histories of a point, see fortran/sla/group.f90
-HISTORIES = 7
+HISTORIES = 8
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
 BAND_STEP = 1.02
 

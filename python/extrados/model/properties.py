@@ -109,7 +109,8 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground, "rings" and "backing" those of a bridge; the name '
+        about='names of joints; "ground" means all joints to the ground, "rings" and "backing" those of a bridge, "beds" (with '
+        'those on the ground) and "heads" those of a wall in running bond; the name '
         "of a layer of a drawing, those between its stones or along its lines",
         min_length=1,
         max_length=10000,

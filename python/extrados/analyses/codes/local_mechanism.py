@@ -204,6 +204,11 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         context.warnings.append(
             "Rods are neglected: the deck does not give the strength of their anchorage. Give the strength as `ties` of a `facade` of its own."
         )
+    if plan.ring_beams:
+        context.warnings.append(
+            "Ring beams are neglected: the deck does not give the strength of their connection to the walls. A wall that a beam restrains has a "
+            "greater multiplier; give [[structure.props]] where the top of a wall is held."
+        )
     return result
 
 

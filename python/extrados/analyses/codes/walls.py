@@ -75,7 +75,8 @@ def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int
 
 def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: dict[tuple[str, int], float]) -> WallPart:
     first, last = plan.reach(wall)
-    material: Material = building.materials[wall.material] if wall.material else building.material
+    named = plan.material_of(wall, storey)
+    material: Material = building.materials[named] if named else building.material
     thickness = [wall.thickness or wall.thicknesses[k - first] for k in range(first, last + 1)]
     foot, arm = float(plan.levels[storey - 1]), 0.5 * thickness[storey - first]
     sole = plan.strips(wall, storey)[0][0]

@@ -65,7 +65,7 @@ def varied(building: Building, options: FrameOptions, factors: Mapping[str, floa
 
     plan = building.structure
     assert isinstance(plan, Plan)
-    of_walls = {wall.material for wall in plan.walls}
+    of_walls = {name for wall in plan.walls for name in (wall.material, *wall.materials)}
     materials: dict[str, Material] = {name: times(one, MASONRY) if name in of_walls else one for name, one in building.materials.items()}
     if "floor_stiffness" in given:
         floors = [
@@ -83,7 +83,8 @@ def refuse_unknown(building: Building, options: FrameOptions, names: list[str]) 
     """Refused where the building or the frame does not have an uncertain value."""
     plan = building.structure
     assert isinstance(plan, Plan)
-    tables = [building.materials.get(wall.material or "", building.material) for wall in plan.walls]
+    names = [name for wall in plan.walls for name in wall.materials or [wall.material or ""]]
+    tables = [building.materials.get(name, building.material) for name in names]
     lacking = {
         "compressive_strength": all(one.compressive_strength is None for one in tables),
         "cohesion": options.cohesion is None and not building.joints.cohesion,

@@ -82,7 +82,11 @@ def make_brickwork(
         raise BadGeometry(
             "the openings take the full width at ground level: no masonry is left there. Make the openings narrower or raise them"
         )
-    return stones_and_joints([outline(box) for box in wall.boxes], wall.names, joints, density, depth)
+    made = stones_and_joints([outline(box) for box in wall.boxes], wall.names, joints, density, depth)
+    heads = [j for j, (name, *_) in enumerate(joints) if name.startswith("head ")]
+    beds = sorted({*range(len(joints))} - {*heads})
+    made.groups.update({name: found for name, found in (("beds", beds), ("heads", heads)) if found})
+    return made
 
 
 def lintels_of(bond: Bond, length: float, height: float, holes: list[Box]) -> dict[int, Box]:

@@ -57,6 +57,7 @@ class PlanWall(Table):
     storeys: list[int] | None = key(None, "[first, last] storey; default all", min_length=2, max_length=2)
     openings: list[WallOpening] = key([], "doors and windows", max_length=200)
     material: str | None = key(None, "a name of [materials]; default [material]")
+    materials: list[str] = key([], "names of [materials], one for each of its storeys, from the lowest", max_length=50)
 
     @model_validator(mode="after")
     def _long(self) -> "PlanWall":
@@ -64,6 +65,8 @@ class PlanWall(Table):
             raise ValueError("start and end are the same point")
         if (self.thickness is None) == (not self.thicknesses):
             raise ValueError("expected either thickness or thicknesses")
+        if self.material is not None and self.materials:
+            raise ValueError("expected either material or materials")
         if not all(t > 0.0 for t in self.thicknesses):
             raise ValueError("thicknesses: each must be above 0")
         return self
@@ -157,11 +160,21 @@ class Prop(Table):
 
 
 class Prestress(Table):
-    """A vertical force along the top of a wall, of post-tensioning or of what stands on it."""
+    """A vertical force on top of a wall, of post-tensioning or of a beam that rests on a part of it."""
 
     wall: str = key(about="name of the wall")
     force: Force = key(about="downward, in all, spread evenly", gt=0)
+    x: Range | None = key(None, "[from, to] along the wall from its start, as of the bearing of a beam; default its whole length")
     level: Annotated[int, Field(ge=1)] | None = key(None, "on top of this storey; default the wall's last")
+
+
+class RingBeam(Table):
+    """A beam of the wall's thickness along the top of some walls that stays elastic."""
+
+    storey: int = key(about="on top of this storey, its upper edge level with the floor", ge=1)
+    depth: Length = key(about="height of the beam", gt=0)
+    material: str = key(about="a name of [materials]")
+    walls: list[str] = key([], "names of the walls; default all of the storey", max_length=200)
 
 
 class Plan(Structure):
@@ -187,7 +200,8 @@ class Plan(Structure):
     floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
-    prestress: list[Prestress] = key([], "[[structure.prestress]]", max_length=200)
+    prestress: list[Prestress] = key([], "vertical forces on walls, [[structure.prestress]]", max_length=200)
+    ring_beams: list[RingBeam] = key([], "[[structure.ring_beams]]", max_length=50)
     assumed: list[str] = key([], "assumptions of the deck beyond its sources; every result repeats them", max_length=100)
     foundation_stiffness: Stiffness | None = key(None, "vertical stiffness of the ground per area of the walls' soles; default rigid", gt=0)
 
@@ -206,6 +220,7 @@ class Plan(Structure):
             *((f"floors[{k}].walls", floor.walls or []) for k, floor in enumerate(self.floors)),
             *((f"floors[{k}].bears_on", floor.bears_on) for k, floor in enumerate(self.floors)),
             *((f"prestress[{k}].wall", [part.wall]) for k, part in enumerate(self.prestress)),
+            *((f"ring_beams[{k}].walls", beam.walls) for k, beam in enumerate(self.ring_beams)),
             *((f"props[{k}].wall", [part.wall]) for k, part in enumerate(self.props)),
         ):
             if strange := [name for name in named if name not in names]:
@@ -236,6 +251,13 @@ class Plan(Structure):
         for k, part in enumerate(self.prestress):
             if part.level is not None:
                 self._check_storey(f"prestress[{k}].level", part.wall, part.level)
+            length = self.wall(part.wall).length
+            if part.x is not None and not 0.0 <= part.x[0] < part.x[1] <= length + MEETS:
+                raise ValueError(
+                    f"prestress[{k}].x: {part.x[0]:g} to {part.x[1]:g} m does not lie on wall '{part.wall}', which is {length:g} m long"
+                )
+        for k, beam in enumerate(self.ring_beams):
+            self._check_ring_beam(k, beam)
         for k, floor in enumerate(self.floors):
             if floor.storey > len(self.storeys):
                 raise ValueError(f"floors[{k}].storey: there is no storey {floor.storey}, there are {len(self.storeys)}")
@@ -246,15 +268,38 @@ class Plan(Structure):
         if not first <= storey <= last:
             raise ValueError(f"{what}: wall '{wall}' has no storey {storey}, it has {first} to {last}")
 
+    def _check_ring_beam(self, k: int, beam: RingBeam) -> None:
+        for wall in self.of_ring_beam(beam):
+            self._check_storey(f"ring_beams[{k}].storey", wall.name, beam.storey)
+            low = self.storeys[beam.storey - 1] - beam.depth
+            for i, opening in enumerate(wall.openings):
+                if opening.storey == beam.storey and opening.z[1] > low + MEETS:
+                    raise ValueError(
+                        f"ring_beams[{k}].depth: wall '{wall.name}', opening {i + 1} reaches {opening.z[1]:g} m above the floor; the beam "
+                        f"begins at {low:g} m"
+                    )
+        if beam.storey > len(self.storeys) or beam.depth >= self.storeys[beam.storey - 1] or not self.of_ring_beam(beam):
+            raise ValueError(f"ring_beams[{k}]: there is no wall as high as the beam in storey {beam.storey}")
+
+    def of_ring_beam(self, beam: RingBeam) -> list[PlanWall]:
+        """The walls that a ring beam runs along."""
+        if beam.walls:
+            return [self.wall(name) for name in beam.walls]
+        return [wall for wall in self.walls if self.reach(wall)[0] <= beam.storey <= self.reach(wall)[1]]
+
+    def material_of(self, wall: PlanWall, storey: int) -> str | None:
+        """Name of a wall's material in a storey; None: [material]."""
+        return wall.materials[storey - self.reach(wall)[0]] if wall.materials else wall.material
+
     def _check_wall(self, w: int, wall: PlanWall) -> None:
         first, last = self.reach(wall)
         if not 1 <= first <= last <= len(self.storeys):
             raise ValueError(f"walls[{w}].storeys: wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}")
-        if wall.thicknesses and len(wall.thicknesses) != last - first + 1:
-            raise ValueError(
-                f"walls[{w}].thicknesses: wall '{wall.name}': {len(wall.thicknesses)} thicknesses for {last - first + 1} storeys; "
-                "expected one for each"
-            )
+        for name, given in (("thicknesses", wall.thicknesses), ("materials", wall.materials)):
+            if given and len(given) != last - first + 1:
+                raise ValueError(
+                    f"walls[{w}].{name}: wall '{wall.name}': {len(given)} {name} for {last - first + 1} storeys; expected one for each"
+                )
         for i, opening in enumerate(wall.openings):
             at, said = f"walls[{w}].openings[{i}]", f"wall '{wall.name}', opening {i + 1}"
             if not first <= opening.storey <= last:
@@ -383,8 +428,15 @@ def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
 def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
     """Walls that meet two others each, in the order of the ring they make."""
     meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
-    if any(len(others) != 2 for others in meets.values()):
-        raise BadGeometry(f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`")
+    odd = next((a for a, others in meets.items() if len(others) != 2), None)
+    if odd is not None:
+        wall = plan.walls[odd]
+        met = ", ".join(f"'{plan.walls[b].name}'" for b in meets[odd]) or "none"
+        (x0, y0), (x1, y1) = wall.start, wall.end
+        raise BadGeometry(
+            f"{what}: the walls of the storey make no simple ring: wall '{wall.name}' from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) m meets "
+            f"{met} of them, expected two; name those around the floor by `walls`"
+        )
     ring = [walls[0], meets[walls[0]][0]]
     while len(ring) < len(walls):
         after = [b for b in meets[ring[-1]] if b != ring[-2]]

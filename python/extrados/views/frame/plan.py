@@ -158,6 +158,11 @@ class _Maker:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
         if plan.beds:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own strength.")
+        if plan.ring_beams:
+            self.remarks.append(
+                "Ring beams of [[structure.ring_beams]] are not modelled: spandrels have the strength of their masonry (conservative). Use "
+                "pushover."
+            )
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
@@ -179,7 +184,8 @@ class _Maker:
                 self._floor(floor)
         for load in plan.prestress:
             w = self._named(load.wall)
-            self._load(w, load.level or plan.reach(plan.walls[w])[1], 0.0, plan.walls[w].length, load.force, False)
+            start, end = load.x or (0.0, plan.walls[w].length)
+            self._load(w, load.level or plan.reach(plan.walls[w])[1], start, end, load.force, False)
         for prop in plan.props:
             w = self._named(prop.wall)
             row = self._vector(w, 0.5 * plan.walls[w].length, prop.storey)[int(np.abs(plan.walls[w].direction).argmin())]
@@ -376,7 +382,7 @@ class _Maker:
         wall = self.plan.walls[strip.wall]
         if strip.kind != "pier":
             return
-        density = self._material(wall).density
+        density = self._material(wall, strip.storey).density
         start, end, low, high = strip.masonry
         force = density * GRAVITY * strip.thickness * (end - start) * (high - low)
         for level in (strip.storey - 1, strip.storey):
@@ -444,16 +450,17 @@ class _Maker:
 
     # Elements
 
-    def _material(self, wall: PlanWall) -> Material:
-        if wall.material is None:
+    def _material(self, wall: PlanWall, storey: int) -> Material:
+        name = self.plan.material_of(wall, storey)
+        if name is None:
             return self.building.material
-        if wall.material not in self.building.materials:
-            raise BadGeometry(f"wall '{wall.name}': there is no [materials.{wall.material}]")
-        return self.building.materials[wall.material]
+        if name not in self.building.materials:
+            raise BadGeometry(f"wall '{wall.name}': there is no [materials.{name}]")
+        return self.building.materials[name]
 
     def _element(self, strip: Strip) -> MacroElement:
         o, wall = self.options, self.plan.walls[strip.wall]
-        material = self._material(wall)
+        material = self._material(wall, strip.storey)
         i, j = (self.nodes[k] for k in strip.nodes)
         u = tuple(self.along.get((strip.wall, node.level), -1) for node in (i, j))
         freedoms = (u[0], *i.freedoms, u[1], *j.freedoms)
@@ -549,7 +556,7 @@ class _Maker:
                     continue
                 tall = 0.5 * (plan.storeys[level - 1] + (plan.storeys[level] if level < len(plan.storeys) else 0.0))
                 thin = min(_thickness(plan, wall, level) for wall in (one, two))
-                material = self._material(one)
+                material = self._material(one, max(level, plan.reach(one)[0]))
                 shear = o.stiffness * material.young / (2.0 * (1.0 + material.poisson))
                 f = o.flange_strength or o.cohesion or self.building.joints.cohesion
                 strength = f / o.confidence_factor * thin * tall if f else UNLIMITED

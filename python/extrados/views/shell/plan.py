@@ -9,7 +9,7 @@ import numpy as np
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.properties import NO_SLIDING, Material
-from extrados.model.structures.plan import MEETS, Corner, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting, nearly_meeting
+from extrados.model.structures.plan import MEETS, Corner, Plan, PlanWall, Prestress, RingBeam, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
 from extrados.views.mesh.options import LARGEST_MESH
 from extrados.views.mesh.triangles import fill_ring
@@ -69,6 +69,9 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     grids = _grids(plan, junctions, size, warnings)
     xyz, number = _join(plan, grids, junctions)
     materials, names = [building.material, *building.materials.values()], list(building.materials)
+    for k, beam in enumerate(plan.ring_beams):
+        with blaming("ring_beams", k):
+            _named(beam.material, names, f"ring beam of storey {beam.storey}")
     parts = []
     for w in range(len(grids)):
         with blaming("walls", w):
@@ -196,6 +199,17 @@ def _lintels(plan: Plan, wall: PlanWall) -> list[tuple[float, float, float, floa
     return found
 
 
+def _ring_beams(plan: Plan, wall: PlanWall) -> list[tuple[RingBeam, float, float, float, float]]:
+    """Ring beams of a wall: s from, to, z from, to [m]."""
+    tops = [(beam, float(plan.levels[beam.storey])) for beam in plan.ring_beams if wall in plan.of_ring_beam(beam)]
+    return [(beam, 0.0, wall.length, top - beam.depth, top) for beam, top in tops]
+
+
+def _loaded(plan: Plan, wall: PlanWall) -> list[float]:
+    """Ends of the forces on parts of a wall [m]."""
+    return [s for part in plan.prestress if part.wall == wall.name and part.x is not None for s in part.x]
+
+
 def _plane(plan: Plan, grid: _Grid) -> WallPlane:
     wall = grid.wall
     return WallPlane(wall.name, np.asarray(wall.start, dtype=float), wall.direction, wall.length, _holes(plan, wall))
@@ -204,12 +218,13 @@ def _plane(plan: Plan, grid: _Grid) -> WallPlane:
 def _grids(plan: Plan, junctions: dict, size: float, warnings: list[str]) -> list[_Grid]:
     heights = {*plan.levels.tolist(), *(plan.bed_height(bed) for bed in plan.beds)}
     for wall in plan.walls:
-        for beam in (*_holes(plan, wall), *(lintel[:4] for lintel in _lintels(plan, wall))):
-            heights.update(beam[2:4])
+        beams = (*(lintel[:4] for lintel in _lintels(plan, wall)), *(beam[1:] for beam in _ring_beams(plan, wall)))
+        for box in (*_holes(plan, wall), *beams):
+            heights.update(box[2:4])
     z = _lines(heights, float(plan.levels[-1]), size, "the heights of openings and storeys", warnings)
     grids: list[_Grid] = []
     for w, wall in enumerate(plan.walls):
-        breaks = {0.0, wall.length}
+        breaks = {0.0, wall.length, *_loaded(plan, wall)}
         for beam in (*_holes(plan, wall), *(lintel[:4] for lintel in _lintels(plan, wall))):
             breaks.update(beam[:2])
         for (a, b), (s, t) in junctions.items():
@@ -257,7 +272,10 @@ def _wall_part(plan: Plan, w: int, grids: list[_Grid], junctions: dict, number: 
     corners = [(i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1)]
     connect = np.column_stack([number[grid.number(a, b)] for a, b in corners])
     thickness = _thickness_at(plan, wall, 0.5 * (grid.z[k] + grid.z[k + 1]))
-    material = np.full(len(i), 0 if wall.material is None else _named(wall.material, names, f"wall '{wall.name}'"))
+    reach = plan.reach(wall)
+    of_storey = [plan.material_of(wall, storey) for storey in range(reach[0], reach[1] + 1)]
+    index = np.array([0 if name is None else _named(name, names, f"wall '{wall.name}'") for name in of_storey])
+    material = index[np.searchsorted(plan.levels, 0.5 * (grid.z[k] + grid.z[k + 1])) - reach[0]]
     linear, strength = np.zeros(len(i), dtype=bool), np.ones(len(i))
     for *box, name in _lintels(plan, wall):
         inside = grid.cells((box[0], box[1]), (box[2], box[3]))[i, k]
@@ -268,6 +286,10 @@ def _wall_part(plan: Plan, w: int, grids: list[_Grid], junctions: dict, number: 
         linear |= inside
         if name is not None:
             material[inside] = _named(name, names, f"a lintel of wall '{wall.name}'")
+    for beam, *box in _ring_beams(plan, wall):
+        inside = grid.cells((box[0], box[1]), (box[2], box[3]))[i, k]
+        linear |= inside
+        material[inside] = _named(beam.material, names, f"ring beam of storey {beam.storey}")
     for (a, b), (s, t) in junctions.items():
         corner = plan.bond(plan.walls[a].name, plan.walls[b].name) if w in (a, b) else None
         if corner is None or corner.bond != "weak" or corner.walls[1] != wall.name:
@@ -564,8 +586,11 @@ def _prestress(plan: Plan, load: Prestress, grids: list[_Grid], number: np.ndarr
     nodes, s = _level_nodes(plan, storey, grids[w], number)
     if not len(nodes):
         raise BadGeometry(f"prestress: wall '{load.wall}' has no masonry on top of storey {storey}")
-    half = np.diff(s) / 2.0
+    part = load.x or [0.0, plan.walls[w].length]
+    half = np.where((s[1:] > part[0] + MEETS) & (s[:-1] < part[1] - MEETS), np.diff(s) / 2.0, 0.0)
     share = np.append(half, 0.0) + np.append(0.0, half)
+    if not share.sum() > 0.0:
+        raise BadGeometry(f"prestress: wall '{load.wall}' has no masonry at x {part[0]:g} to {part[1]:g} m on top of storey {storey}")
     push[nodes, 2] -= load.force * share / share.sum()
 
 
