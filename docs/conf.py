@@ -46,6 +46,6 @@ html_css_files = ["gallery.css"]
 nb_execution_mode = "off" if os.environ.get("EXTRADOS_QUICK_DOCS") else "force"
 suppress_warnings = ["myst-nb.lexer"] if os.environ.get("EXTRADOS_QUICK_DOCS") else []  # cells have a lexer once they have run
 nb_execution_raise_on_error = True
-nb_execution_timeout = 600
+nb_execution_timeout = 1800
 nb_execution_in_temp = True
 nb_merge_streams = True

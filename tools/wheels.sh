@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Build wheels with all libraries inside, each on a bare Debian, and try each on a bare Debian with Python alone.
 #
-#   sudo tools/wheels.sh [bookworm|trixie|FOLDER ...]
+#   sudo tools/wheels.sh [bookworm|trixie|sid|FOLDER ...]
 #
-# Debian 12 gives the wheel of Python 3.11, Debian 13 that of Python 3.13, each tried on its own release. No Debian has
-# Python 3.12: FOLDER holds a Python that runs in place (of pyenv, of `uv python install`, of a forge's tools; built
-# on Debian 12 or older), and its wheel is built on Debian 12 and tried on both releases. By default both releases, and
-# the Python 3.12 that the path finds. A wheel runs on its release's glibc or a newer one, as its name says. GSL,
-# SuiteSparse, OpenBLAS and gfortran's library lie in the wheel, with their licences. The wheels of the present commit
-# are put in dist/; the log of a failed step is named.
+# Debian 12 gives the wheel of Python 3.11, Debian 13 that of Python 3.13, Debian's unstable branch that of Python 3.14,
+# each tried on its own release. No Debian has Python 3.12: FOLDER holds a Python that runs in place (of pyenv, of
+# `uv python install`, of a forge's tools; built on Debian 12 or older), and its wheel is built on Debian 12 and tried on
+# both releases. By default both releases, and the Python 3.12 that the path finds. A wheel runs on its release's glibc
+# or a newer one, as its name says. GSL, SuiteSparse, OpenBLAS and gfortran's library lie in the wheel, with their
+# licences. The wheels of the present commit are put in dist/; the log of a failed step is named.
 set -euo pipefail
 
 source=$(cd "$(dirname "$0")/.." && pwd)
@@ -57,7 +57,7 @@ step() {  # MACHINE LOG WHAT SCRIPT: run it there as root
 
 for word in "${pythons[@]}"; do
   case "$word" in
-    bookworm | trixie) release=$word python=python3 prefix='' trials=("$word") ;;
+    bookworm | trixie | sid) release=$word python=python3 prefix='' trials=("$word") ;;
     /*) release=bookworm prefix=$(realpath "$word") trials=(bookworm trixie)
       python=$prefix/bin/python3
       [ -x "$python" ] || { echo "$python: not there" >&2; exit 2; } ;;

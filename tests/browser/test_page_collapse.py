@@ -76,6 +76,16 @@ def test_a_drag_past_a_limit_holds_the_handle_there_and_says_which(page: Any) ->
     assert page.evaluate("window.extrados.view.gamma") == pytest.approx(2.5)
 
 
+def test_a_late_refusal_of_a_fall_leaves_the_words_of_a_limit(page: Any) -> None:
+    """Asked before the answer to a drag, refused after it: the refusal is of a scene that is gone."""
+    settled(page)
+    drag = "ask({ do: 'drag', handle: 'embrace', to: [0, 90], ends: true })"
+    told = page.evaluate(f"new Promise(done => {{ window.extrados.{drag}; window.extrados.ask({{ do: 'fall' }}, {{ reply: done }}); }})")
+    assert "does not collapse" in told["bad"]
+    settled(page)
+    assert "20 to 270 deg" in page.locator(".status").inner_text()
+
+
 def test_no_collapse_of_what_stands(page: Any) -> None:
     settled(page)
     assert page.locator(".fall").is_hidden()

@@ -319,8 +319,8 @@ def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checke
         and r.overall != "stands under all"
     )
     run.write(tmp_path / "out", figures=False)
-    saved, caption = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
-    assert saved == "building" and "Storey: 2.80 m" in caption
+    (saved, caption), (elevations, _) = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
+    assert (saved, elevations) == ("building", "building-elevation") and "Storey: 2.80 m" in caption
 
 
 def test_where_only_pushes_have_a_result_the_outcome_is_open() -> None:

@@ -58,6 +58,13 @@ def test_a_column_rocks_in_the_direction_of_the_motion(tmp_path) -> None:
     assert "dem.glb" in there.files and there.answer.startswith("Blocks rock")
 
 
+def test_energies_of_a_run_in_space_are_drawn(tmp_path) -> None:
+    deck = tmp_path / "deck.toml"
+    deck.write_text(f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.02\n')
+    drawn = extrados.run(deck).plot("dem")
+    assert "The error of the balance is" in drawn.captions["dem-energy"]
+
+
 def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
     """As they were recorded, however the structure is turned against the record: first along x, second along y."""
     t = np.arange(0.0, 0.6, 0.01)

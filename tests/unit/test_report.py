@@ -16,6 +16,7 @@ from extrados.results.store import StoreError
 from extrados.show import html, typeset
 from extrados.show.building import heading
 from extrados.show.document import Code, Document, Heading, Table, Words
+from extrados.show.elevation import seen_from_right
 from extrados.show.language import Language
 from extrados.show.report import write_report
 from extrados.show.telling import _flowing
@@ -98,6 +99,42 @@ def test_the_drawing_is_to_scale_and_needs_no_result(tmp_path: Path) -> None:
     lines = re.findall(r'<path d="M ([\d.]+) ([\d.]+) \s*L ([\d.]+) ([\d.]+) \s*"[^>]*stroke: #1f4e79', drawing)
     longest = max(float(c) - float(a) for a, b, c, d in lines if b == d)
     assert longest / 72.0 * 25.4 == pytest.approx(9.8e3 / scale, rel=1e-3)
+
+
+def test_the_side_shows_what_reaches_farthest() -> None:
+    """A step in front of a tower hides its foot; the faces of an arch, seen from its side, are as high together as the arch."""
+    tower, step = (np.array([[a, 0.0], [b, 0.0], [b, h], [a, h]]) for a, b, h in ((0.0, 1.0, 3.0), (1.0, 2.0, 1.0)))
+    assert seen_from_right([tower, step]) == [(0.0, 1.0, 1), (1.0, 3.0, 0)]
+    arch = make_deck({"structure": ARCH, "analysis": {"kind": "tilt"}}).building.blocks()
+    levels = np.concatenate(arch.outlines)[:, 1]
+    assert sum(high - low for low, high, _ in seen_from_right(arch.outlines)) == pytest.approx(np.ptp(levels), abs=1e-5)
+    assert seen_from_right([]) == []
+
+
+def test_the_front_of_a_bridge_is_to_scale(tmp_path: Path) -> None:
+    """8.2 m between the ends of the ring: the dimension below the elevation has this length on paper."""
+    span = {"shape": "segmental", "span": 8.0, "rise": 2.0, "thickness": 0.5}
+    table = {"kind": "bridge", "spans": [span], "fill": {"cover": 0.4, "density": 1800.0}}
+    deck = make_deck({"structure": table, "analysis": {"kind": "tilt"}})
+    points = np.concatenate(deck.building.blocks().outlines)
+    extrados.run(deck).write(tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_text()
+    scale = int(re.search(r"levation at scale 1:(\d+)", page)[1])
+    drawing = max((tmp_path / "out" / "figures").glob("building*.svg")).read_text()
+    lines = re.findall(r'<path d="M ([\d.]+) ([\d.]+) \s*L ([\d.]+) ([\d.]+) \s*"[^>]*stroke: #1f4e79', drawing)
+    longest = max(float(c) - float(a) for a, b, c, d in lines if b == d)
+    assert longest / 72.0 * 25.4 == pytest.approx(1e3 * np.ptp(points[:, 0]) / scale, rel=1e-3)
+    assert "The deck has no spandrel walls" in page
+
+
+def test_a_refused_wall_has_its_elevation(tmp_path: Path) -> None:
+    """No stones and no result: the wall with its opening is drawn, cut through the opening."""
+    wall = {"kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.3, "openings": [{"x": [1.0, 2.0], "y": [1.0, 2.1]}]}
+    run = extrados.run({"structure": wall, "material": {"density": 1800.0}, "analysis": {"kind": "thrust"}})
+    assert run.analyses[0]["status"] == "refused"
+    run.write(tmp_path / "out")
+    assert "The wall: elevation and cross-section at scale 1:" in (tmp_path / "out" / "report.html").read_text()
+    assert (tmp_path / "out" / "figures" / "building.svg").exists()
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from extrados.results.validity import validity_of
 from extrados.results.verdict import CHECKED
 from extrados.schema.code import Code
 from extrados.show import language
-from extrados.show.building import DIMENSIONS
+from extrados.show.building import DIMENSIONS, PARTS
 from extrados.show.language import NAMES, Language, catalogue
 from extrados.show.opening import OUTCOMES, TITLES
 from extrados.show.report import write_report
@@ -40,7 +40,15 @@ def fixed() -> Iterator[str]:
                 yield from (one.value for one in choices if isinstance(one, ast.Constant) and one.value not in (None, ""))
     for kind in kinds.ANALYSES:
         yield from (TITLES[kind], *validity_of(kind))
-    yield from (*OUTCOMES.values(), *DIMENSIONS, *FACTORS.values(), *SERVICE.values(), *ENTRIES.values(), *(label for label, _ in GROUPS))
+    yield from (
+        *OUTCOMES.values(),
+        *DIMENSIONS,
+        *PARTS.values(),
+        *FACTORS.values(),
+        *SERVICE.values(),
+        *ENTRIES.values(),
+        *(label for label, _ in GROUPS),
+    )
     yield from (*CHECKED.values(), *(text for text in COLUMNS if "*" not in text))
     yield from (f"The capacity is {one} bound." for one in ("an upper", "a lower"))
     for table in (Material, Joints, Supports, Code, Span, Pier, Abutment, Backing, Fill, Surfacing, Spandrels):

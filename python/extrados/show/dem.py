@@ -25,6 +25,13 @@ def _stored(run: Stored, name: str) -> DemRun | DemTilt:
     return found
 
 
+def _balance(run: Stored, name: str) -> float:
+    """Error of the energy balance over the energy exchanged, of a run in a plane or in space."""
+    found = run[name]
+    assert isinstance(found, DemRun | DemTilt | SolidDemRun | SolidDemTilt)
+    return found.energy_residual_ratio
+
+
 def _at(run: Stored, name: str, time: float) -> int:
     return int(np.abs(run.array(name, "time") - time).argmin())
 
@@ -232,7 +239,7 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         style.legend_above(low)
         saved = style.save(fig, folder, f"{name}-energy")
     return saved, (
-        f"Kinetic energy, and all terms of the energy balance. The error of the balance is {100 * _stored(run, name).energy_residual_ratio:.2g} % of the total energy exchanged."
+        f"Kinetic energy, and all terms of the energy balance. The error of the balance is {100 * _balance(run, name):.2g} % of the total energy exchanged."
     )
 
 

@@ -56,7 +56,7 @@ THIN = 1.5
 MOST = 8
 
 
-def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, words: Language) -> list[Block]:
+def opening(run: Stored, drawn: dict[str, Figures], building: Figures, words: Language) -> list[Block]:
     """Blocks of the first page; empty where no analysis has a verdict."""
     lead = leading(run)
     if lead is None:
@@ -85,7 +85,7 @@ def leading(run: Stored) -> dict[str, Any] | None:
     return min(whole or judged, key=gravity, default=None)
 
 
-def governing_figure(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None) -> Figure | None:
+def governing_figure(run: Stored, drawn: dict[str, Figures], building: Figures) -> Figure | None:
     """The picture of the governing mechanism: of the strategy of least margin, of limit analysis, else of the building."""
     lead = leading(run)
     if lead is None:
@@ -97,8 +97,9 @@ def governing_figure(run: Stored, drawn: dict[str, Figures], building: tuple[str
     if isinstance(r, LocalMechanism) and r.mechanism == "building":
         names += [a["name"] for a in run.analyses if a["kind"] == "tilt"]
     every = [f for name in names for f in drawn.get(name, [])]
-    chosen = next((f for f in every if f[0].endswith(MECHANISMS)), every[0] if every else building)
-    return None if chosen is None else Figure(f"figures/{chosen[0]}", chosen[1], 0.8)
+    chosen = next((f for f in every if f[0].endswith(MECHANISMS)), None) or next(iter(every or building), None)
+    # The scale of the building's drawing holds at its full width.
+    return None if chosen is None else Figure(f"figures/{chosen[0]}", chosen[1], 1.0 if chosen in building else 0.8)
 
 
 #: Sentences of an assessment on the first page: with a probability under the motion itself, and without

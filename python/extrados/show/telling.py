@@ -54,14 +54,9 @@ SERVICE = {
 
 
 def told(
-    run: Stored,
-    drawn: dict[str, Figures],
-    building: tuple[str, str] | None,
-    day: str,
-    office: Template | None = None,
-    words: Language | None = None,
+    run: Stored, drawn: dict[str, Figures], building: Figures, day: str, office: Template | None = None, words: Language | None = None
 ) -> Document:
-    """The whole report; drawn: figures with captions by analysis; building: its drawing; day: of the results; office: its template."""
+    """The whole report; drawn: figures with captions by analysis; building: its drawings; day: of the results; office: its template."""
     office, words = office or Template(), words or Language()
     deck, made = run.summary["deck"], run.summary["extrados"]
     title = heading(deck)
@@ -78,7 +73,7 @@ def told(
         (words("Made by"), f"extrados {made['version']} {made['commit']}".strip()),
     ]
     first = governing_figure(run, drawn, building)
-    shown = building if building is None or first is None or first.name != f"figures/{building[0]}" else None
+    shown = [f for f in building if first is None or first.name != f"figures/{f[0]}"]
     whole = any(a["kind"] == "assess" and a["results"] for a in run.analyses)
     parts: list[Block] = []  # the strategies of an assessment one by one, and the figures that the report has no room for
     analyses: list[Block] = []
@@ -288,13 +283,12 @@ def _value(words: Language, value: float | None, unit: str) -> str:
     return "" if value is None else words.quantity(value, unit)
 
 
-def _building(run: Stored, deck: dict[str, Any], drawing: tuple[str, str] | None, words: Language) -> list[Block]:
-    """The drawing, its dimensions, and the properties that the analyses used."""
+def _building(run: Stored, deck: dict[str, Any], drawings: Figures, words: Language) -> list[Block]:
+    """The drawings, its dimensions, and the properties that the analyses used."""
     used = {key for a in run.analyses for key in a["assumptions"]}
     rows = [p for p in deck.get("properties", []) if p["table"] != "motion" and _counts(p, used)]
-    found: list[Block] = [Heading(words("Building"))] if rows or drawing or deck.get("dimensions") else []
-    if drawing:
-        found.append(Figure(f"figures/{drawing[0]}", drawing[1]))
+    found: list[Block] = [Heading(words("Building"))] if rows or drawings or deck.get("dimensions") else []
+    found += [Figure(f"figures/{name}", caption) for name, caption in drawings]
     if deck.get("dimensions"):
         sizes = [(name_of(words, d["name"]), words.quantity(d["length_m"], "m")) for d in deck["dimensions"]]
         found.append(Table(_heads(words, "dimension", "length"), sizes, (3.0, 1.0)))

@@ -34,7 +34,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   const waiting = new Map(); // number of a message -> what to do with its replies
   const flying = new Map(); // lane -> {busy, next}
   const unanswered = new Set(); // numbers of messages that change what is seen
-  let counter = 0, moved = true, held = false, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
+  let counter = 0, scenes = 0, moved = true, held = false, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
 
   function on(event, listener) { (listeners[event] ??= []).push(listener); }
   function tell(event, ...rest) { for (const listener of listeners[event] ?? []) listener(...rest); }
@@ -126,7 +126,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     counter += 1;
     message.of = counter;
-    waiting.set(counter, { message, when, reply, lane });
+    waiting.set(counter, { message, when, reply, lane, scene: scenes });
     if (CHANGE.has(message.do)) unanswered.add(counter);
     if (waiting.size > 400) waiting.delete(waiting.keys().next().value);
     if (!transport.send(message)) { waiting.delete(counter); unanswered.delete(counter); if (lane) flying.delete(lane); }
@@ -165,6 +165,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   transport.onreply = ({ words, arrays }) => {
     const entry = waiting.get(words.of);
     if (!words.presets) unanswered.delete(words.of); // after what there is to choose from comes the first deck
+    // A fall that was asked of an earlier scene: neither its pictures nor its refusal belong to what is shown now.
+    if (entry?.message.do === "fall" && entry.scene !== scenes) { entry.reply?.(words, arrays); landed(entry); return; }
     if (words.complaints || words.bad) {
       if (!["rocking", "domain", "impulse"].includes(words.to)) say((words.complaints ?? [words.bad]).join("\n"), true);
       tell("complaint", words, entry?.message);
@@ -176,6 +178,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (words.presets) { app.welcome = words; tell("welcome", words); }
     if (words.decks && app.welcome) { app.welcome.decks = words.decks; if (words.runs) app.welcome.runs = words.runs; tell("folder"); }
     if (words.scene) {
+      scenes += 1;
       app.scene = words.scene; app.arrays = arrays; app.view.gamma = words.limit && words.to === "show" ? words.scene.gamma : app.view.gamma; app.handles = words.handles ?? []; app.deck = words.deck; app.anchor = words.anchor ?? [0, 0]; app.detail = null;
       if (words.opened !== undefined) opened(words);
       app.turned();
