@@ -1,10 +1,12 @@
 """Rocking that hands over to rigid contacts: the criterion, the state, and the outcome of the whole motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.rocking.hand_over import contacts_of, leaving_time
+from extrados.analyses.rocking.hand_over import contacts_of, leaving_time, level_of
 from extrados.core import dem
 from extrados.core.rocking import history
 from extrados.decks.reader import make_deck
@@ -261,3 +263,14 @@ def test_cells_of_a_harmonic_map_are_decided_by_contacts() -> None:
             assert (codes[i, k] == 2) == (one.results.outcome == "collapse"), (frequency, k)
     few = extrados.run(deck | {"analysis": harmonic | {"hand_over_cells": 1}}).results[0]
     assert few.results.handed_over is None and few.results.conditions.violated
+
+
+@pytest.mark.parametrize("height", [0.0, 3.0, 1e-3])
+def test_ground_that_rounding_moves_is_at_zero(height: float) -> None:
+    """The springings of an ellipse end at cos 90 degrees, 4e-16 m above the ground, which is no height of a deck."""
+    structure = {"kind": "elliptical-arch", "span": 8.0, "rise": 3.0, "thickness": 0.9, "voussoirs": 12}
+    blocks = building_of(structure).blocks()
+    ends = np.concatenate([blocks.p, blocks.q])
+    assert np.abs(ends[np.abs(ends[:, 1]) < 1e-9, 1]).max() > 0.0  # rounding is there
+    raised = replace(blocks, p=blocks.p + np.array([0.0, height]), q=blocks.q + np.array([0.0, height]))
+    assert level_of(raised) == (0.0 if height == 0.0 else pytest.approx(height, rel=1e-12))

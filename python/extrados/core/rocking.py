@@ -217,7 +217,7 @@ class Response:
 
 
 def output_times(end_time: float, output_step: float, rows: int) -> np.ndarray:
-    """Output times from 0 to the end [s]; refuses histories of `rows` values that do not fit into memory."""
+    """Output times (steps) from 0 to the end [s]; refuses histories of `rows` values that do not fit into memory."""
     room_for(rows, int(min(end_time / output_step, 1e12)))
     return np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
 

@@ -18,6 +18,7 @@ from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.needs import complaints
+from extrados.analyses.rocking.hand_over import level_of
 from extrados.core import dem
 from extrados.core.dem_run import STILL
 from extrados.core.ground import as_motion_set
@@ -53,7 +54,8 @@ def begin_fall(context: Context, building: Building, made: Picture) -> Iterator[
     """The fall of what a picture shows, piece by piece; Refused if rigid contacts do not take the building."""
     assembly = made.assembly
     grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
-    floor = float(np.minimum(assembly.p[grounded, 1], assembly.q[grounded, 1]).min())
+    level = level_of(assembly)
+    floor = float(np.minimum(assembly.p[grounded, 1], assembly.q[grounded, 1]).min()) if level is None else level
     options = Dem(kind="dem", solver="nonsmooth", floor=floor, perturbed=False)
     if wrong := complaints(context, options, building):
         raise Refused(wrong[0])

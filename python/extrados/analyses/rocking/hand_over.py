@@ -225,10 +225,12 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
 
 
 def level_of(blocks: Assembly) -> float | None:
-    """Height of the ground [m]; None where joints on it are not level, or not at one height."""
+    """Height of the ground [m], 0 where it differs from 0 by rounding; None where joints on it are not level, or not at one height."""
     grounded = (blocks.a == GROUND) | (blocks.b == GROUND)
     heights = np.concatenate([blocks.p[grounded, 1], blocks.q[grounded, 1]])
-    return float(heights[0]) if np.ptp(heights) <= LEVEL * blocks.size else None
+    if np.ptp(heights) > LEVEL * blocks.size:
+        return None
+    return float(heights[0]) if abs(heights[0]) > LEVEL * blocks.size else 0.0
 
 
 def follow_contacts(
