@@ -11,11 +11,10 @@ from served import SHOTS, Served
 import extrados
 
 
-def test_what_has_no_map_still_rocks_and_a_motion_is_drawn_alone(page: Any) -> None:
+def test_a_stack_rocks_beside_its_map_and_a_motion_is_drawn_alone(page: Any) -> None:
     page.click("[data-tab=motion]")
     page.evaluate("window.extrados.open({ preset: 'rocking/stack' })")
-    until(page, "window.extrados.motion.arrays?.rotation_upper && window.extrados.motion.map?.why")
-    assert "two stacked blocks" in page.locator(".map-why").inner_text()
+    until(page, "window.extrados.motion.arrays?.rotation_upper && window.extrados.motion.map?.told?.whole")
     settled(page)
     page.evaluate("window.extrados.motion.seek(0.5 * window.extrados.motion.end)")
     until(page, "document.querySelector('.ghost').getAttribute('d')")
