@@ -258,7 +258,6 @@ LONG = {
     "analyses/sla/model.py _build": "fills the core's model in the order of its calls",
     "analyses/sla/stages.py run_stages": "one line above, of the same loop",
     "analyses/shell/model.py _build": "one line above, fills the core's model",
-    "analyses/strengthen/driver.py _row": "keys of a row of results",
 }
 MOST_LINES, MOST_PARAMETERS = 80, 12
 

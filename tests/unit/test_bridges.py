@@ -604,7 +604,7 @@ def test_a_bare_ring_is_no_model_of_a_bridge(train: str) -> None:
     assert found.verdict.ratio > 1.0 and found.verdict.outcome == "open"
     (violated,) = found.verdict.violated
     assert f"{train} acts on the blocks of the arch themselves" in violated and violated in found.verdict.statement
-    assert any(violated in w and "Give the structure fill" in w for w in found.warnings)
+    assert any(violated in w and "Add fill to the structure" in w for w in found.warnings)
 
 
 def test_a_bridge_without_fill_is_a_bare_ring_and_with_it_is_not() -> None:

@@ -76,7 +76,7 @@ WRONG = {
         "none.dxf",
         '[structure]\nkind = "panel"\noutline = "none.dxf" # here\nthickness = 0.1\n' + SLA + 'mesh.element = "T3"\nmesh.size = 0.2\n',
     ),
-    "linear form of an arch": ("is known of blocks", ARCH + PULSE + ROCKING + 'form = "linear" # here\n'),
+    "linear form of an arch": ("applies to blocks", ARCH + PULSE + ROCKING + 'form = "linear" # here\n'),
     "block that slides off its slope": ("overturns", BLOCK.replace("[structure]\n", "[structure]\nbase_slope = 30 # here\n") + TILT),
     "typo in a variant": ("unknown key", BLOCK + '[[analysis]]\nkind = "failure-curves"\nvariants = [{ widht = 2.0 }] # here\n'),
     "missing hazard file": ("no such file", BLOCK + GENERATED + FRAGILITY + '[analysis.hazard]\nfile = "none.csv" # here\n'),

@@ -43,7 +43,7 @@ SMALL = {
     "fragility": {"count": 40, "seed": 1},
     "failure-domain": {"durations": [0.2, 0.6], "amplitudes": 8, "hand_over_cells": 0},
     "failure-curves": {"durations": [0.3, 0.6], "amplitudes": 8},
-    "harmonic-map": {"frequencies": [1.0, 2.0], "amplitudes": 6},
+    "harmonic-map": {"frequencies": [1.0, 2.0], "amplitudes": 6, "hand_over_cells": 0},
     "rocking-spectrum": {"periods": [2.0, 4.0]},
 }
 

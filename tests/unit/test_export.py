@@ -275,8 +275,8 @@ def test_a_script_of_opensees_holds_what_the_deck_holds() -> None:
     ("tables", "words"),
     [
         ({"structure": extrados.Block(width=1.0, height=4.0, base_slope=3.0)}, "structure.base_slope: .*level ground"),
-        ({"structure": ARCH, "ties": [TIE]}, r"ties.*: OpenSees is given no \[\[ties\]\]"),
-        ({"structure": BLOCK.structure, "supports": {"abutting_wall": "left"}}, "supports.abutting_wall: OpenSees"),
+        ({"structure": ARCH, "ties": [TIE]}, r"ties.*: the export to OpenSees cannot include \[\[ties\]\]"),
+        ({"structure": BLOCK.structure, "supports": {"abutting_wall": "left"}}, "supports.abutting_wall: the export to OpenSees"),
         ({"structure": WALL, "supports": {"held": [{"edge": "left", "stiffness": 1e9}]}}, "held.*stiffness: .*rigid"),
         ({"structure": WALL | {"ties": [{"edge": "top", "direction": "y"}]}}, "structure.ties: .*no ties of a wall"),
     ],

@@ -100,7 +100,7 @@ def test_the_pool_of_two_strategies() -> None:
     assert sum(c.weight for c in found.contributions) == pytest.approx(1.0)
     assert set(found.without) == {"rocking", "code-checks", "dem"}
     assert "briefly" in found.statement and percent(pooled) in found.statement
-    assert found.statement.startswith("If the peak of the hazard acted as a sustained load") and found.in_motion is None
+    assert found.statement.startswith("If the peak of the hazard acted as a constant horizontal acceleration") and found.in_motion is None
     assert "not the probability of collapse in the earthquake" in found.statement
     assert "rocking" in found.method and "verification book" in found.method
 
@@ -115,7 +115,7 @@ def test_the_share_under_the_motion_itself_comes_first() -> None:
     assert found.in_motion.low == pytest.approx((middle - half) / (1 + z * z / n), rel=1e-6)
     assert found.in_motion.high == pytest.approx((middle + half) / (1 + z * z / n), rel=1e-6)
     assert found.statement.startswith("Probability of collapse under the hazard by rocking 48 %")
-    assert "Assumptions of rocking do not hold" in found.statement and "sustained load" in found.statement
+    assert "Assumptions of rocking do not hold" in found.statement and "constant horizontal acceleration" in found.statement
     alone = estimate_collapse([row("rocking", margin_at_least=1.5)], runs)
     assert alone.probability is None and "19 of 40 runs collapse" in alone.statement
     none = estimate_collapse(rows, Ensemble.model_construct(count=16, collapsed=0))

@@ -206,7 +206,7 @@ REFUSED = {
     "channel of a time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {"channel": 1}, "time step is"),
     "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' holds whole numbers.*put #"),
     "whole numbers below a title": ("Some quake\n300\n0\n" + COLUMN, {}, ":2: '300'"),
-    "count": (f"{len(N)}.0\n{len(N)}\n" + COLUMN, {}, "number of the values behind it|exceeds twice"),
+    "count": (f"{len(N)}.0\n{len(N)}\n" + COLUMN, {}, "number of the values that follow|exceeds twice"),
     "real numbers": ("-999.00\n-999.00\n" + COLUMN, {}, "exceeds twice all values"),
     "counts in other columns": ("400 0.01\n" + COLUMN, {}, ":2: 1 columns where 2 stood before; put #"),
     "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "every value 2 further on"),

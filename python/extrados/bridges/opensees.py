@@ -33,7 +33,7 @@ def written(deck: Deck) -> str:
     ]
     assert deck.structure is not None
     for what, key in deck.building.special_keys.items():
-        raise BadGeometry(f"OpenSees is given no {what} here: leave it out of the deck", key)
+        raise BadGeometry(f"the export to OpenSees cannot include {what}: leave it out of the deck", key)
     if deck.structure.rocks_as == "block" and len(deck.building.blocks().mass) == 1:
         lines += _block(deck)
     else:

@@ -19,7 +19,8 @@ def explore(
         str, typer.Option(help="address of this machine on the local network, for --class; default: this machine alone")
     ] = "127.0.0.1",
     standalone: Annotated[
-        Path | None, typer.Option(help="write a page without a server to this file instead: one size and the tilt on sliders")
+        Path | None,
+        typer.Option(help="instead, write a page that needs no server to this file, with sliders for one size and for the tilt"),
     ] = None,
     pupils: Annotated[int, typer.Option(min=1, max=60, help="most pupils at a time, for --class")] = 30,
 ) -> None:

@@ -225,7 +225,9 @@ class Model(Owner):
             )
         equations = int(equation.max(initial=-1)) + 1
         if equations > self.freedoms * self.nodes:
-            raise IndexError(f"a freedom belongs to equation {equations} of {self.freedoms * self.nodes} freedoms")
+            raise IndexError(
+                f"a degree of freedom has the equation number {equations}; expected at most {self.freedoms * self.nodes}, the number of degrees of freedom"
+            )
         self.moved = int(freedoms.moved)
         handle, status = _core.api_sla_model.create(
             place,

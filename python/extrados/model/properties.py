@@ -163,7 +163,9 @@ class Joints(Table):
         source="thesis Eqs 7.13, 7.17-7.20",
     )
     damping_ratio: float = key(1.0, "fraction of critical damping at that frequency", ge=0, le=100)
-    beta: Annotated[float, Field(ge=0, le=10)] | None = key(None, "stiffness-proportional damping in s, instead of the rule")
+    beta: Annotated[float, Field(ge=0, le=10)] | None = key(
+        None, "constant of stiffness-proportional damping in s; replaces damping and damping_ratio"
+    )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
         "impact of rocking, of blocks always Housner's: all energy that remains after a plastic impact, with impulses at all "

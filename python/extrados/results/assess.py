@@ -102,7 +102,7 @@ class TurningValue(ResultModel):
     tilt_turns: float | None = fact("value at which the verdict of limit analysis changes; null: at none that was run")
     rocking_turns: float | None = fact("value at which the verdict of rocking changes; null: at none that was run")
     dem_base: float | None = fact(
-        "displacement of discrete elements over that which counts as collapse, at the value of the deck; null: not run"
+        "ratio of the displacement of discrete elements to the one that counts as collapse, at the value of the deck; null: not run"
     )
     dem_low: float | None = fact("ratio of the displacements at the value below")
     dem_high: float | None = fact("ratio of the displacements at the value above")
@@ -138,14 +138,14 @@ class CollapseInMotion(ResultModel):
 
 
 class CollapseProbability(ResultModel):
-    """Probability of collapse, of static strategies if the peak of the hazard acted as a sustained load, and under the motion itself.
+    """Probability of collapse, of static strategies if the peak of the hazard acted as a constant horizontal acceleration, and under the motion itself.
 
     The first comes from the model uncertainty of the strategies. The second is a count of dynamic runs.
     """
 
     in_motion: CollapseInMotion = maybe("probability of collapse under the motion itself, by rocking")
     probability: float | None = fact(
-        "if the peak acted as a sustained load: weighted mean over the contributions; 1 for a certificate; null: no contribution"
+        "if the peak acted as a constant horizontal acceleration: weighted mean over the contributions; 1 for a certificate; null: no contribution"
     )
     low: float | None = fact("least lower end of the contributions' 90 % confidence intervals; null: no contribution")
     high: float | None = fact("greatest upper end of the contributions' 90 % confidence intervals; null: no contribution")
@@ -156,7 +156,7 @@ class CollapseProbability(ResultModel):
 
 
 class Advice(ResultModel):
-    """What to do, by limit analysis: interventions that carry the peak of the hazard as a sustained load."""
+    """What to do, by limit analysis: interventions that carry the peak of the hazard as a constant horizontal acceleration."""
 
     target_g: float = fact("constant horizontal acceleration that the interventions carry: the peak of the hazard", "g")
     capacity_g: float | None = fact("capacity of the existing building; null: none", "g")

@@ -191,7 +191,7 @@ class SolidDemRun(KindResults):
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest plastic slip of a dowel, settling included", "m")
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, slip during the initial settling under self-weight included", "m")
     dowels_out: int = fact("how many of them came out")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse, unless the block only slides", "m")

@@ -82,7 +82,7 @@ class FramePush(ResultModel):
     )
     stiffness_N_m: float = fact("secant at a tenth of the greatest base shear", "N/m")
     period_s: float = fact("of the mode of greatest participating mass in the direction", "s")
-    equivalent_mass_kg: float = fact("m*: sum of masses times that shape, 1 at the control displacement", "kg")
+    equivalent_mass_kg: float = fact("m*: sum of the masses times the shape of that mode, which is 1 at the control displacement", "kg")
     participation_factor: float = fact("Gamma: m* over the sum of masses times the squared shape")
     level_mass_kg: list[float] = fact("masses on the levels, from the lowest", "kg")
     level_shape: list[float] = fact("mean of the shape on the levels along the sense")

@@ -265,7 +265,7 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
         return judge(f"{text}; the deck holds no single motion to compare with.", None, design, "g")
     outcome: Outcome = "collapses" if peak >= most else "open" if peak >= design else "stands"
     place = {"collapses": "at or above the upper bound", "open": "between design value and upper bound", "stands": "below the design value"}
-    text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place[outcome]}."
+    text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place[outcome]}."
     if outcome == "stands" and least is not None and peak >= least:
         text += " Warning: in another state of stress at rest collapse is possible at this peak. Settlements or loads of the past may have caused it."
     return judge(text, peak, design, "g", outcome)
@@ -288,7 +288,7 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
         outcome, place = ("open", f"below the least state found by less than the spread of the states found, {spread:.3g} g")
     else:
         outcome, place = "stands", "below the least state found"
-    text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place}."
+    text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place}."
     return judge(text, peak, least, "g", outcome)
 
 
@@ -369,7 +369,9 @@ class MovingLoad(KindResults):
     greatest_compression_N: float = fact("greatest compression across a joint at collapse, with the load at the governing position", "N")
     places_without_limit: int = fact("places at which no load of the kind causes collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
-    duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
+    duality_gap: float = fact(
+        "greatest difference, over all places, between the bounds from equilibrium and from the mechanism, in multiples of the self-weight"
+    )
     load_N: float = maybe("the load that the deck gives", "N")
     safety_factor: float = maybe("collapse load over the load that the deck gives")
     train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")

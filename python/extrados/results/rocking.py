@@ -239,8 +239,8 @@ class FailureDomain(KindResults):
     )
     amplitudes_by_rule: list[RuleCurve] = maybe("failure curve by each impact rule, where their c_v differ by more than 1.3")
     rule_ratio: float | None = maybe(
-        "greatest ratio between the lowest amplitudes that cause collapse by two impact rules, at the same duration of the "
-        "pulse; null: at no duration does collapse follow from two rules"
+        "ratio of the greatest to the least failure amplitude among the impact rules, at the duration where it is greatest; "
+        "null: no duration has failure amplitudes by two rules"
     )
     pulse: Pulse = fact("shape of the pulses")
     mode_I: ModeCurve = fact("lowest amplitudes that cause collapse, with or without an impact")
@@ -351,8 +351,8 @@ class FailureCurve(ResultModel):
     conditions: Conditions = fact("over the points of the curve: below how many of them blocks slide or hinges form elsewhere")
     amplitudes_by_rule: list[RuleCurve] = maybe("the curve by each impact rule, where their c_v differ by more than 1.3")
     rule_ratio: float | None = maybe(
-        "greatest ratio between the lowest amplitudes that cause collapse by two impact rules, at the same duration of the "
-        "pulse; null: at no duration does collapse follow from two rules"
+        "ratio of the greatest to the least failure amplitude among the impact rules, at the duration where it is greatest; "
+        "null: no duration has failure amplitudes by two rules"
     )
     fit: CurveFit = maybe("Eq. 5.5 fitted to this curve (radius not scaled); omitted with fewer than four points to fit")
     criterion: CurveFit = maybe("Eq. 5.8 with the coefficients of Table 5.3, interpolated; omitted outside the table")
@@ -422,7 +422,7 @@ class Assessment(KindResults):
 
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which it starts to rock", "g")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
-    static_verdict: Literal["stands", "fails"] = fact("outcome of the peak acceleration applied as a sustained load")
+    static_verdict: Literal["stands", "fails"] = fact("outcome of the peak acceleration applied as a constant horizontal acceleration")
     coefficients: Coefficients = fact("the failure curve that is used")
     coefficients_source: str = fact("source of the impulse")
     coefficients_of_this_arch: Coefficients = fact("the failure curve fitted to this structure")

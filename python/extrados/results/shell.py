@@ -108,7 +108,7 @@ class FrameCapacity(ResultModel):
     """What the piers of the weakest storey bear by the formulas of a code."""
 
     code: str = fact("the code; of its formulas the least counts for a pier")
-    base_shear_N: float = fact("base shear at which that storey has all of its piers' strengths", "N")
+    base_shear_N: float = fact("base shear at which the shear in the weakest storey equals the sum of the strengths of its piers", "N")
     storey: int = fact("the weakest storey, from 1")
 
 

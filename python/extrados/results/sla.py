@@ -25,10 +25,10 @@ class Bilinear(ResultModel):
 class Makeup(ResultModel):
     """Fingerprints of what a stored damage rests on; a run goes on from another with the same ones alone."""
 
-    stiffness: str = fact("of moduli, Poisson's ratios, thicknesses and elements")
-    tension: str = fact("of the tensile laws with their teeth and crack bands")
-    compression: str = fact("of the crushing laws with their teeth and crack bands")
-    cracking: str = fact("of the options of cracking")
+    stiffness: str = fact("fingerprint of moduli, Poisson's ratios, thicknesses and elements")
+    tension: str = fact("fingerprint of the tensile laws, with the teeth of their saw-tooth curves and the crack bands")
+    compression: str = fact("fingerprint of the crushing laws, with the teeth of their saw-tooth curves and the crack bands")
+    cracking: str = fact("fingerprint of the options of cracking")
 
 
 class BarForce(ResultModel):

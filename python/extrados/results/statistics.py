@@ -61,7 +61,7 @@ class RotationLimit(ResultModel):
 
 
 class MeasureDispersion(ResultModel):
-    """How well one intensity measure of the motions tells collapse from survival."""
+    """How well one intensity measure of the motions separates collapse from survival."""
 
     measure: str = fact("intensity measure")
     unit: str = fact("unit of its median")
@@ -118,7 +118,8 @@ class Ensemble(Annual):
     dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
     rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
     measures: list[MeasureDispersion] = maybe(
-        "of a cloud: intensity measures compared by how well they tell collapse from survival, best first", source="Luco and Cornell 2007"
+        "of a cloud: intensity measures compared by how well they separate collapse from survival, best first",
+        source="Luco and Cornell 2007",
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -315,7 +316,7 @@ class Resonance(KindResults):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("under that motion: whether blocks slide or hinges form elsewhere")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
-        "of a block: least cap over uplift that causes collapse within so many half cycles"
+        "of a block, by number of half cycles: least ratio of the cap to the uplift acceleration that causes collapse within that number"
     )
     least_cap_g: float | None = maybe("of a block: cap above which the rotation grows; null where its toes differ", "g")
     least_cap_ratio: float | None = maybe("least cap over the uplift acceleration")

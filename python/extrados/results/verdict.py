@@ -173,5 +173,5 @@ def judge_acceleration(capacity: float, demand: Demand, bound: Bound | None = No
     if peak is None:
         return judge(f"{carried}; the deck holds no single motion to compare with.", None, capacity, "g", None, bound, violated)
     word = "below" if peak < capacity else "at or above"
-    text = f"{carried}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {word} this value."
+    text = f"{carried}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {word} this value."
     return judge(text, peak, capacity, "g", None, bound, violated)

@@ -156,7 +156,7 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
         ax.set_xlim(time[0], time[-1])
         ax.set_xlabel("time [s]")
         ax.set_ylabel("acceleration [g]")
-        ax.set_title("The hazard, and capacities under a sustained load")
+        ax.set_title("The hazard, and capacities under constant horizontal acceleration")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-hazard")
     return saved, f"{r.hazard.told[:1].upper()}{r.hazard.told[1:]}.{told}"

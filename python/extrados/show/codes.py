@@ -43,7 +43,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-capacity")
     straight = "; the straight line is the rule of the code" if r.jurisdiction == "NTC" else ""
-    caption = f"Capacity curve of the equivalent oscillator, with the confidence factor{straight}."
+    caption = f"Capacity curve of the equivalent oscillator, divided by the confidence factor{straight}."
     return [*drawn, (saved, caption), *draw_code_checks(run, name, folder)]
 
 

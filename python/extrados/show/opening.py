@@ -281,9 +281,9 @@ def _strengthening(run: Stored, lead: dict[str, Any], words: Language) -> str:
         return ""
     met = [one for one in r.advice.interventions if one.meets_target]
     if not met:
-        return " " + words("No intervention considered carries the peak of the hazard as a sustained load.")
+        return " " + words("No intervention considered carries the peak of the hazard as a constant horizontal acceleration.")
     told = "; ".join(f"{one.name}, {size_told(one)}" for one in met)
-    text = words("Strengthening for the peak of the hazard as a sustained load: {interventions}.", interventions=told)
+    text = words("Strengthening for the peak of the hazard as a constant horizontal acceleration: {interventions}.", interventions=told)
     least = r.advice.by_rocking
     if least is not None and least.required_N is not None:
         force = words.quantity(least.required_N, "N")

@@ -94,7 +94,7 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
     now = "none" if r.value_before is None else f"{r.value_before:.3g} g (horizontal, constant)"
     said = [
         f"Collapse acceleration of the existing building: {now}. Governing mechanism: {r.mechanism_before}. Each of these interventions carries the "
-        f"peak of the hazard, {r.target:.3g} g, as a sustained load:"
+        f"peak of the hazard, {r.target:.3g} g, as a constant horizontal acceleration:"
     ]
     met = [one for one in r.interventions if one.meets_target]
     for one in met:

@@ -114,7 +114,9 @@ def _turning(work: Work, left: int, choice: Choice) -> None:
     for factor in UP if stands else DOWN:
         table = hazard.scaled(motion, model, factor)
         if table is None:
-            work.not_done.append("discrete elements at other factors: the spectrum is not in proportion to them")
+            work.not_done.append(
+                "discrete elements at other scale factors of the motion: its code spectrum does not grow in proportion to its peak"
+            )
             break
         if left < 1:
             work.not_done.append(f"discrete elements at {factor:g} times the motion and beyond")

@@ -65,7 +65,7 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
     low, high = min(one.low for one in contributions), max(one.high for one in contributions)
     names = " and ".join(labels[one.strategy] for one in contributions)
     said += (
-        f"If the peak of the hazard acted as a sustained load, the probability of collapse would be {percent(p)} (90 % confidence: "
+        f"If the peak of the hazard acted as a constant horizontal acceleration, the probability of collapse would be {percent(p)} (90 % confidence: "
         f"{percent(low)} to {percent(high)}), from the model uncertainty of {names}. This static number is not the probability of collapse in "
         "the earthquake."
     )

@@ -116,8 +116,8 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
     names = [model.body_names[k] for k in run.blamed]
     first = names[0] if names else "a block"
     wedged = (
-        f"; the impulses of its rigid contacts were not found in {run.effort.open_steps} of these steps: very high friction wedges blocks "
-        'that touch on several sides. Give a friction of up to 1, or use solver = "compliant"'
+        f". In {run.effort.open_steps} of these steps the solver did not find the impulses at the rigid contacts: under very high "
+        'friction, blocks that touch on several sides jam. Give a friction of up to 1, or use solver = "compliant"'
         if run.effort.open_steps
         else ""
     )

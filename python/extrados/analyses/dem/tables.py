@@ -152,7 +152,9 @@ class Dem(SpatialDem, Animated):
         False, "nonsmooth: without inertia, so that moving supports are followed through large displacements until collapse"
     )
     test: Literal["motion", "tilt"] = key("motion", "follow the motion, or find the constant acceleration of collapse")
-    end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
+    end_time: Time | None = key(
+        None, "end of the run; default the end of the motion, and the time to come to rest or to collapse; a run at rest ends earlier", gt=0
+    )
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
     base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
     collapse_displacement: Length | None = key(

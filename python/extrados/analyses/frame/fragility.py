@@ -196,7 +196,7 @@ def run(context: Context, options: FrameFragility) -> Result:
     """Curves of all limit states; see the deck reference."""
     if options.uncertain and options.frame.confidence_factor != 1.0:
         raise Refused(
-            "uncertain strengths are spread about their means: without a confidence factor of the frame",
+            "uncertain strengths scatter about their mean values, which a confidence factor must not reduce: leave it out of the frame",
             ("analysis", "frame", "confidence_factor"),
         )
     context.warnings += context.building.frame(options.frame).remarks

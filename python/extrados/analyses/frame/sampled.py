@@ -83,8 +83,8 @@ def refuse_unknown(building: Building, options: FrameOptions, names: list[str]) 
     """Refused where the building or the frame does not have an uncertain value."""
     plan = building.structure
     assert isinstance(plan, Plan)
-    names = [name for wall in plan.walls for name in wall.materials or [wall.material or ""]]
-    tables = [building.materials.get(name, building.material) for name in names]
+    of_walls = [name for wall in plan.walls for name in wall.materials or [wall.material or ""]]
+    tables = [building.materials.get(name, building.material) for name in of_walls]
     lacking = {
         "compressive_strength": all(one.compressive_strength is None for one in tables),
         "cohesion": options.cohesion is None and not building.joints.cohesion,

@@ -43,7 +43,7 @@ from extrados.views.building import Building
 
 PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
 #: What makes the model of a bridge whole
-MODEL = "The ring alone is no model of a bridge. Give the structure fill, and backing as blocks or by kind bridge."
+MODEL = "The ring alone is no model of a bridge. Add fill to the structure, and backing: as blocks, or by a structure of kind bridge."
 FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
 
 

@@ -230,6 +230,6 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> 
     also = "also " if r.static_verdict == r.verdict else ""
     static = "collapse" if r.static_verdict == "fails" else "no collapse"
     return (
-        f"{text}Limit analysis with the peak of {r.peak_ground_acceleration_g:.3f} g as a sustained load (collapse acceleration "
+        f"{text}Limit analysis with the peak of {r.peak_ground_acceleration_g:.3f} g as a constant horizontal acceleration (collapse acceleration "
         f"{r.uplift_acceleration_g:.3f} g) {also}predicts {static}."
     )

@@ -505,7 +505,7 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
     modes = (
         "Collapse after an impact (Mode I) governs where its curve lies below that of Mode II"
         if below.any()
-        else "None of them collapses after an impact at a lower amplitude than without (Mode II)"
+        else "At no duration is the amplitude of collapse after an impact (Mode I) lower than that without an impact (Mode II)"
     )
     return (
         f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. It collapses from {shortest:.3f} s on "

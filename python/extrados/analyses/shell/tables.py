@@ -38,7 +38,7 @@ class Settlement(Table):
     )
     x: Range | None = key(None, "[from, to] along the wall; default all of it")
     down: Length = key(0.0, "how far it goes down; negative is a heave")
-    out: Length = key(0.0, "how far it goes outward: across a wall, away from the middle of the plan; of a dome all around")
+    out: Length = key(0.0, "outward displacement: of a wall, perpendicular to it and away from the middle of the plan; of a dome, radial")
 
     @model_validator(mode="after")
     def _somewhere(self) -> "Settlement":

@@ -16,7 +16,7 @@ from extrados.model.errors import BadGeometry, Key
 from extrados.model.places import Placed
 from extrados.model.properties import Material
 from extrados.model.structures.walls import Bar
-from extrados.views.mesh.mesh import ElementGroup, JointLaw, Mesh, corner_count, element_areas
+from extrados.views.mesh.mesh import ElementGroup, JointLaw, Mesh, corner_count, element_areas, words_of_place
 from extrados.views.shell.mesh import ShellMesh
 
 AXES = {"x": 0, "y": 1}
@@ -570,7 +570,9 @@ def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
             )
     mine = end > begin
     if not mine.any():
-        raise BadGeometry(f"{what}: no boundary edge lies on edge {load.edge}, x {load.x}, y {load.y}; a mesh line is missing")
+        raise BadGeometry(
+            f"{what}: no side of an element on the boundary lies within {words_of_place(load.edge, load.x, load.y)}; a mesh line is missing"
+        )
     edges, thickness, begin, end = edges[mine], thickness[mine], begin[mine], end[mine]
     along = mesh.xy[edges[:, 1]] - mesh.xy[edges[:, 0]]
     length = np.hypot(*along.T)

@@ -27,7 +27,9 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
     per = [plane.points_each for plane in model.planes]
     band = np.concatenate([np.repeat(h, n) for h, n in zip(model.bands, per, strict=True)])
     owner = np.repeat(np.arange(model.mesh.elements()), np.repeat(per, [len(g.connect) for g in model.mesh.groups]))
-    arrays["point_element"] = Array(owner, ("points",), "", "element of the point, from 0, group after group")
+    arrays["point_element"] = Array(
+        owner, ("points",), "", "number of the element of the point, counted from 0 through the groups of elements in order"
+    )
     arrays["point_band"] = Array(band, ("points",), "m", "crack band width before the point cracks")
     if model.mesh.has_joints:
         reach = [

@@ -48,6 +48,17 @@ POINTS, AFTER = 3000, 5.0
 MOST_BY_RULE = 2000
 
 
+def empty_rows(count: int) -> dict[str, np.ndarray]:
+    """Rows (count) of runs without a result yet."""
+    numbers = ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity", "friction")
+    return {
+        "outcome": np.full(count, FAILED, np.int8),
+        "half_cycles": np.zeros(count, np.int32),
+        **{name: np.full(count, np.nan) for name in numbers},
+        **{name: np.zeros(count, np.int8) for name in ("slips", "strays", "handed")},
+    }
+
+
 @dataclass(frozen=True)
 class EnsembleJob:
     """Member k is motion k // L at level k % L, L the number of levels; without levels motions stay as they are.
@@ -70,6 +81,15 @@ class EnsembleJob:
     astray: float = 0.0
     handed: Handed | None = None
 
+    def _scale(self, own: dict[str, np.ndarray], level: np.ndarray, index: np.ndarray) -> np.ndarray:
+        """Factors (runs) on motions of those measures and that index that bring them to that level; 1 without levels."""
+        if self.levels is None:
+            return np.ones(len(index))
+        wanted = self.levels[level] * self.unit
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = wanted if self.measure == "scale" else wanted / own[self.measure][index]
+        return np.sqrt(scale) if self.measure == "arias" else scale
+
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         per_motion = 1 if self.levels is None else len(self.levels)
         member = np.arange(first, first + count)
@@ -81,17 +101,7 @@ class EnsembleJob:
         grounds = [ground for ground in found if not isinstance(ground, str)]
         motion = member // per_motion - low
         reason = np.array([ground if isinstance(ground, str) else "" for ground in found])[motion]
-        rows: dict[str, np.ndarray] = {
-            "outcome": np.full(count, FAILED, np.int8),
-            "half_cycles": np.zeros(count, np.int32),
-            **{
-                n: np.full(count, np.nan)
-                for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity", "friction")
-            },
-            "slips": np.zeros(count, np.int8),
-            "strays": np.zeros(count, np.int8),
-            "handed": np.zeros(count, np.int8),
-        }
+        rows = empty_rows(count)
         whose = member // per_motion if len(self.bodies) > 1 else np.zeros(count, int)
         without = np.array([self.bodies[b] if isinstance(self.bodies[b], str) else "" for b in whose])
         reason = np.where(reason == "", without, reason)
@@ -100,13 +110,7 @@ class EnsembleJob:
             own = measures(grounds, self.sa, threads)
             good = np.flatnonzero(usable_run)
             index = place[motion[good]]
-            scale = np.ones(len(good))
-            if self.levels is not None:
-                wanted = self.levels[member[good] % per_motion] * self.unit
-                with np.errstate(divide="ignore", invalid="ignore"):
-                    scale = wanted if self.measure == "scale" else wanted / own[self.measure][index]
-                if self.measure == "arias":
-                    scale = np.sqrt(scale)
+            scale = self._scale(own, member[good] % per_motion, index)
             level_ok = np.isfinite(scale)
             reason = np.where(np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason)
             good, index, scale = good[level_ok], index[level_ok], scale[level_ok]
@@ -331,9 +335,9 @@ def _words(context: Context, options: Fragility, base: Rocker, r: Keys) -> str:
         return "No motion could be run."
     many = context.deck.motion is None or is_set(context.deck.motion)
     counted = (
-        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down"
+        f"{r['collapsed']} of {r['count']} motions cause collapse of the {base.word}"
         if many
-        else f"Of {r['count']} buildings of uncertain values {r['collapsed']} collapse"
+        else f"{r['collapsed']} of {r['count']} samples of the building with uncertain values collapse"
     )
     return (
         f"{counted}: probability of collapse {100 * p:.1f} % "

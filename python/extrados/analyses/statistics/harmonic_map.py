@@ -17,6 +17,7 @@ from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.rocker import Rocker
 
 
 def run(context: Context, options: HarmonicMap) -> Result:
@@ -82,13 +83,29 @@ def run(context: Context, options: HarmonicMap) -> Result:
         **given(handed_over=handed or None),
     )
     result.warnings += told(result.results.conditions)
+    store_map(result, frequency, amplitude, outcome, ratio, lowest, swept["half_cycles"])
+    result.answer = answer_of(options, model, result.results, cap)
+    return result
+
+
+def store_map(
+    result: Result,
+    frequency: np.ndarray,
+    amplitude: np.ndarray,
+    outcome: np.ndarray,
+    ratio: np.ndarray,
+    lowest: np.ndarray,
+    half_cycles: np.ndarray,
+) -> None:
+    """Table and arrays of the map: outcome and greatest rotation over the critical one (frequencies, amplitudes), the lowest overturning
+    amplitude (frequencies) [g], half cycles (cells) in order of the frequencies."""
     result.tables["harmonic_map"] = TableData(
         {
             "frequency": np.repeat(frequency, len(amplitude)),
             "amplitude": np.tile(amplitude, len(frequency)) / GRAVITY,
             "outcome": outcome.ravel(),
             "peak_ratio": ratio.ravel(),
-            "half_cycles": swept["half_cycles"],
+            "half_cycles": half_cycles,
         },
         {"frequency": "Hz", "amplitude": "g"},
     )
@@ -99,15 +116,18 @@ def run(context: Context, options: HarmonicMap) -> Result:
         "peak_ratio": Array(ratio, ("frequency", "amplitude"), "", "greatest rotation over the critical one"),
         "lowest": Array(lowest, ("frequency",), "g", "lowest overturning amplitude"),
     }
-    if np.isfinite(lowest).any():
-        k = int(np.nanargmin(lowest))
-        result.answer = (
-            f"Under {options.cycles} cycles the {model.word} rocks from {model.uplift:.3f} g on; the lowest amplitude of "
-            f"collapse is {lowest[k]:.3f} g, at {frequency[k]:.3f} Hz (omega/p = {2 * np.pi * frequency[k] / p:.2f}); "
-            f"{pockets} cells of the map lie above a failing amplitude and are safe."
-        )
-    else:
-        result.answer = (
+
+
+def answer_of(options: HarmonicMap, model: Rocker, found: out.HarmonicMap, cap: float) -> str:
+    """The lowest amplitude of collapse in words; cap: greatest amplitude of the map [m/s^2]."""
+    lowest = np.array(found.lowest_overturning_amplitude_g, dtype=float)
+    if not np.isfinite(lowest).any():
+        return (
             f"No harmonic motion of the map, up to {cap / GRAVITY:.3g} g, causes collapse of the {model.word} in {options.cycles} cycles."
         )
-    return result
+    k = int(np.nanargmin(lowest))
+    return (
+        f"Under {options.cycles} cycles the {model.word} rocks from {model.uplift:.3f} g on; the lowest amplitude of "
+        f"collapse is {lowest[k]:.3f} g, at {found.frequencies_Hz[k]:.3f} Hz (omega/p = {found.frequency_ratios[k]:.2f}); "
+        f"{found.safe_pocket_cells} cells of the map lie above a failing amplitude and are safe."
+    )

@@ -324,7 +324,7 @@ class AisledVault(PresetStructure):
     voussoirs: int = key(20, "number of voussoirs of the nave vault", ge=4, le=5000)
     springing: Length = key(about="height of the nave vault's centre above the ground", gt=0)
     pier_width: Length = key(about="width of the piers", gt=0)
-    pier_top: Length | None = key(None, "height of the piers; default the extrados of the nave's springing", gt=0)
+    pier_top: Length | None = key(None, "height of the piers; default the height of the extrados at the springing of the nave vault", gt=0)
     aisles: bool = key(True, "false leaves the nave alone on its piers")
     aisle_thickness: Length | None = key(None, "thickness of the aisle vaults", gt=0)
     aisle_embrace: Angle = key(150.0, "angle of embrace of the aisle vaults", ge=20, le=180)

@@ -136,7 +136,7 @@ class StoreyFloor(Table):
             if (getattr(self, name) is None) == (name in needed):
                 raise ValueError(f"a floor of kind '{self.kind}' {'needs' if name in needed else 'takes no'} {name}")
         if self.kind == "joists" and len(set(self.bears_on)) != 2:
-            raise ValueError("bears_on: of joists, expected the two walls that they reach from and to")
+            raise ValueError("bears_on: for joists, expected the names of two different walls, between which they span")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
             raise ValueError(f"walls: wall '{twice[0]}' stands twice")
         return self
@@ -246,7 +246,7 @@ class Plan(Structure):
                 raise ValueError(f"corners[{k}].walls: corner {first + 1} is of the same two walls")
         for k, prop in enumerate(self.props):
             if np.abs(self.wall(prop.wall).direction).max() < 1.0 - 1e-9:
-                raise ValueError(f"props[{k}].wall: wall '{prop.wall}' stands askew on the plan; a prop holds walls along x or y")
+                raise ValueError(f"props[{k}].wall: wall '{prop.wall}' is oblique on the plan; only a wall along x or y can have a prop")
             self._check_storey(f"props[{k}].storey", prop.wall, prop.storey)
         for k, part in enumerate(self.prestress):
             if part.level is not None:

@@ -24,7 +24,9 @@ class Leg(Table):
     """A straight stretch of wall, from corner to corner or to a free end."""
 
     length: Length = key(about="length over all, the corners at its ends included", gt=0, le=1e4)
-    turn: Literal["left", "right"] = key("left", "how it leaves the leg before, by a right angle; of the first, nothing")
+    turn: Literal["left", "right"] = key(
+        "left", "side of the previous leg to which this one goes, at a right angle; no effect on the first leg"
+    )
     openings: list[Opening] = key([], "rectangles cut out: x along the leg from its start, y up", max_length=200)
 
 

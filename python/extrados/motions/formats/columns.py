@@ -180,7 +180,10 @@ def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data:
     for k, (at, row) in enumerate(rows[:HEAD]):
         left -= len(row)
         if any(re.fullmatch(r"\d{2,9}", token) and int(token) in (left, left + len(row) - 1, len(rows) - k - 1) for token in row):
-            raise text.error(at, f"'{text[at].strip()[:40]}' holds the number of the values behind it, as a header does; {hint}")
+            raise text.error(
+                at,
+                f"'{text[at].strip()[:40]}' contains a number equal to the count of the values that follow, as a line of a header does; {hint}",
+            )
     per = max(1, data.size // max(len(rows), 1)) if data.shape[1] == 1 else 1
     if len(data) >= 6 * HEAD * per:
         peaks = np.abs(data[: HEAD * per]).max(axis=1), np.abs(data[HEAD * per :]).max()
@@ -287,8 +290,8 @@ def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, roun
     if not SHORTEST_STEP <= step < LONGEST_STEP:
         raise text.error(
             rows[0][0],
-            f"the time step is {step:g} s, which is no accelerogram's; if the times are milliseconds, call their column time_ms; "
-            "delete a column of sample numbers",
+            f"the time step is {step:g} s, which is not plausible for an accelerogram; if the times are milliseconds, name their column time_ms; "
+            "if the column holds sample numbers, delete it",
         )
     return float(np.round(step, 9)), uneven
 

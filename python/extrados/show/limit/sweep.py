@@ -125,7 +125,7 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         else:
             ax.plot(gamma[order], (np.arange(len(order)) + 1.0) / len(order), color=style.THRUST)
             ax.set_xlabel("collapse acceleration [g]")
-            ax.set_ylabel("share of sections at or below")
+            ax.set_ylabel("share of sections with at most this acceleration")
         return [(style.save(fig, folder, name), "Collapse acceleration of the sections that stand.")]
 
 

@@ -119,7 +119,7 @@ class Mesh:
                 inside &= (self.xy[:, axis] >= ends[0] - tolerance) & (self.xy[:, axis] <= ends[1] + tolerance)
         found = np.flatnonzero(inside)
         if not len(found):
-            raise BadGeometry(f"{what}: no node lies on edge {place.edge}, x {place.x}, y {place.y}; a mesh line is missing")
+            raise BadGeometry(f"{what}: no node lies within {words_of_place(place.edge, place.x, place.y)}; a mesh line is missing")
         return found
 
     def tell(self, warning: str) -> None:
@@ -177,6 +177,12 @@ def _within(xy: np.ndarray, group: ElementGroup, point: np.ndarray) -> tuple[np.
             kept = share > 1e-9
             return nodes[k][kept], share[kept] / share.sum()
     return None
+
+
+def words_of_place(edge: str | None, x: list[float] | None, y: list[float] | None) -> str:
+    """A place in words, by the keys that are given: edge, ranges or values of x and y [m]."""
+    ranges = [f"{name} {' to '.join(f'{end:g}' for end in dict.fromkeys(of))} m" for name, of in (("x", x), ("y", y)) if of is not None]
+    return ", ".join([*([f"the {edge} edge"] if edge else []), *ranges])
 
 
 def corner_count(kind: str) -> int:

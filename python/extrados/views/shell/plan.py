@@ -69,13 +69,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     grids = _grids(plan, junctions, size, warnings)
     xyz, number = _join(plan, grids, junctions)
     materials, names = [building.material, *building.materials.values()], list(building.materials)
-    for k, beam in enumerate(plan.ring_beams):
-        with blaming("ring_beams", k):
-            _named(beam.material, names, f"ring beam of storey {beam.storey}")
-    parts = []
-    for w in range(len(grids)):
-        with blaming("walls", w):
-            parts.append(_wall_part(plan, w, grids, junctions, number, names))
+    parts = _wall_parts(plan, grids, junctions, number, names)
     joints, sources = _joints(plan, grids, junctions, number, parts, len(xyz))
     joints = [replace(joint, strength=_strength(plan, building, joint.name, size), softening=building.joints.softening) for joint in joints]
     if joints and building.joints.coefficient is not None and not all(j.strength["cohesion"] > 0.0 for j in joints):
@@ -132,6 +126,18 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
         _feet(plan, grids, number, kept, used),
         joints,
     )
+
+
+def _wall_parts(plan: Plan, grids: list[_Grid], junctions: dict, number: np.ndarray, names: list[str]) -> list[ShellPart]:
+    """The shells of all walls, with the ring beams in them; a wrong name of a material is refused at its key."""
+    for k, beam in enumerate(plan.ring_beams):
+        with blaming("ring_beams", k):
+            _named(beam.material, names, f"ring beam of storey {beam.storey}")
+    parts = []
+    for w in range(len(grids)):
+        with blaming("walls", w):
+            parts.append(_wall_part(plan, w, grids, junctions, number, names))
+    return parts
 
 
 def _check_corners(plan: Plan, junctions: dict) -> None:
