@@ -89,7 +89,10 @@ def main() -> int:
         print(f"not the oldest after all: {', '.join(wrong)}", file=sys.stderr)
         return 1
     return subprocess.run(
-        [python, "-m", "pytest", "-q", "-n", "auto", "--maxprocesses", "8", "--dist", "worksteal", *TESTS], cwd=ROOM, env=env, check=False
+        [python, "-m", "pytest", "-q", "-m", "not verify", "-n", "auto", "--maxprocesses", "8", "--dist", "worksteal", *TESTS],
+        cwd=ROOM,
+        env=env,
+        check=False,
     ).returncode
 
 

@@ -33,14 +33,16 @@ def checksum(paths: Iterable[Path]) -> str:
 
 @cache
 def program() -> str:
-    """A checksum of all that computes."""
-    trees = (("fortran", "*.f90"), ("c", "*.[ch]"), ("python/extrados", "*.py"))
-    return checksum(path for root, ends in trees for path in (ROOT / root).rglob(ends))
+    """A checksum of all that computes: sources, the tables that they read, and the options of the build."""
+    trees = (("fortran", "*.f90"), ("c", "*.[ch]"), *(("python/extrados", ends) for ends in ("*.py", "*.csv", "*.toml")))
+    paths = {path for root, ends in trees for path in (ROOT / root).rglob(ends)}
+    written = ROOT / "python" / "extrados" / "results" / "model_uncertainty.csv"  # by the book itself
+    return checksum([*paths - {written}, ROOT / "meson.build"])
 
 
 @cache
 def data_beside(folder: Path) -> str:
-    """A checksum of the data that decks of a folder may read: its files that are no decks, and shipped data."""
+    """A checksum of the data that decks of a folder may read: its files that are no decks or expectations, and shipped data."""
     shipped = [ROOT / "python" / "extrados" / file for file in SHIPPED.values()]
     shipped += [path for path in (ROOT / "python/extrados/motions/spectra").iterdir() if path.is_file()]
     return checksum([*shipped, *(path for path in folder.rglob("*") if path.is_file() and path.suffix != ".toml")])

@@ -1,6 +1,6 @@
 """Random buildings asked by all strategies: the relations of the registry hold.
 
-Short in the quick suite; `make verify` asks 3,000 buildings. A relation that breaks is shown with the smallest deck that
+Short in the quick suite; `make verify` asks thousands of buildings. A relation that breaks is shown with the smallest deck that
 still breaks it. Environment: EXTRADOS_TRIALS, the share of the whole count; EXTRADOS_SEED, another draw.
 """
 

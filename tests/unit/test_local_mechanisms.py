@@ -138,6 +138,18 @@ def test_of_a_wall_on_a_plan_openings_thicknesses_and_what_holds_it_count() -> N
     assert {storey for _, storey in walls_of(house(floors=slab))[0]} == {2}
 
 
+def test_each_storey_of_a_wall_has_the_density_of_its_material() -> None:
+    """Moments about the toe by hand; an unknown name is refused at its wall."""
+    deck = {"structure": house({"materials": ["light", "heavy"]}), "analysis": {"kind": "local-mechanism", "mechanism": "building"}}
+    materials = {"light": {"density": 800.0}, "heavy": {"density": 2600.0}}
+    found = extrados.run({**deck, "materials": materials})["local-mechanism"].walls
+    multiplier = {(w.wall, w.storey): w.multiplier for w in found}
+    assert multiplier["front", 1] == pytest.approx(0.25 * (800.0 + 2600.0) / (800.0 * 1.5 + 2600.0 * 4.5))
+    assert multiplier["front", 2] == pytest.approx(0.25 / 1.5)
+    (told,) = extrados.run({**deck, "materials": {"light": materials["light"]}}).analyses
+    assert told["status"] == "refused" and "wall 'front': there is no [materials.heavy]" in told["reason"]
+
+
 def test_walls_that_are_all_held_have_no_mechanism_and_the_crushing_hinge_is_set_back() -> None:
     slabs = [{"storey": k, "kind": "rigid"} for k in (1, 2)]
     run = extrados.run({"structure": house(floors=slabs), "analysis": {"kind": "local-mechanism", "mechanism": "building"}})

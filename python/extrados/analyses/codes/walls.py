@@ -73,10 +73,17 @@ def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int
     return loads, held
 
 
+def _material(building: Building, plan: Plan, wall: PlanWall, storey: int) -> Material:
+    """The material of a wall in a storey; BadGeometry if the deck has no table of that name."""
+    name = plan.material_of(wall, storey)
+    if name is not None and name not in building.materials:
+        raise BadGeometry(f"wall '{wall.name}': there is no [materials.{name}]", ("structure", "walls", plan.walls.index(wall)))
+    return building.material if name is None else building.materials[name]
+
+
 def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: dict[tuple[str, int], float]) -> WallPart:
     first, last = plan.reach(wall)
-    named = plan.material_of(wall, storey)
-    material: Material = building.materials[named] if named else building.material
+    materials = {k: _material(building, plan, wall, k) for k in range(storey, last + 1)}
     thickness = [wall.thickness or wall.thicknesses[k - first] for k in range(first, last + 1)]
     foot, arm = float(plan.levels[storey - 1]), 0.5 * thickness[storey - first]
     sole = plan.strips(wall, storey)[0][0]
@@ -86,20 +93,22 @@ def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: di
             f"wall '{wall.name}' has no masonry at the foot of storey {storey}: openings take its whole length",
             ("structure", "walls", number, "openings"),
         )
-    volume = moment = 0.0  # m^3, and about the foot m^4
+    mass = moment = 0.0  # kg, and about the foot kg m
     for k in range(storey, last + 1):
         floor = float(plan.levels[k - 1]) - foot
         for length, low, high in plan.strips(wall, k):
-            volume += thickness[k - first] * length * (high - low)
-            moment += thickness[k - first] * length * (high - low) * (floor + 0.5 * (low + high))
-    if not volume * material.density > 0.0:
+            part = materials[k].density * thickness[k - first] * length * (high - low)
+            mass += part
+            moment += part * (floor + 0.5 * (low + high))
+    if not mass > 0.0:
         raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
-    weights = [Weight(material.density * GRAVITY * volume, arm, moment / volume)]
+    weights = [Weight(GRAVITY * mass, arm, moment / mass)]
     for k in range(storey, last + 1):
         top = float(plan.levels[k]) - foot
         if loads.get((wall.name, k), 0.0) > 0.0:
             weights.append(Weight(loads[wall.name, k], arm, top))
         weights += [Weight(p.force, arm, top, sways=False) for p in plan.prestress if p.wall == wall.name and (p.level or last) == k]
-    if material.compressive_strength is not None:
-        weights = set_back(weights, material.compressive_strength, sole, 2.0 * arm)
+    strength = materials[storey].compressive_strength
+    if strength is not None:
+        weights = set_back(weights, strength, sole, 2.0 * arm)
     return WallPart(wall.name, storey, foot, Overturning(tuple(weights)))
