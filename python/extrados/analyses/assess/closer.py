@@ -5,6 +5,7 @@ import numpy as np
 from extrados.analyses.assess import hazard, strategies
 from extrados.analyses.assess.asking import scaled_margin
 from extrados.analyses.assess.facts import SLID, Pair
+from extrados.analyses.assess.reasons_of_statics import static_peak
 from extrados.analyses.assess.strategies import Choice
 from extrados.analyses.assess.work import ONE_RUN, Work, merge_keys
 from extrados.model.structures.masonry import Column
@@ -34,6 +35,7 @@ def refine(work: Work) -> None:
     if "rocking" in thin and not work.many:
         _finer(work)
     _cheap_probes(work, pairs)
+    static_peak(facts, pairs)  # asks for the shortest constant push, milliseconds, before costly runs use up the budget
     _elements(work, pairs)
     work.context.progress(3.0, 3.0, "assess")
 

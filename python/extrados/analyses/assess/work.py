@@ -225,6 +225,7 @@ class Work:
             "amplitudes": 2,
             "at_amplitudes": [f"{amplitude!r} g"],
             "max_amplitude": f"{2.0 * amplitude!r} g",
+            "hand_over_cells": 0,  # of the mechanism of fixed hinges: a duration to compare with, no verdict
         }
         told = f"a constant lateral acceleration of {amplitude:.3g} g, how long"
         found = self.probe("rocking", told, "failure-domain", keys, tell=False)
