@@ -7,7 +7,9 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.rocking.hand_over import Fates, Leaving, Left, contacts_of, leaving_time, level_of
+from extrados.analyses.rocking.hand_over import Fate, Fates, Leaving, Left, contacts_of, leaving_time, level_of
+from extrados.analyses.statistics.fragility import empty_rows
+from extrados.analyses.statistics.handed import Handed
 from extrados.core import dem
 from extrados.core.rocking import history
 from extrados.decks.reader import make_deck
@@ -299,15 +301,16 @@ def test_the_share_of_a_handed_stack_is_that_of_its_own_limits() -> None:
 
 
 def test_members_decided_by_contacts_have_no_half_cycles_of_the_mechanism() -> None:
-    """Stop time and half cycles of the mechanism are left blank; the contacts follow a motion beyond its own end."""
-    deck = {
-        "structure": STACK,
-        "joints": {"friction": 0.25},
-        "analysis": {"kind": "fragility", "count": 2, "hand_over": True, "settle": 1.0},
-    }
-    found = extrados.run(deck | {"motion": {"kind": "generated", "mmi": 9, "duration": 2.0, "seed": 3}}).results[0]
-    rows = found.tables["ensemble"].columns
-    assert found.status == "ok" and not np.any(rows["half_cycles"]) and np.isnan(rows["stop_time"]).all()
+    """Stop time and half cycles of the mechanism are left blank, the share of rotation is that of the contacts."""
+
+    class Decided:
+        def follow(self, ground, scale, end, threads):
+            return Fate(2, 0.3, 0.8)
+
+    rows = empty_rows(2) | {"half_cycles": np.array([7, 7]), "stop_time": np.array([4.0, 4.0])}
+    Handed(Decided()).settle(rows, np.array([1]), np.array([0]), [pulses.sine_pulse(1.0, 0.2).ground], 1.0, 1)
+    assert rows["half_cycles"].tolist() == [7, 0] and rows["stop_time"][0] == 4.0 and np.isnan(rows["stop_time"][1])
+    assert rows["peak"][1] == 0.3 and rows["peak_ratio"][1] == 1.0 and rows["handed"].tolist() == [0, 1]
 
 
 def test_contacts_follow_a_condition_that_fails_long_after_the_motion() -> None:
