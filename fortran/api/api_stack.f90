@@ -34,8 +34,9 @@ contains
       real(c_double), intent(in) :: time(nt)                !! output times [s]
       integer(c_int), intent(in) :: nrows                   !! see rows
       integer(c_int), intent(in) :: room                    !! for events
-      !> outcome, impacts at the ground and between, steps, settled, output times reached, events (may exceed room)
-      integer(c_int), intent(out) :: counts(7)
+      !> outcome, impacts at the ground and between, steps, settled, output times reached, events (may exceed room),
+      !> half cycles
+      integer(c_int), intent(out) :: counts(8)
       real(c_double), intent(out) :: measures(5)            !! peaks [rad], stop time [s], work, loss [J]
       real(c_double), intent(out) :: state(nrows, nt)
       integer(c_int), intent(out) :: event_kind(room)
@@ -76,7 +77,7 @@ contains
             record%event => happened
             call stack_rock(body, ground, start, options(2), options(3), record, work, status)
             counts = [record%outcome, record%impacts, record%steps, merge(1_c_int, 0_c_int, record%settled), &
-               int(record%points, c_int), int(record%events, c_int)]
+               int(record%points, c_int), int(record%events, c_int), record%half_cycles]
             measures = [record%peak(), record%stop_time, work, record%loss]
          end if
          call handle_leave(motions)

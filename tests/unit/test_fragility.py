@@ -204,6 +204,7 @@ def test_durations() -> None:
         ({"sensitivity": 64}, "needs uncertain"),
         ({"uncertain": {"width": 0.1}, "sensitivity": 100}, "power of 2"),
         ({"uncertain": {"width": 2.0}}, "at most 0.5"),
+        ({"uncertain": {"width": 0.1, "friction": 0.1}, "sensitivity": 64}, "remove uncertain.friction or sensitivity"),
         ({"initial": {"rotation_ratio": 1.2}}, "less than 1"),
     ],
 )

@@ -1,12 +1,15 @@
 """Rocking that hands over to rigid contacts: the criterion, the state, and the outcome of the whole motion."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.rocking.hand_over import contacts_of, leaving_time, level_of
+from extrados.analyses.context import Context
+from extrados.analyses.rocking.hand_over import Fate, Fates, Leaving, Left, contacts_of, leaving_time, level_of
+from extrados.analyses.statistics.fragility import empty_rows
+from extrados.analyses.statistics.handed import Handed
 from extrados.core import dem
 from extrados.core.rocking import history
 from extrados.decks.reader import make_deck
@@ -274,3 +277,54 @@ def test_ground_that_rounding_moves_is_at_zero(height: float) -> None:
     assert np.abs(ends[np.abs(ends[:, 1]) < 1e-9, 1]).max() > 0.0  # rounding is there
     raised = replace(blocks, p=blocks.p + np.array([0.0, height]), q=blocks.q + np.array([0.0, height]))
     assert level_of(raised) == (0.0 if height == 0.0 else pytest.approx(height, rel=1e-12))
+
+
+def test_a_stack_that_starts_turned_rocks_before_it_is_handed_over() -> None:
+    """Without uplift before the joint slides: the start itself is rocking."""
+    deck = {"structure": STACK, "joints": {"friction": 0.2}, "initial": {"rotation_ratio": 0.3}, "analysis": {"kind": "failure-domain"}}
+    building = make_deck(deck).buildings[0]
+    rocker = building.rocker(soft_base=True)
+    left = contacts_of(rocker, building).leaving.leave(pulses.sine_pulse(0.5 * GRAVITY, 0.9).ground, 5.0, 1.0)
+    assert rocker.start_rotation > 0.0 and left.time == 0.0 and left.rocks
+
+
+def test_the_share_of_a_handed_stack_is_that_of_its_own_limits() -> None:
+    """Rotations of both as one over their limit, and of the upper against the lower over its own."""
+    building = building_of(STACK)
+    leaving = contacts_of(building.rocker(soft_base=True), building).leaving
+    whole, alone = leaving.pair.whole[0], leaving.pair.alone[0]
+    assert leaving.greatest(np.array([[0.0, 0.0], [-0.06, -0.06]])) == pytest.approx((-0.06, 0.06 / whole))
+    assert leaving.greatest(np.array([[0.06, -0.05]])) == pytest.approx(
+        (0.06, 0.06 / whole) if 0.06 / whole > 0.11 / alone else (-0.11, 0.11 / alone)
+    )
+    assert leaving.greatest(np.array([[0.0, 0.1]])) == pytest.approx((0.1, 0.1 / alone))
+
+
+def test_members_decided_by_contacts_have_no_half_cycles_of_the_mechanism() -> None:
+    """Stop time and half cycles of the mechanism are left blank, the share of rotation is that of the contacts."""
+
+    class Decided:
+        def follow(self, ground, scale, end, threads):
+            return Fate(2, 0.3, 0.8)
+
+    rows = empty_rows(2) | {"half_cycles": np.array([7, 7]), "stop_time": np.array([4.0, 4.0])}
+    Handed(Decided()).settle(rows, np.array([1]), np.array([0]), [pulses.sine_pulse(1.0, 0.2).ground], 1.0, 1)
+    assert rows["half_cycles"].tolist() == [7, 0] and rows["stop_time"][0] == 4.0 and np.isnan(rows["stop_time"][1])
+    assert rows["peak"][1] == 0.3 and rows["peak_ratio"][1] == 1.0 and rows["handed"].tolist() == [0, 1]
+
+
+def test_contacts_follow_a_condition_that_fails_long_after_the_motion() -> None:
+    """Left later than the end of the motion and the time to settle: contacts still follow the whole of that time."""
+    building = building_of({"kind": "block", "width": 0.5, "height": 1.5})
+    context = Context(make_deck({"structure": {"kind": "block", "width": 0.5, "height": 1.5}, "analysis": {"kind": "failure-domain"}}))
+    fates = Fates.of(context, contacts_of(building.rocker(), building))
+    motion = pulses.sine_pulse(0.1 * GRAVITY, 0.2).ground
+    late = motion.end + 2.0 * fates.options.end_time
+
+    class Late(Leaving):
+        def leave(self, ground, end_time, scale):
+            return Left(late, False, 0, 0.0, 0.0)
+
+    leaving = Late(**{f.name: getattr(fates.contacts.leaving, f.name) for f in fields(Leaving)})
+    fate = replace(fates, contacts=replace(fates.contacts, leaving=leaving)).follow(motion, 1.0, late + 1.0)
+    assert fate.outcome == 0 and fate.ratio < 1e-3

@@ -1,9 +1,12 @@
 """Two stacked blocks (the four modes of Psycharis 1990): limits of one block, kinematics, impacts, energy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import extrados
+from extrados.analyses.rocking.conditions import of_pair
 from extrados.core import mechanism as core_mechanism
 from extrados.core.ground import Ground
 from extrados.core.rocking import OUTCOMES, ensemble, history
@@ -238,3 +241,36 @@ def test_members_of_an_ensemble_are_histories() -> None:
             assert found.joints.friction[k] >= (np.abs(shear) / normal)[moving].max() * 0.98 - 1e-9
         assert (found.half_cycles[k] > 0) == (r.outcome != "no-hinging")
     assert set(found.outcome) == {0, 1, 2} or set(found.outcome) == {1, 2}
+
+
+def test_half_cycles_are_those_of_an_ensemble() -> None:
+    """One motion by `rocking` and as a suite of `fragility`; a start that is turned counts as the first half cycle."""
+    shape = {"kind": "stack", "lower_width": 1.0, "lower_height": 1.5, "upper_width": 0.8, "upper_height": 1.5}
+    motion = {"kind": "generated", "mmi": 9, "duration": 2.0, "seed": 3, "member": 1}
+    for turned in (0.0, 0.3):
+        deck = {"structure": shape, "initial": {"rotation_ratio": turned}}
+        many = extrados.run(
+            {
+                **deck,
+                "motion": {k: v for k, v in motion.items() if k != "member"},
+                "analysis": {"kind": "fragility", "count": 1, "bootstrap": 0, "settle": 3.0},
+            }
+        )
+        table = many.results[0].tables["ensemble"].columns
+        end = {"end_time": float(table["stop_time"][0])}
+        one = extrados.run({**deck, "motion": motion, "analysis": {"kind": "rocking", "hand_over": False, **end}}).results[0].results
+        assert one.half_cycles == table["half_cycles"][0] > 3, turned
+        assert one.half_cycles < 2 * one.impacts + 2
+
+
+@pytest.mark.parametrize("friction", [[5.0, 0.2], [0.2, 5.0]])
+def test_the_friction_of_a_warning_is_that_of_the_joint_that_slides(friction: list[float]) -> None:
+    """Both joints have a friction below the one needed, at different times: the number belongs to the joint that is named."""
+    rocker = Building(Stacked(kind="stack", lower_width=1.0, lower_height=1.5, upper_width=0.8, upper_height=1.5)).rocker(soft_base=True)
+    body = stack_body(rocker.model.core, rocker.critical, tuple(friction))
+    one = np.zeros(1, dtype=int)
+    for slips in (0, 1):
+        found = ensemble([body], [shaking(1, 3.0)], one, one, [1.0], 6.0)
+        joints = replace(found.joints, slips=np.array([slips]), slips_at=np.array([1.0]))
+        said = of_pair(replace(rocker, body=body), joints).violated
+        assert any(f"Friction {friction[slips]:.2f} is too low, first at" in text for text in said)

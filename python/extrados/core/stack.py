@@ -58,10 +58,12 @@ class StackResponse:
     rates, ground and vertical acceleration [m/s^2], kinetic and potential energy and the ledger, work of the ground less
     loss at impacts [J]; state (points, 2) of the contacts on the ground and between, 0 shut, 1 and -1 open about the right
     and the left edge; force (points, 2, 2) on the lower block from the ground and on the upper from the lower, x, y [N].
+    half_cycles: one for each uplift from rest and for each instant of impact, as in ensembles.
     events: (kind, time [s], contact), 1 on the ground, 2 between.
     """
 
     outcome: Outcome
+    half_cycles: int
     impacts: tuple[int, int]
     peak: tuple[float, float]
     stop_time: float
@@ -118,7 +120,7 @@ def stack_history(
     interrupted = status == status_code("cancelled")
     if not interrupted:
         check(status, "rocking of two blocks")
-    outcome, low, high, steps, settled, points, events = (int(k) for k in counts)
+    outcome, low, high, steps, settled, points, events, half_cycles = (int(k) for k in counts)
     s = state[:, :points].T
     if not (np.isfinite(s).all() and np.isfinite(measures).all()):
         check(status_code("not_finite"), "rocking of two blocks")
@@ -126,6 +128,7 @@ def stack_history(
     first, second, stop, work, loss = (float(x) for x in measures)
     return StackResponse(
         OUTCOMES[outcome],
+        half_cycles,
         (low, high),
         (first, second),
         stop,

@@ -266,11 +266,12 @@ def of_pair(rocker: Rocker, joints: JointDemand, handed: bool = False) -> Condit
         leaves = JointTime(joint=names[int(joints.leaves[0])], time_s=leaves_at)
         found.append((leaves_at, f"{_upper(leaves.joint)} parts as a whole at {leaves_at:.3f} s: rocking without flight is assumed.{use}"))
     if slips_at >= 0.0:
-        slides = JointTime(joint=names[int(joints.slips[0])], time_s=slips_at)
+        first = int(joints.slips[0])
+        slides = JointTime(joint=names[first], time_s=slips_at)
         found.append(
             (
                 slips_at,
-                f"Friction {given:.2f} is too low, first at {slides.joint} at {slips_at:.3f} s: blocks slide."
+                f"Friction {float(rocker.body.parameters[-2:][first]):.2f} is too low, first at {slides.joint} at {slips_at:.3f} s: blocks slide."
                 f"{'' if handed else ' Use dem, or check the friction.'}",
             )
         )

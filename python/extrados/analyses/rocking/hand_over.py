@@ -71,18 +71,19 @@ def _first(times: list[float], time_unit: float) -> float | None:
 
 class Left(NamedTuple):
     """When a run leaves its mechanism [s], None where all conditions hold; whether it rocks before, its outcome in OUTCOMES by the
-    mechanism, FAILED where it has none, and its greatest rotation [rad]."""
+    mechanism, FAILED where it has none, its greatest rotation [rad], and that over the critical one."""
 
     time: float | None
     rocks: bool
     outcome: int
     peak: float
+    ratio: float
 
 
 @dataclass(frozen=True)
 class Leaving:
     """A rocking structure until one of its conditions fails: body of the core, mechanisms (to +x, to -x) of its blocks, share of
-    energy astray (rocking.conditions), rotation at the start [rad], > 0 to +x, and its time unit [s]."""
+    energy astray (rocking.conditions), rotation at the start [rad], > 0 to +x, its time unit [s], and the least critical rotation [rad]."""
 
     body: Body
     linkages: tuple[Linkage, Linkage]
@@ -90,6 +91,7 @@ class Leaving:
     astray: float
     start: float
     time_unit: float
+    critical: float
     tolerance: float = 1e-8
 
     def respond(self, ground: Ground, end_time: float, step: float, scale: float = 1.0) -> Response:
@@ -110,7 +112,13 @@ class Leaving:
         response = self.respond(ground, end_time, end_time, scale)
         time = leaving_time(response, self.astray, self.time_unit)
         rocks = bool(self.start) or any(kind == "uplift" and t <= (time or 0.0) for kind, t, _ in response.events)
-        return Left(time, rocks, OUTCOMES.index(response.outcome), float(response.peak))
+        return Left(time, rocks, OUTCOMES.index(response.outcome), float(response.peak), float(response.peak_ratio))
+
+    def greatest(self, rotation: np.ndarray) -> tuple[float, float]:
+        """Greatest of rotations (times, blocks) [rad], positive to +x, and that over the critical one."""
+        turned = rotation.ravel()
+        peak = float(turned[np.abs(turned).argmax()]) if turned.size else 0.0
+        return peak, abs(peak) / self.critical
 
     def state(self, ground: Ground, time: float, scale: float, bodies: int) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and velocities (bodies, 3) of blocks and supports at a time [s] under the motion times a factor."""
@@ -151,10 +159,20 @@ class StackLeaving:
             raise Cancelled(status_code("cancelled"), "rocking of two blocks interrupted")
         outcome = int(found.outcome[0])
         if outcome == FAILED:
-            return Left(None, False, outcome, 0.0)
+            return Left(None, False, outcome, 0.0, 0.0)
         time = _first([float(found.joints.slips_at[0]), float(found.joints.leaves_at[0])], self.time_unit)
-        rocks = bool(time) and self._until(ground, time or 0.0, scale).outcome != "no-hinging"
-        return Left(time, rocks, outcome, float(found.peak[0]))
+        rocks = bool(self.start) or (bool(time) and self._until(ground, time or 0.0, scale).outcome != "no-hinging")
+        return Left(time, rocks, outcome, float(found.peak[0]), float(found.peak_ratio[0]))
+
+    def greatest(self, rotation: np.ndarray) -> tuple[float, float]:
+        """See Leaving: of the lower block as one with the upper, or of the upper against the lower, as in the core."""
+        if not rotation.size:
+            return 0.0, 0.0
+        lower, upper = rotation[:, self.pair.order].T
+        turned = np.stack([lower, upper - lower])
+        ratio = np.abs(turned) / np.array([[self.pair.whole[0]], [self.pair.alone[0]]])
+        k = int(ratio.argmax())
+        return float(turned.ravel()[k]), float(ratio.ravel()[k])
 
     def _until(self, ground: Ground, time: float, scale: float) -> StackResponse:
         """The response up to a time [s] above zero."""
@@ -220,7 +238,8 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
             return None
         right, left = (replace(one, part=np.ones(len(blocks.mass), dtype=int)) for one in linkages)
         linkages = right, left
-    leaving = Leaving(rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, tolerance)
+    critical = min(rocker.critical)
+    leaving = Leaving(rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, critical, tolerance)
     return Contacts(leaving, model, floor)
 
 
@@ -262,11 +281,12 @@ def stored(result: Result) -> dict[str, Array]:
 
 
 class Fate(NamedTuple):
-    """How a run ends on contacts, in OUTCOMES or UNKNOWN, its greatest rotation of any block from there on [rad], and whether it only
-    slides."""
+    """How a run ends on contacts, in OUTCOMES or UNKNOWN, its greatest rotation from there on [rad], that over the critical one, and
+    whether it only slides."""
 
     outcome: int
     rotation: float
+    ratio: float
     slides: bool = False
 
 
@@ -303,10 +323,10 @@ class Fates:
         c = self.contacts
         left = c.leaving.leave(ground, end, scale)
         if left.time is None:  # at the edge of its tolerance
-            return Fate(left.outcome, left.peak)
+            return Fate(left.outcome, left.peak, left.ratio)
         shift, rate = c.begin(ground, left.time).state(scale)
         many = len(c.bodies.mass) >= BODIES_FOR_THREADS
-        rest = ground.end + self.options.end_time - left.time
+        rest = max(ground.end, left.time) + self.options.end_time - left.time
         options = replace(self.options, end_time=rest, threads=threads if many else 1)
         run = dem.run(c.bodies, options, ground.seen_from(left.time), scale=scale, shift=shift, rate=rate)
         if run.interrupted:
@@ -314,12 +334,10 @@ class Fates:
         try:
             dem_model.checked(run, c.model)
         except Refused:
-            return Fate(UNKNOWN, 0.0)
+            return Fate(UNKNOWN, 0.0, 0.0)
         seen = Seen.of(c.model, run, c.floor is not None)
-        turned = seen.rotation.ravel()
-        greatest = float(turned[np.abs(turned).argmax()]) if turned.size else 0.0
         outcome = outcome_of(left.rocks, seen.fate(self.collapse).outcome)
-        return Fate(CODES[outcome], greatest, outcome == "slid")
+        return Fate(CODES[outcome], *c.leaving.greatest(seen.rotation), outcome == "slid")
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from extrados.analyses.chaos import growth, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.course import Course, build_result, impact_times, keep_events, refuse_long_history
+from extrados.analyses.rocking.course import Course, build_result, keep_events, refuse_long_history
 from extrados.analyses.rocking.history import count
 from extrados.analyses.rocking.shapes import course_arrays
 from extrados.analyses.rocking.tables import Rocking
@@ -65,7 +65,6 @@ def _result(context: Context, model: StackModel, r: StackResponse, grown: float,
     energy = r.kinetic + r.potential
     needed, flies = _required_friction(r)
     found = modes(r.state)
-    impacts = impact_times(r)
     alpha, unit = model.whole
     violated = violated_by_chaos(grown, turns)
     chaotic = bool(violated)
@@ -75,7 +74,7 @@ def _result(context: Context, model: StackModel, r: StackResponse, grown: float,
         of="the lower block",
         settled=r.settled,
         moves="the blocks still rock",
-        half_cycles=sum(kind == "uplift" for kind, _, _ in r.events) + len(impacts),
+        half_cycles=r.half_cycles,
         potential=r.potential,
         energy=energy,
         scale=max(float(np.abs(energy).max(initial=0.0)), abs(r.work), 1e-300),

@@ -15,33 +15,32 @@ from extrados.views.rockers.rocker import Rocker
 
 @dataclass(frozen=True)
 class Handed:
-    """fates, critical [rad]: of the nominal building; sample: of buildings of uncertain values."""
+    """fates: of the nominal building; sample: of buildings of uncertain values."""
 
     fates: Fates
-    critical: float
     sample: Sample | None = None
 
     def settle(
         self, rows: dict[str, np.ndarray], members: np.ndarray, buildings: np.ndarray, grounds: list[Ground], settle: float, threads: int
     ) -> None:
-        """Put the outcomes and greatest rotations by contacts into the rows of some members, and mark them as handed. buildings, grounds: of
-        these members; settle: time after a motion [s]. The greatest rotation is that of any block, over the critical one. A building that only slides does not
-        rock."""
+        """Put the outcomes and greatest rotations by contacts into the rows of some members, and mark them as handed: half cycles 0, stop
+        time NaN. buildings, grounds: of these members; settle: time after a motion [s]. The greatest rotation is that of any block, of a
+        stack as in the core. A building that only slides does not rock."""
         for k, building, ground in zip(members, buildings, grounds, strict=True):
-            fates, critical = self.fates, self.critical
+            fates = self.fates
             if self.sample is not None:
                 rocker, varied = self.sample.rocker_and_building(int(building))
                 contacts = contacts_of(rocker, varied)
                 if contacts is None:
                     continue
-                fates, critical = fates.alike(contacts), min(rocker.critical)
+                fates = fates.alike(contacts)
             found = fates.follow(ground, float(rows["scale"][k]), ground.end + settle, threads)
             if found.outcome < 0:
                 continue
             rows["outcome"][k], rows["handed"][k] = NO_HINGING if found.slides else found.outcome, 1
-            ratio = abs(found.rotation) / critical
+            rows["half_cycles"][k], rows["stop_time"][k] = 0, np.nan  # of the mechanism, which does not hold
             rows["peak"][k] = found.rotation
-            rows["peak_ratio"][k] = max(1.0, ratio) if found.outcome == COLLAPSE else ratio
+            rows["peak_ratio"][k] = max(1.0, found.ratio) if found.outcome == COLLAPSE else found.ratio
 
 
 def handed_of(context: Context, options: Fragility, base: Rocker, sample: Sample | None) -> Handed | None:
@@ -55,4 +54,4 @@ def handed_of(context: Context, options: Fragility, base: Rocker, sample: Sample
             'without blocks, form = "linear")',
             ("analysis", "hand_over"),
         )
-    return Handed(Fates.of(context, contacts), min(base.critical), sample)
+    return Handed(Fates.of(context, contacts), sample)

@@ -148,6 +148,10 @@ class Fragility(RockingTable):
             raise ValueError("hand_over follows the nominal blocks: remove uncertain.density and uncertain.imperfection")
         if self.hand_over and self.sensitivity is not None:
             raise ValueError("sensitivity counts runs of the mechanism alone: remove sensitivity or hand_over")
+        if "friction" in self.uncertain and self.sensitivity is not None:
+            raise ValueError(
+                "friction changes no outcome of the mechanism, so its Sobol index is zero: remove uncertain.friction or sensitivity"
+            )
         if self.levels is not None and min(self.levels) <= 0.0:
             raise ValueError("levels must be above zero")
         if self.levels is not None and self.durations is not None:
