@@ -15,7 +15,7 @@ from extrados.motions.floors import on_floor, sway_of
 from extrados.motions.formats.record import Record, RecordError
 from extrados.motions.generated import GeneratedSet, Window, generated
 from extrados.motions.motion import Motion
-from extrados.motions.selection import PERIODS, choose, spectrum_of, within
+from extrados.motions.selection import PERIODS, Chosen, choose, spectrum_of, within
 from extrados.schema.spectrum import CodeSpectrum, TargetSpectrum
 from extrados.schema.table import Motion as Model
 from extrados.schema.text import printable
@@ -89,62 +89,115 @@ def refuse_set(model: Sets, folder: Path) -> None:
 
 
 class Selected(models.Components):
-    """A record of a suite that a selection takes, with its factor, and the root mean square of ln(its spectrum / target)."""
+    """A record of a suite that a selection takes, with its factor, that before its bounds, and the root mean square of
+    ln(its spectrum / target); the first carries the notes on the whole selection."""
 
     factor: float = 1.0
+    unbounded: float = 1.0
     misfit: float = 0.0
+    notes: tuple[str, ...] = ()
 
 
 def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
     """The records of a suite, not yet read; of a selection the best first."""
     members = _all_members(model, folder)
-    if model.selection is None:
+    chosen = model.selection
+    if chosen is None:
         return members
     try:
-        # a file that changes has another stamp
-        stamps = tuple((m.file, records.locate(m.file, folder).stat().st_mtime_ns) for m in members if not m.file.startswith("extrados:"))
+        named = {name for m in members for name in (m.file, m.second, m.vertical)} | {chosen.flatfile, chosen.table}
+        stamps = tuple(_stamp(name, folder) for name in sorted(name for name in named if name is not None))
         return list(_selected(_Wanted(model.model_dump_json(), folder, stamps, model)))
     except (ValueError, OSError) as error:
         raise RecordError(f"[motion.selection]: {error}") from None
 
 
+def _stamp(name: str, folder: Path) -> tuple[str, int, int]:
+    """A file by name, time of writing [ns] and size: a file that changes has another stamp, a file that cannot be found has -1."""
+    try:
+        found = records.locate(name, folder).stat()
+    except (RecordError, OSError):
+        return name, -1, -1
+    return name, found.st_mtime_ns, found.st_size
+
+
 @dataclass(frozen=True)
 class _Wanted:
-    """A suite with a selection, by its words, its folder and the times at which its files were written."""
+    """A suite with a selection, by its words, its folder and the stamps of its files."""
 
     words: str
     folder: Path
-    stamps: tuple[tuple[str, int], ...]
+    stamps: tuple[tuple[str, int, int], ...]
     model: models.Suite = field(compare=False)
 
 
 @lru_cache(maxsize=8)
 def _selected(wanted: _Wanted) -> tuple[models.Components, ...]:
-    """The records that the selection of a suite takes; ValueError where its target or its table is wrong."""
+    """The records that the selection of a suite takes; ValueError if its target or its table is wrong, or no record can be taken."""
     model, place = wanted.model, wanted.folder
     chosen = model.selection
     assert chosen is not None
     members = _all_members(model, place)
+    notes: list[str] = []
     if chosen.flatfile is not None:
-        good = within(chosen.flatfile, chosen.limits, place)
-        members = [m for m in members if Path(m.file).name in good]
+        good, missing = within(chosen.flatfile, chosen.limits, place, [m.file for m in members])
+        members = [m for m in members if m.file in good]
         if not members:
             raise ValueError(f"{chosen.flatfile}: no record of the suite lies within the limits")
-    periods = np.geomspace(chosen.shortest, chosen.longest, PERIODS)
-    plain = model.model_copy(update={"selection": None})
+        if missing:
+            notes.append(f"The flatfile {chosen.flatfile} does not list {_first_few(sorted(missing))}: not selected.")
+    at = chosen.conditional_period
+    # the spectrum at the conditional period itself, so that the factor is exact
+    periods = np.append(np.geomspace(chosen.shortest, chosen.longest, PERIODS), [] if at is None else [at])
+    # the target is a spectrum of the ground, also under a floor
+    plain = model.model_copy(update={"selection": None, "floor": None})
     found: list[np.ndarray | None] = []
+    wrong: list[str] = []
     for member in members:
+        psa: np.ndarray | None = None
         try:
-            found.append(spectrum_of(suite_motion(plain, member, place), periods, chosen.damping))
-        except RecordError:  # told where the suite is read
-            found.append(None)
-    factors = chosen.least_factor, chosen.greatest_factor
+            psa = spectrum_of(suite_motion(plain, member, place), periods, chosen.damping)
+            if not (psa > 0.0).all():
+                wrong.append(f"{member_name(member)}: the response spectrum is zero")
+        except RecordError as error:
+            wrong.append(str(error))
+        found.append(psa)
     target = target_spectrum(chosen, place, chosen.damping)
-    best = choose(found, periods, target, chosen.count, factors, chosen.conditional_period)
+    best = choose(found, periods, target, chosen.count, (chosen.least_factor, chosen.greatest_factor), at is not None)
+    if not best:
+        raise ValueError(f"none of the {len(members)} records can be read; the first: {wrong[0]}")
+    if len(best) < chosen.count or wrong:
+        reasons = f"; {len(wrong)} cannot be read: {_first_few(wrong)}" if wrong else ""
+        notes.append(f"[motion.selection]: {len(best)} of {chosen.count} requested records are selected{reasons}.")
+    notes += _cut_factors([(member_name(members[one.number]), one) for one in best], chosen)
+    # model_construct: its paths were found
     return tuple(
-        Selected.model_construct(**dict(members[one.number]), factor=one.factor, misfit=one.misfit)  # its paths were found
-        for one in best
+        Selected.model_construct(
+            **dict(members[one.number]), factor=one.factor, unbounded=one.unbounded, misfit=one.misfit, notes=tuple(notes) if k == 0 else ()
+        )
+        for k, one in enumerate(best)
     )
+
+
+def _first_few(names: list[str]) -> str:
+    """The first three of a list in words, and how many more there are."""
+    return "; ".join(names[:3]) + (f"; and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def _cut_factors(best: list[tuple[str, Chosen]], chosen: models.Selection) -> list[str]:
+    """A note for each bound that cuts factors of a selection, with their values before it."""
+    notes = []
+    for name, bound, cut in (
+        ("greatest_factor", chosen.greatest_factor, [(n, one) for n, one in best if one.unbounded > chosen.greatest_factor]),
+        ("least_factor", chosen.least_factor, [(n, one) for n, one in best if one.unbounded < chosen.least_factor]),
+    ):
+        if cut:
+            wanted = _first_few([f"{n} ({one.unbounded:.3g})" for n, one in cut])
+            notes.append(
+                f"[motion.selection]: {len(cut)} of {len(best)} factors are cut to {name} = {bound:g}: {wanted}. These records do not reach "
+                f"the target. Change {name}, or extend the suite."
+            )
+    return notes
 
 
 def _all_members(model: models.Suite, folder: Path) -> list[models.Components]:
@@ -169,10 +222,12 @@ def suite_motion(model: models.Suite, member: models.Components, folder: Path) -
         treatment = replace(treatment, scale=treatment.scale * member.factor)
     made = replace(_record(member, treatment, folder), name=member_name(member))
     if isinstance(member, Selected):
+        cut = "" if member.factor == member.unbounded else f" (cut from {member.unbounded:.3g})"
         note = (
-            f"{made.name}: selected with the factor {member.factor:.3g}; its spectrum lies {member.misfit:.2f} (rms of ln) from the target."
+            f"{made.name}: selected with the factor {member.factor:.3g}{cut}; "
+            f"its ground spectrum lies {member.misfit:.2f} (rms of ln) from the target."
         )
-        made = replace(made, notes=[*made.notes, note])
+        made = replace(made, notes=[*member.notes, *made.notes, note])
     return on_floor(made, model.floor)
 
 

@@ -154,6 +154,11 @@ class Selection(TargetSpectrum):
     def _band(self) -> "Selection":
         if self.longest <= self.shortest:
             raise ValueError("longest must be above shortest")
+        if self.conditional_period is not None and not self.shortest <= self.conditional_period <= self.longest:
+            raise ValueError(
+                f"conditional_period: {self.conditional_period:g} s is outside the periods that are compared, "
+                f"{self.shortest:g} to {self.longest:g} s; change shortest or longest"
+            )
         if self.least_factor > self.greatest_factor:
             raise ValueError("least_factor is above greatest_factor")
         if bool(self.limits) != (self.flatfile is not None):
