@@ -1,18 +1,21 @@
 """Strengthening: tie forces by the linear programme, held against hand calculation, bisection over runs and other programmes."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
+from extrados.analyses.limit import common
 from extrados.analyses.limit.common import limit_of
 from extrados.analyses.sequence import run_analyses, run_one
+from extrados.analyses.strengthen import space
 from extrados.analyses.strengthen.alternatives import TieAlternative, tie_alternatives
 from extrados.analyses.strengthen.anchorage import check_anchorage
 from extrados.analyses.strengthen.driver import measure_of
-from extrados.analyses.strengthen.measures import Statics
+from extrados.analyses.strengthen.measures import Statics, Worth, unmet_reason
 from extrados.analyses.strengthen.tables import Anchorage
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.errors import NoEquilibrium
@@ -509,6 +512,75 @@ def test_a_target_in_space_is_met_only_if_the_state_without_dilatancy_meets_it()
     across = {"start": [-0.5, 0.0, 0.05], "start_stone": solids.block_names[0], "ground": [-4.0, 0.0, 0.05]}
     (held,) = run({"structure": squat, "joints": {"friction": 0.3}, "analysis": [{**asked, "ties": [across]}]}).results.interventions
     assert held.meets_target and held.required_N == pytest.approx(0.2 * weight, rel=1e-3)
+
+
+def squat_across(**keys: Any) -> Any:
+    """Strengthen a squat block in space that slides, by anchors across at its foot."""
+    squat = {**ANCHORED["structure"], "height": 1.0}
+    block = make_deck({"structure": squat, "analysis": [{"kind": "tilt"}]}, Path.cwd()).building.solids().block_names[0]
+    across = {"name": "across", "start": [-0.5, 0.0, 0.05], "start_stone": block, "ground": [-4.0, 0.0, 0.05]}
+    asked = {"kind": "strengthen", "acceleration": "0.5 g", "directions": [0.0], "ties": [across], **keys}
+    return run({"structure": squat, "joints": {"friction": 0.3}, "analysis": [asked]})
+
+
+@pytest.mark.parametrize("why", ["more than 0 contacts", "none is certified"])
+def test_a_target_in_space_is_not_met_where_no_state_without_dilatancy_is_found(monkeypatch, why):
+    if "contacts" in why:
+        monkeypatch.setattr(space, "MOST_BESIDE", 0)
+    else:
+        uncertified = SimpleNamespace(load_path_g=None, least_g=None)
+        monkeypatch.setattr(space, "slide", lambda *given, **keys: (uncertified, None))
+    result = squat_across()
+    (one,) = result.results.interventions
+    assert one.capacity_after == pytest.approx(0.5, rel=1e-4) and one.bound == "upper" and not one.meets_target
+    assert "friction governs: no state without dilatancy was found" in one.reason and why in one.reason
+    assert one.reason in result.answer
+    # an existing building that meets a lower target by dilatant sliding alone
+    before = squat_across(acceleration="0.25 g")
+    assert before.results.value_before == pytest.approx(0.3, rel=1e-4) and not before.results.met_before
+    assert any(text.startswith("Existing building: friction governs") for text in before.warnings)
+
+
+def test_a_change_in_space_is_met_only_where_a_state_without_dilatancy_is_found(monkeypatch):
+    rougher = {"ties": [], "changes": [{"vary": "joints.friction", "stop": 0.6, "count": 3}]}
+    (met,) = squat_across(**rougher).results.interventions
+    assert met.meets_target and met.required_size == pytest.approx(0.5, rel=1e-3)
+    monkeypatch.setattr(space, "MOST_BESIDE", 0)
+    (one,) = squat_across(**rougher).results.interventions
+    assert one.required_size == met.required_size and not one.meets_target and "friction governs" in one.reason
+
+
+def test_a_target_in_the_plane_is_not_met_where_no_state_without_dilatancy_is_found(monkeypatch):
+    """Two anchors, of which one yields early, combine to hold a block that slides."""
+    early = {**SLIDING["tie"], "name": "early", "start": [-0.39, 0.2], "ground": [-3.0, 0.2], "yield_force": 1500.0}
+    late = {**SLIDING["tie"], "name": "late", "yield_force": 2000.0}
+    asked = {"ties": [early, late, {**SLIDING["tie"], "name": "alone"}]}
+
+    def answer(ties: list[dict[str, Any]]) -> Any:
+        deck = deck_of(SLIDING, ties=ties)
+        return run_one(Context(deck, 1), deck.analyses[0], deck.buildings[0])
+
+    alone = answer(asked["ties"][2:]).results.interventions[0]
+    both = answer(asked["ties"][:2])
+    assert alone.meets_target and alone.bound == "upper"
+    assert len(both.results.combination) == 2 and both.results.combination_meets_target
+    assert "Combination of ties of least total force: " in both.answer
+    monkeypatch.setattr(common, "MOST_BESIDE", 0)
+    unmet = answer(asked["ties"][2:]).results.interventions[0]
+    assert not unmet.meets_target and "friction governs: no state without dilatancy was found" in unmet.reason
+    both = answer(asked["ties"][:2])
+    assert not both.results.combination_meets_target and "not shown to meet the target (see the warnings): " in both.answer
+    (warned,) = [text for text in both.warnings if "combination" in text]
+    assert "no state without dilatancy was found" in warned and "unknown" not in warned
+
+
+def test_why_a_target_is_not_met_is_said_of_what_failed():
+    deck = deck_of(SLIDING)
+    measure = measure_of(Context(deck, 1), deck.analyses[0])
+    assert unmet_reason(measure, Worth(None, reason="the blocks overlap")) == "the blocks overlap"
+    assert "the value is 0.4" in unmet_reason(measure, Worth(0.4)) and "upper" not in unmet_reason(measure, Worth(0.4, bound="exact"))
+    assert "carries 0.3 g" in unmet_reason(measure, Worth(0.5, bound="upper", beside=0.3))
+    assert not unmet_reason(measure, Worth(0.5, bound="upper", beside=0.46))
 
 
 #: A block that leans to -x and falls so at rest; its tie to the right holds it, and a load to +x sets it upright

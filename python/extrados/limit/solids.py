@@ -577,18 +577,6 @@ class SolidLimit:
         return _most(matrix, -dead, np.concatenate([*low, [-np.inf]]), np.concatenate([*high, [np.inf]]))
 
 
-def _settings(method: str) -> "clarabel.DefaultSettings":
-    """Settings of the conic solver; method: of its sparse factors."""
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_iter = 200
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
-    settings.tol_infeas_abs = settings.tol_infeas_rel = 1e-9
-    settings.max_threads = 1
-    settings.direct_solve_method = method
-    return settings
-
-
 def _waited(*calls: Callable[[], Found], told: Callable[[], None] = lambda: None) -> list[Found]:
     """What long calls give, each made in a thread of its own: so Ctrl-C is answered at once, and the threads left to
     themselves. told() is called while they work."""

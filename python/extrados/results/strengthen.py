@@ -117,6 +117,7 @@ class Strengthen(KindResults):
     interventions: list[Intervention] = fact("the alternatives, the cheapest that meets the target first")
     combination: list[CombinedTie] = maybe("combination of ties of least total force, if more than one tie carries a force")
     combination_cost: float = maybe("its cost")
+    combination_meets_target: bool = maybe("whether the combination meets the target, without dilatancy too where pressed joints slide")
     fragility: FragilityPair = maybe("fragility before and after, of the cheapest intervention")
 
     def judged(self, demand: Demand) -> Verdict:

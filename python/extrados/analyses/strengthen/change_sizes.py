@@ -43,6 +43,11 @@ def size_change(work: Sizing, one: ChangeAlternative) -> Sized:
         data, _ = with_value(work.context, work.options, one.key, round(best) if one.whole else best)
         closely = work.measure.of_data(data, picture=True)  # without dilatancy where pressed joints slide
         worth, greatest = (worth, greatest) if closely.value is None else (closely, closely.value)
+    changed_to: tuple[dict[str, Any], dict[str, Any] | None] | None = None
+    if required is not None:
+        changed_to = with_value(work.context, work.options, one.key, round(required) if one.whole else required)
+        if isinstance(work.measure, Statics):
+            worth = work.measure.of_data(changed_to[0], picture=True)
     spent = None if required is None else _spent_on(work, one, required)
     force, volume = spent or (0.0, 0.0)
     reason = "" if required is not None else worth.reason or "no value up to the greatest one considered suffices"
@@ -51,18 +56,11 @@ def size_change(work: Sizing, one: ChangeAlternative) -> Sized:
     row = row_of(work, means, Found(required, greatest, worth, ranges, reason))
     row = with_lapses(work, row, curve, one.stop > one.start)
     sized = Sized(row, curve, None, None, worth)
-    if required is not None:
-        data, keys = with_value(work.context, work.options, one.key, round(required) if one.whole else required)
+    if changed_to is not None:
+        data, keys = changed_to
         sized.data = data if keys is None else None  # an option of the code changes no building
-        if isinstance(work.measure, Statics):
-            sized.worth = _picture_of(work, data)
     sized.costs = [np.nan if (s := _spent_on(work, one, size)) is None else work.cost(0.0, *s) for size in curve[0]]
     return sized
-
-
-def _picture_of(work: Sizing, data: dict[str, Any]) -> Worth:
-    assert isinstance(work.measure, Statics)
-    return work.measure.of_data(data, picture=True)
 
 
 def _spent_on(work: Sizing, one: ChangeAlternative, value: float) -> tuple[float, float] | None:

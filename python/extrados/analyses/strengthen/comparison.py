@@ -7,7 +7,7 @@ import numpy as np
 from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.analyses.strengthen.alternatives import TieAlternative
-from extrados.analyses.strengthen.measures import Statics, meets, nested, plain_data
+from extrados.analyses.strengthen.measures import Statics, nested, plain_data, unmet_reason
 from extrados.analyses.strengthen.rows import NAMED, placed
 from extrados.analyses.strengthen.sizing import Sized, Sizing
 from extrados.decks.reader import DeckError, make_deck
@@ -43,12 +43,9 @@ def combine_ties(work: Sizing, ties: list[TieAlternative]) -> dict[str, Any]:
         cost += work.cost(one.lengths[place], float(forces[k]), 0.0)
     building = work.context.building
     worth = statics.of(building.having(ties=(*building.ties, *added)), picture=True)
-    if not meets(statics, worth):
-        least = worth.value if worth.beside is None else worth.beside
-        work.context.warnings.append(
-            f"The combination of ties meets the target by dilatant friction alone: without dilatancy the building with it carries {_number(least)} g."
-        )
-    return {"combination": rows, "combination_cost": cost}
+    if unmet := unmet_reason(statics, worth):
+        work.context.warnings.append(f"The combination of ties is not shown to meet the target: {unmet.rstrip('.')}.")
+    return {"combination": rows, "combination_cost": cost, "combination_meets_target": not unmet}
 
 
 def assess_all(work: Sizing, sized: list[Sized]) -> None:

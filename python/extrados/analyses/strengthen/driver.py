@@ -65,6 +65,8 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
     )
     if before.value is None:
         result.warnings.append(f"The existing building has no value: {before.reason}")
+    if before.unfound:
+        result.warnings.append(f"Existing building: {before.unfound}.")
     if before.bound == "upper":
         result.warnings.append(
             "Pressed joints slide in the mechanism of the existing building: its capacity is an upper bound, or the least of the states found without dilatancy. Curves over sizes are upper bounds."

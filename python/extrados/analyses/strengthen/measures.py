@@ -47,7 +47,7 @@ class Worth:
 
     mechanism: what governs, in words; shape: the same but for mirror images; bound: of the value; reason: why there is none; moved: the blocks and the poses into which
     the mechanism carries them; sense: of the load that governs, in space its direction [deg]; in_space: as moved, of solids; beside: the least found without
-    dilatancy, where it is not the value.
+    dilatancy, where it is not the value; unfound: why no state without dilatancy was found where one was sought.
     """
 
     value: float | None
@@ -60,6 +60,7 @@ class Worth:
     sense: float = 1
     in_space: tuple[SolidAssembly, np.ndarray] | None = None
     beside: float | None = None
+    unfound: str = ""
 
 
 class Statics:
@@ -88,11 +89,13 @@ class Statics:
         told: list[str] = []
         bounds: list[Bound] = []
         mechanisms: list[Mechanism | None] = []
+        unfound = ""
         for sense in map(int, self.senses):
             try:
                 state, mechanism = limit.collapse(sense)
                 value = sense * state.gamma
-                value, bound = self._least(limit, mechanism, sense, value, self.closely and (picture or value >= self.target))
+                value, bound, why = self._least(limit, mechanism, sense, value, self.closely and (picture or value >= self.target))
+                unfound = unfound or why
             except Immovable as error:
                 values.append(np.inf)
                 told.append(f"none to {_word(sense)}: {error}")
@@ -115,7 +118,8 @@ class Statics:
         chosen = mechanisms[k]
         moved = (limit.assembly, finite_motion(limit.assembly, chosen)) if picture and chosen is not None else None
         shape = () if chosen is None else unmirrored(signature(limit.assembly, chosen))
-        return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved, sense=self.senses[k])
+        by_sense = tuple(values)
+        return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=by_sense, moved=moved, sense=self.senses[k], unfound=unfound)
 
     def other_sense_told(self, building: Building) -> str:
         """What the existing building carries in the sense that the deck leaves out."""
@@ -131,20 +135,20 @@ class Statics:
             'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
         )
 
-    def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool) -> tuple[float, Bound]:
-        """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy, which takes seconds
-        and is not sought where the upper bound already misses the target."""
+    def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool) -> tuple[float, Bound, str]:
+        """The capacity, as which bound, and why no state without dilatancy was found; where pressed joints slide the least such state,
+        which takes seconds and is not sought where the upper bound already misses the target."""
         if not limit.associated:
-            return value, "upper"
+            return value, "upper", ""
         if not limit.dilating(mechanism):
-            return value, "exact"
+            return value, "exact", ""
         if not closely:
-            return value, "upper"
+            return value, "upper", ""
         try:
             state, _ = collapse_beside(limit.without_dilatancy(), sense)
-        except (NoAnswer, NoEquilibrium):
-            return value, "upper"
-        return min(value, sense * state.gamma), "upper"
+        except (NoAnswer, NoEquilibrium) as error:
+            return value, "upper", f"friction governs: no state without dilatancy was found to {_word(sense)}: {error}"
+        return min(value, sense * state.gamma), "upper", ""
 
     def _fallen(self, limit: LimitAnalysis) -> Worth:
         """0 with the proof."""
@@ -314,7 +318,24 @@ def reached(measure: Measure, worth: Worth) -> bool:
 
 def meets(measure: Measure, worth: Worth) -> bool:
     """Whether a value meets the target, and the least state without dilatancy too, where one was sought beside an upper bound."""
-    return reached(measure, worth) and (worth.beside is None or worth.beside > (1.0 - SLACK) * measure.target)
+    return not unmet_reason(measure, worth)
+
+
+def unmet_reason(measure: Measure, worth: Worth) -> str:
+    """Why a value does not meet the target, in words; empty where it does."""
+    if worth.value is None:
+        return worth.reason or "no value was found"
+    if not reached(measure, worth):
+        least = ", an upper bound or the least state found without dilatancy," if worth.bound == "upper" else ""
+        return f"the value is {worth.value:.3g}{least} and the target {measure.target:.3g}"
+    if worth.unfound:
+        return worth.unfound
+    if worth.beside is not None and worth.beside <= (1.0 - SLACK) * measure.target:
+        return (
+            "the target is met only by the upper bound of limit analysis (dilatant friction); the least state found without dilatancy carries "
+            f"{worth.beside:.3g} g"
+        )
+    return ""
 
 
 def over_demand(value: float | None, demand: float | None) -> float | None:

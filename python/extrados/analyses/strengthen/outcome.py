@@ -109,5 +109,6 @@ def words(r: out.Strengthen) -> str:
         said += [f"  {text}" for text in one.adverse]
     if r.combination:
         told = ", ".join(f"{row.force_N / 1e3:.3g} kN of {row.name}" for row in r.combination)
-        said.append(f"- Combination of ties of least total force: {told}; relative cost {r.combination_cost:.3g}.")
+        shown = "" if r.combination_meets_target else ", not shown to meet the target (see the warnings)"
+        said.append(f"- Combination of ties of least total force{shown}: {told}; relative cost {r.combination_cost:.3g}.")
     return "\n".join(said)

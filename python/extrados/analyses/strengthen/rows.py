@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados.analyses.strengthen.alternatives import TieAlternative, is_spatial
 from extrados.analyses.strengthen.anchorage import check_anchorage
-from extrados.analyses.strengthen.measures import Statics, Worth, meets, over_demand, reached
+from extrados.analyses.strengthen.measures import Statics, Worth, over_demand, reached, unmet_reason
 from extrados.analyses.strengthen.sizing import Sizing
 from extrados.analyses.strengthen.space import SpaceStatics
 from extrados.analyses.strengthen.tables import Anchorage
@@ -61,9 +61,9 @@ def row_of(work: Sizing, means: Means, found: Found) -> out.Intervention:
     worth, required, reason, tie = found.worth or Worth(None), found.required, found.reason, means.tie
     met = required is not None
     # The target is met only where the least state without dilatancy reaches it too; the size is that of the upper bound.
-    sure = met and meets(work.measure, worth)
-    if met and not sure:
-        reason = "the size meets the target only by the upper bound of limit analysis (dilatant friction)"
+    unmet = unmet_reason(work.measure, worth) if met else ""
+    sure = met and not unmet
+    reason = unmet or reason
     more: dict[str, Any] = {"key": means.key} if means.key else {}
     if tie is not None and required is not None:
         more["stiffness_N_m"] = means.stiffness

@@ -61,7 +61,8 @@ class SpaceStatics(Statics):
         governs = found[k]
         if governs is None:
             return Worth(np.inf, "none: the contacts restrain the blocks from all sides", bound="exact", by_sense=tuple(values))
-        slides = dilating_contacts(limit, governs)
+        slides = [one is not None and dilating_contacts(limit, one) > 0 for one in found]
+        beside, unfound = self._without_dilatancy(limit, found, slides) if picture and any(slides) else (None, "")
         # blocks are counted, as mechanisms of a round structure along several directions differ by their names alone
         moving = len(moving_blocks(limit.assembly, governs)) / len(limit.assembly.mass)
         shape = (("moving blocks", f"{round(SHARES * moving)}"),)
@@ -69,24 +70,30 @@ class SpaceStatics(Statics):
             values[k],
             self._told(limit, governs, self.senses[k]),
             shape,
-            "upper" if slides else "exact",
+            "upper" if any(slides) else "exact",
             by_sense=tuple(values),
             sense=self.senses[k],
             in_space=(limit.assembly, pose_of(limit.assembly, governs.motion)) if picture else None,
-            beside=self._without_dilatancy(limit, found) if picture and slides else None,
+            beside=beside,
+            unfound=unfound,
         )
 
-    def _without_dilatancy(self, limit: SolidLimit, found: list[Programme | None]) -> float | None:
-        """The least design value over the directions [g]; None of large structures, or where no state is certified."""
+    def _without_dilatancy(self, limit: SolidLimit, found: list[Programme | None], slides: list[bool]) -> tuple[float | None, str]:
+        """The least design value over the directions [g], of those without sliding the value itself, and why it is None: a large
+        structure, or a direction along which contacts slide and no state is certified."""
+        none = "friction governs: no state without dilatancy was found"
         if len(limit.assembly.a) > MOST_BESIDE:
-            return None
-        rows = [
-            slide(limit, sense, one.gamma, self.options.starts, patient=False)[0]
-            for sense, one in zip(self.senses, found, strict=True)
-            if one is not None
-        ]
-        values = [v for row in rows for v in (row.load_path_g, row.least_g) if v is not None]
-        return min(values, default=None)
+            return None, f"{none}, as none is sought of more than {MOST_BESIDE} contacts"
+        values: list[float] = []
+        for sense, one, sliding in zip(self.senses, found, slides, strict=True):
+            if one is None:
+                continue
+            row = slide(limit, sense, one.gamma, self.options.starts, patient=False)[0] if sliding else None
+            states = [one.gamma] if row is None else [v for v in (row.load_path_g, row.least_g) if v is not None]
+            if not states:
+                return None, f"{none} along {self.word(sense)}, as none is certified"
+            values += states
+        return min(values), ""
 
     def carrying(self, one: TieAlternative, place: int) -> "SpaceStatics":
         """Itself with a ring beam along the strands of a tie: its weight is even along them and rests on the blocks at their points."""
