@@ -11,6 +11,7 @@ from extrados.analyses.assess.closer import refine
 from extrados.analyses.assess.conclusion import conclude
 from extrados.analyses.assess.finer import check_finer
 from extrados.analyses.assess.longer import prolong
+from extrados.analyses.assess.reasons_of_statics import static_peak
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.assess.turning import move_values
 from extrados.analyses.assess.words import table_of
@@ -27,9 +28,10 @@ def run(context: Context, options: Assess) -> Result:
     try:
         ask_cheap(work)
         context.tell(f"First results:\n{table_of(list(work.rows.values()))}")
+        work.further("closer looks at cheap strategies", lambda: look_early(work))
         ask_costly(work)
         work.further("longer runs", lambda: prolong(work))
-        if options.advise:
+        if options.advise and not work.advised:
             work.further("strengthening", lambda: advise(work))
         work.further("closer looks where strategies differ", lambda: refine(work))
         work.further("finer checks of contradictions", lambda: check_finer(work))
@@ -52,6 +54,15 @@ def ask_cheap(work: Work) -> None:
             if name == "rocking" and "rocking" in work.results and not work.many:
                 _scaled(work)
     work.context.progress(1.0, 3.0, "assess")
+
+
+def look_early(work: Work) -> None:
+    """Whatever the cheap strategies already call for, in seconds, before costly ones use up the budget: the least interventions, and the
+    shortest constant push of the reason `static-peak`."""
+    if work.options.advise:
+        advise(work)
+    facts = work.facts()
+    static_peak(facts, facts.pairs())
 
 
 def ask_costly(work: Work) -> None:
@@ -124,6 +135,7 @@ def advise(work: Work) -> None:
     facts = work.facts()
     if all(facts.outcome(n) == "stands" for n in facts.judged()) or work.rows.get("tilt") is None:
         return
+    work.advised = True
     found = size_interventions(work.asker, work.peak, "rocking" in work.results)
     if isinstance(found, str):
         work.not_done.append(f"strengthening: {found}")

@@ -48,6 +48,7 @@ class Work:
         self.shaken: list[out.TurningValue] = []
         self.faults: dict[str, bytes] = {}
         self.advice: out.Advice | None = None
+        self.advised = False
         self.finer: dict[str, list[str]] = {}  # strategy, settings of its finer runs with their outcomes
         self.finer_told = ""
         self.asker = Asker(context, dict(context.deck.data["motion"]), budget.STOPPED_AFTER * options.for_strategies, Stopwatch())
