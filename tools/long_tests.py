@@ -4,7 +4,7 @@
 
 Without a folder the tests are run first. Processor time of a test and of the children that it waited for: the list does not depend on
 other work of the machine. A fixture that several tests share counts for the first of them. Tests that
-were not measured, or that were skipped at once, stay in the list if they were there.
+were not measured or were skipped stay in the list.
 """
 
 import ast

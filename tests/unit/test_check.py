@@ -206,7 +206,7 @@ WRONG = {
     ),
     "floor above the building": ("no storey 3", ROOMS + '[[structure.floors]]\nstorey = 3 # here\nkind = "rigid"\n' + PUSH),
     "joists from a wall to itself": (
-        "the two walls",
+        "two different walls",
         ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
         'bears_on = ["a", "a"] # here\n' + PUSH,
     ),

@@ -206,7 +206,7 @@ REFUSED = {
     "channel of a time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {"channel": 1}, "time step is"),
     "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' holds whole numbers.*put #"),
     "whole numbers below a title": ("Some quake\n300\n0\n" + COLUMN, {}, ":2: '300'"),
-    "count": (f"{len(N)}.0\n{len(N)}\n" + COLUMN, {}, "number of the values that follow|exceeds twice"),
+    "count": (f"{len(N)}.0\n{len(N)}\n" + COLUMN, {}, "count of the values that follow|exceeds twice"),
     "real numbers": ("-999.00\n-999.00\n" + COLUMN, {}, "exceeds twice all values"),
     "counts in other columns": ("400 0.01\n" + COLUMN, {}, ":2: 1 columns where 2 stood before; put #"),
     "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "every value 2 further on"),
@@ -216,7 +216,7 @@ REFUSED = {
     "two steps": ("dt = 0.02 s\n" + TIMED, {}, "says a step of 0.02 s, the times 0.01 s"),
     "factor": ("scale factor: 0.01\n" + COLUMN, {}, "applies no factor from a header"),
     "two quantities": ("acceleration and velocity\n" + COLUMN, {}, "acceleration and velocity"),
-    "sample numbers": ("".join(f"{k + 1} {v:.2f}\n" for k, v in enumerate(N)), {}, "column of sample numbers"),
+    "sample numbers": ("".join(f"{k + 1} {v:.2f}\n" for k, v in enumerate(N)), {}, "column holds sample numbers"),
     "cut": (THREE.rstrip("\n").rpartition(" ")[0], {"columns": "components"}, "cut off"),
 }
 

@@ -239,7 +239,7 @@ class FailureDomain(KindResults):
     )
     amplitudes_by_rule: list[RuleCurve] = maybe("failure curve by each impact rule, where their c_v differ by more than 1.3")
     rule_ratio: float | None = maybe(
-        "ratio of the greatest to the least failure amplitude among the impact rules, at the duration where it is greatest; "
+        "ratio of the greatest to the least failure amplitude among the impact rules, the greatest over all durations; "
         "null: no duration has failure amplitudes by two rules"
     )
     pulse: Pulse = fact("shape of the pulses")
@@ -351,7 +351,7 @@ class FailureCurve(ResultModel):
     conditions: Conditions = fact("over the points of the curve: below how many of them blocks slide or hinges form elsewhere")
     amplitudes_by_rule: list[RuleCurve] = maybe("the curve by each impact rule, where their c_v differ by more than 1.3")
     rule_ratio: float | None = maybe(
-        "ratio of the greatest to the least failure amplitude among the impact rules, at the duration where it is greatest; "
+        "ratio of the greatest to the least failure amplitude among the impact rules, the greatest over all durations; "
         "null: no duration has failure amplitudes by two rules"
     )
     fit: CurveFit = maybe("Eq. 5.5 fitted to this curve (radius not scaled); omitted with fewer than four points to fit")

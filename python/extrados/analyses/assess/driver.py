@@ -28,7 +28,7 @@ def run(context: Context, options: Assess) -> Result:
     try:
         ask_cheap(work)
         context.tell(f"First results:\n{table_of(list(work.rows.values()))}")
-        work.further("closer looks at cheap strategies", lambda: look_early(work))
+        work.further("measures and durations that cheap strategies call for", lambda: look_early(work))
         ask_costly(work)
         work.further("longer runs", lambda: prolong(work))
         if options.advise and not work.advised:
