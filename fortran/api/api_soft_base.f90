@@ -1,4 +1,4 @@
-!> A block on a base that gives way: one history, and the contact by itself.
+!> A block on a compliant base: one history, and the contact by itself.
 module api_soft_base
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none

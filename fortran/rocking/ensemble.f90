@@ -23,7 +23,7 @@ module rocking_ensemble
    private
    public :: body_data, body_list, list_body, run_ensemble
 
-   !> Room for one structure of any kind: of one coordinate, a block on a base that gives way, or two blocks
+   !> Room for one structure of any kind: of one coordinate, a block on a compliant base, or two blocks
    type :: any_body
       class(rocker), allocatable :: model
       type(soft_base_body), allocatable :: soft

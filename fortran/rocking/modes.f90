@@ -1,5 +1,5 @@
 !> The response of a structure of several coordinates whose equation changes from mode to mode: two stacked blocks,
-!> a block on a base that gives way.
+!> a block on a compliant base.
 !>
 !> Within a mode the equation is smooth. A step ends where its mode does, found by bisection of the step itself, so that
 !> the order of the method holds; what comes then, another mode or an impact, the structure says. The integrator stops

@@ -1,4 +1,4 @@
-!> A block on a base that gives way and does not pull: its rotation q, clockwise (to +x), and how far it sinks, z.
+!> A block on a compliant base without tension: its rotation q, clockwise (to +x), and how far it sinks, z.
 !>
 !> The base is a bed of springs and dashpots (Winkler), or one of each under both edges (the two models of Psycharis and
 !> Jennings 1983). A place s of the base, to the right of the foot of the centre of mass, is pressed down by

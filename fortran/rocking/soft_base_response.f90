@@ -1,4 +1,4 @@
-!> The response of a block on a base that gives way (rocking_soft_base) to a ground motion, mode by mode.
+!> The response of a block on a compliant base (rocking_soft_base) to a ground motion, mode by mode.
 module rocking_soft_base_response
    use common_kinds, only : wp, gravity, pi
    use common_lists, only : event_impact => rocking_event_impact, event_uplift => rocking_event_uplift

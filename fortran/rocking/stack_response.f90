@@ -119,7 +119,7 @@ contains
       call rock_blocks(rocker, body, motion, start, end_time, tolerance, history, work, status)
    end subroutine stack_rock
 
-   !> The same of a rocker that knows what is asked
+   !> The same for a mechanism with the demand on its joints
    subroutine rock_blocks(rocker, body, motion, start, end_time, tolerance, history, work, status)
       type(stack_rocker), intent(inout) :: rocker
       type(stack), intent(in) :: body

@@ -243,4 +243,8 @@ def test_contacts_that_friction_wedges_end_with_the_reason() -> None:
     wall = {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 3}
     deck = {"structure": wall, "joints": {"friction": "no-sliding"}, "analysis": [{"kind": "dem", "solver": "nonsmooth", "test": "tilt"}]}
     (found,) = extrados.run(deck).results
-    assert found.status == "refused" and "In 100 of these steps the solver did not find" in found.reason and "friction of up to 1" in found.reason
+    assert (
+        found.status == "refused"
+        and "In 100 of these steps the solver did not find" in found.reason
+        and "friction of up to 1" in found.reason
+    )

@@ -1,4 +1,4 @@
-"""A block on a base that gives way, for the core."""
+"""A block on a compliant base, for the core."""
 
 from dataclasses import dataclass
 
@@ -53,7 +53,7 @@ class SoftBase:
         return cls(mass, inertia, height, left, right, stiffness, damping, bool(edges), bool(linear))
 
 
-#: Kind of bodies on a base that gives way
+#: Kind of bodies on a compliant base
 KIND = lists.number("rocking_body", "soft_base")
 
 

@@ -26,7 +26,7 @@ MOST_PICTURES, MOST_POINTS = 600, 1600
 MOST_OUTPUTS = 20_000
 #: What each round of the map adds: every 4th, every 2nd, every cell
 STRIDES = (4, 2, 1)
-#: Cells of the map that are run at once to begin with, and on a base that gives way, where each takes long; how long those run
+#: Cells of the map that are run at once to begin with, and on a compliant base, where each takes long; how long those run
 #: at once may take [s], and how fast their number may grow
 CELLS, FEW, PATIENCE, GROWTH = 100, 4, 0.06, 4.0
 #: Shares of the sampling at which a motion is drawn
@@ -110,7 +110,7 @@ def _outlines(piers: Assembly, anchor: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _in_two(context: Context, building: Building, options: Rocking, anchor: np.ndarray) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """What rocks in two coordinates, by the analysis itself: stacked blocks, and a block on a base that gives way."""
+    """What rocks in two coordinates, by the analysis itself: stacked blocks, and a block on a compliant base."""
     result = run_one(context, options.model_copy(update={"animation": "gif"}), building)
     if result.status != "ok":
         raise Refused(result.reason)

@@ -97,7 +97,7 @@ class StackRocking(ResultModel):
 
 
 class SoftBaseRocking(ResultModel):
-    """What a block on a base that gives way has besides its rotation."""
+    """What a block on a compliant base has besides its rotation."""
 
     foundation: Literal["winkler", "two-spring"] = fact("springs all along the base, or under both edges")
     rocking_period_s: float = fact("natural period of small rocking on the whole base, undamped", "s")

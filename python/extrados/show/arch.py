@@ -222,7 +222,7 @@ def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tup
 
 
 def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str, str]:
-    """Which part of a base that gives way pushes, and how far the block sinks, over time."""
+    """Which part of a compliant base pushes, and how far the block sinks, over time."""
     low, high = run.array(name, "pressed").T
     edges = run.array(name, "outline")[:, 0]
     with style.figure(8.0, 4.4, rows=2, sharex=True) as (fig, (base, sinking)):
@@ -251,7 +251,7 @@ def _once(ax: Any) -> tuple[list[Any], list[str]]:
 def _rocks(run: Stored, name: str) -> np.ndarray:
     """Whether it is off rest, of each time; of stacked blocks whether either is."""
     size = np.abs(run.array(name, "rotation"))
-    # a base that gives way lets it tremble long after
+    # a compliant base lets it tremble long after
     rocks = size > (0.02 * size.max(initial=0.0) if run.results_of(name, Rocking).soft_base else 0.0)
     return rocks | (np.abs(run.array(name, "rotation_upper")) > 0.0) if run.results_of(name, Rocking).stack else rocks
 

@@ -47,7 +47,7 @@ class Building(Masonry):
 
     def rocker(self, linear: bool = False, soft_base: bool = False) -> "Rocker":
         """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations. soft_base:
-        also a block on a base that gives way, which has two."""
+        also a block on a compliant base, which has two."""
         tables = (
             self.structure,
             self.material,

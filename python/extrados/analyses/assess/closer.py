@@ -35,7 +35,7 @@ def refine(work: Work) -> None:
     if "rocking" in thin and not work.many:
         _finer(work)
     _cheap_probes(work, pairs)
-    static_peak(facts, pairs)  # asks for the shortest constant push before further runs use up the budget
+    static_peak(facts, pairs)  # calculates the shortest constant push before further runs use up the budget
     _elements(work, pairs)
     work.context.progress(3.0, 3.0, "assess")
 

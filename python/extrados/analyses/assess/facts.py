@@ -12,7 +12,7 @@ from extrados.results.model import Result
 from extrados.results.verdict import KindResults, SelfWeight
 from extrados.views.building import Building
 
-#: Strategies that push for ever, and those that follow the motion or a part of it
+#: Strategies that apply a constant acceleration, and those that follow the motion or a part of it
 STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment", "probability", "dem")
 #: A joint that slips by this part of its length has slid
 SLID = 0.01

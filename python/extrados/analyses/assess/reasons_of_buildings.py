@@ -97,23 +97,23 @@ def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or not isinstance(r, LocalMechanism) or not r.walls:
         return None
     wall = r.walls[0]
-    bears = {n: c for p in mine for n in p if n != "code-checks" and (c := _reached(facts, n)) is not None}
-    if not bears or wall.multiplier >= min(bears.values()):
+    carried = {n: c for p in mine for n in p if n != "code-checks" and (c := _reached(facts, n)) is not None}
+    if not carried or wall.multiplier >= min(carried.values()):
         return None
-    weakest = min(bears, key=lambda n: bears[n])
+    weakest = min(carried, key=lambda n: carried[n])
     return reason(
         "torn-off",
         mine,
         f"The codes consider each wall apart from those across it: wall {wall.wall} overturns out of its plane about the foot of storey "
         f"{wall.storey} at alpha_0 = {wall.multiplier:.3g}. In the {facts.rows[weakest].label} corners and floors hold the walls together, and the "
-        f"whole carries {bears[weakest]:.3g} g, as far as the walls are bonded and anchored.",
+        f"whole carries {carried[weakest]:.3g} g, as far as the walls are bonded and anchored.",
         multiplier=wall.multiplier,
-        whole_g=bears[weakest],
+        whole_g=carried[weakest],
     )
 
 
 def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """Two directions on the plan differ where the one with less masonry along it bears less."""
+    """Two directions on the plan differ if the one with less masonry along it carries less."""
     plan = facts.building.structure
     mine = [p for p in pairs if set(p) == set(PUSHES)]
     if not mine or not isinstance(plan, Plan):
@@ -179,7 +179,7 @@ def _reached(facts: Facts, name: str) -> float | None:
 
 
 def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[float, str, Check]], list[Pair]] | None:
-    """The results of the codes with the checks by which they say what they say, and the pairs with them; None without any."""
+    """The results of the codes, the checks that govern them, and the pairs that contain them; None without any."""
     r = facts.of("code-checks")
     mine = [p for p in pairs if "code-checks" in p]
     if not mine or not isinstance(r, Checked) or not (there := r.governing()):

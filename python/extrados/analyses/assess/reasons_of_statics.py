@@ -36,7 +36,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     capacity = facts.rows[weakest].capacity
     if capacity is None:
         return None
-    # where both stand, the motion is looked at as strong as the dynamic answer still bears
+    # if both stand, the motion is scaled to the greatest factor that the dynamic answer still carries
     factor = 1.0
     if facts.outcome(weakest) == "stands":
         factor = min(facts.interval(facts.split(p)[1])[0] for p in mine)
@@ -101,7 +101,7 @@ def _by_passages(facts: Facts, mine: list[Pair], text: str, level: float, factor
 
 
 def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """A buttress that cracks bears less; nothing but limit analysis was asked to crack it."""
+    """A cracked buttress carries less; limit analysis alone considers the crack."""
     tilt = facts.of("tilt")
     mine = [p for p in pairs if "tilt" in p and facts.split(p)[0] == "tilt"]
     if not mine or not isinstance(tilt, Tilt) or tilt.fracture is None:
@@ -164,7 +164,7 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """A wall of finite elements does not slide along its joints, and bears tension; its stones do the one, not the other."""
+    """A wall of finite elements does not slide along its joints, and carries tension; its blocks slide and carry none."""
     sla, tilt = facts.rows.get("sla"), facts.of("tilt")
     mine = [p for p in pairs if "sla" in p and ("tilt" in p or "dem" in p)]
     if not mine or sla is None or sla.capacity is None or not isinstance(tilt, Tilt) or facts.building.meshed_by_stones:

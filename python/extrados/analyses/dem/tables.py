@@ -109,7 +109,7 @@ class DemTable(BuildingAnalysis):
         return {key: fixed for key, fixed in told.items() if not (self.rigid and key in SPRINGS)}
 
     def reckons_with(self, building: "Building") -> set[str]:
-        """Rigid contacts refuse mortar and a base that gives way, and look at nothing else that springs have."""
+        """Rigid contacts refuse mortar and a compliant base, and look at nothing else that springs have."""
         found = {*self.uses, *self.beside} - OF_SPRINGS
         return found if self.rigid else found | of_springs(building)
 

@@ -56,7 +56,7 @@ def structures_of(context: Context, options: tables.FailureCurves) -> list[Struc
 
 
 def _refuse_soft_base(building: Building, options: tables.RockingTable) -> None:
-    """Refused where a base that gives way does not carry the building, or nothing but `dem` follows it there."""
+    """Refused where a compliant base does not carry the building, or nothing but `dem` follows it there."""
     from extrados.views.rockers.soft_base import soft_base_model
 
     _ = soft_base_model(building, options.form == "linear").rest

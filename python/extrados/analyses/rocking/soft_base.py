@@ -1,4 +1,4 @@
-"""rocking of a block on a base that gives way and does not pull (Psycharis and Jennings 1983)."""
+"""rocking of a block on a compliant base without tension (Psycharis and Jennings 1983)."""
 
 from typing import Any
 

@@ -48,7 +48,7 @@ class RockingTable(BuildingAnalysis):
     form: Literal["nonlinear", "linear"] = key("nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963")
 
     def rests_on(self, building: Building) -> dict[str, str | None]:
-        """An energy ratio stands in place of the restitution; on a base that gives way the impact follows from it; a wall
+        """An energy ratio stands in place of the restitution; on a compliant base the impact follows from it; a wall
         throws back what falls against it."""
         found = super().rests_on(building)
         if building.restraints or building.supports.abutting_wall is not None or building.supports.stiffness is not None:

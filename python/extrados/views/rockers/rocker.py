@@ -36,7 +36,7 @@ class Rocker:
     what: its kind; word: what answers call it; model: what it was made from. uplift: horizontal acceleration at which it starts to rock [g]; critical: rotation
     of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
     arch [m]; start_rotation [rad], > 0 to +x. restraints: what holds it besides its weight, None where nothing does.
-    restitution: None on a base that gives way, from which what impacts lose follows; rest: rotation at which it stands [rad].
+    restitution: None on a compliant base, from which what impacts lose follows; rest: rotation at which it stands [rad].
     watch: what is known of its joints while it rocks; None where ties, dampers, a wall or a compliant base act on it.
     """
 
@@ -86,7 +86,7 @@ class Rocker:
 
     @property
     def unit_acceleration(self) -> float:
-        """What accelerations are told over [g]: uplift, of a block on a base that gives way that on rigid ground."""
+        """What accelerations are told over [g]: uplift, of a block on a compliant base that on rigid ground."""
         return float(self.model.rigid.uplift.min()) if isinstance(self.model, SoftBaseModel) else self.uplift
 
     @property
@@ -99,7 +99,7 @@ class Rocker:
 def make_rocker(building: Masonry, linear: bool = False, stones: Assembly | None = None, soft_base: bool = False) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none.
 
-    soft_base: also what moves in two coordinates, a block on a base that gives way and two stacked blocks.
+    soft_base: also what moves in two coordinates, a block on a compliant base and two stacked blocks.
 
     stones: instead of the building's own, as they might be too; an arch of these need not be symmetric and rocks by
     two mechanisms.
@@ -239,7 +239,7 @@ def _as_stack(building: Masonry, linear: bool, stones: Assembly | None) -> Rocke
 
 
 def _on_soft_base(building: Masonry, linear: bool, stones: Assembly | None) -> Rocker:
-    """A block, a column or a wall taken as one body, on a base that gives way."""
+    """A block, a column or a wall taken as one body, on a compliant base."""
     structure, ratio = building.structure, building.initial.rotation_ratio
     assert structure is not None
     model = soft_base_model(building, linear, stones)

@@ -1,4 +1,4 @@
-"""A block on a base that gives way, as the rocking core sees it, and its statics."""
+"""A block on a compliant base, as the rocking core sees it, and its statics."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -42,7 +42,7 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
 
 
 def refuse_soft_base(building: Masonry) -> None:
-    """NoView, with the key, where the words of a deck alone say that nothing but `dem` follows it on a base that gives way."""
+    """NoView, with the key, where the words of a deck alone say that nothing but `dem` follows it on a compliant base."""
     key = ("supports", "stiffness")
     if not rocks_as_block(building):
         raise NoView(
