@@ -1,6 +1,6 @@
 # `make run` and `make test` first install missing packages and build; both are quick the second time.
 DECK ?= cases/arch/readme.toml
-# quick, or long: with the tests of tests/long.txt too, of more than a second of a processor each
+# quick, or long: with the tests of tests/long.txt too, of more than half a second of a processor each
 SUITE ?= quick
 MARKS := $(if $(filter long,$(SUITE)),-m "not verify",$(if $(filter quick,$(SUITE)),,$(error SUITE is quick or long)))
 PYTHON := .venv/bin/python

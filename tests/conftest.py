@@ -30,7 +30,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background jo
 LONGEST = 3600
 
 
-#: Tests of more than a second of a processor, measured: `make times` writes the list
+#: Tests of more than half a second of a processor, measured: `make times` writes the list
 LONG = ROOT / "tests" / "long.txt"
 
 

@@ -1,4 +1,4 @@
-"""Write tests/long.txt, the tests of more than a second of a processor, from the measured times of a run of all but the validation.
+"""Write tests/long.txt, the tests of more than half a second of a processor, from the measured times of a run of all but the validation.
 
     python tools/long_tests.py [FOLDER]
 
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LIST = ROOT / "tests" / "long.txt"
 TIMES = ROOT / "build" / "times"
 #: Processor time from which on a test is long [s]
-LIMIT = 1.0
+LIMIT = 0.5
 #: Processor time below which a test of the list was skipped [s]
 SKIPPED = 0.1
 
