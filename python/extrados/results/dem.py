@@ -304,12 +304,13 @@ class DemDomain(KindResults):
                     capacity,
                     "s",
                 )
-        failing = [t for t in self.shortest_durations_s if t is not None]
-        if not failing:
-            return judge("None of the calculated pulses causes collapse.", None, None, "s")
-        return judge(
-            f"Of the {self.pulse} calculated pulses the shortest that causes collapse lasts {min(failing):.3g} s.", None, min(failing), "s"
+        least = min((t for t in self.shortest_durations_s if t is not None), default=None)
+        text = (
+            "None of the calculated pulses causes collapse."
+            if least is None
+            else f"Of the {self.pulse} calculated pulses the shortest that causes collapse lasts {least:.3g} s."
         )
+        return judge(text, None, least, "s")
 
 
 class DemParameters(KindResults):
