@@ -253,11 +253,7 @@ def test_a_refusal_says_which_key_is_to_blame(room: str) -> None:
 
 
 #: Functions beyond the limits, and why
-LONG = {
-    "analyses/sla/events.py run_reference_loads": "the loop of events; divided with the step of the iterations",
-    "analyses/sla/model.py _build": "fills the core's model in the order of its calls",
-    "analyses/sla/stages.py run_stages": "one line above, of the same loop",
-}
+LONG = {"analyses/sla/events.py run_reference_loads": "the loop of events; divided with the step of the iterations"}
 MOST_LINES, MOST_PARAMETERS = 80, 12
 
 

@@ -17,6 +17,7 @@ from extrados.analyses.sla.model import (
     laws_of,
     refusal,
     softening_of,
+    spring_groups,
     teeth_of_joints,
 )
 from extrados.core import sla as core
@@ -147,11 +148,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     groups += [_joint(joint, frames, options) for joint in mesh.joints]
     for bar in mesh.bars:
         groups.append(_bar(mesh, bar, options))
-    if mesh.springs:
-        nodes, ways, stiffness = (np.array(column) for column in zip(*mesh.springs, strict=True))
-        groups.append(
-            core.Springs(np.column_stack([nodes, np.full(len(nodes), -1)]), np.column_stack([ways, ways]), stiffness.astype(float))
-        )
+    groups += spring_groups(mesh.springs)
     if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
             'joints that slide keep forces that only "continue" and "load-unload" can follow: give them friction = "no-sliding", or leave '

@@ -199,8 +199,23 @@ def refusal(error: BadGeometry) -> Refused:
     return Refused(str(error), ("structure", *key) if key[:1] == ("ties",) else ("analysis", *key))
 
 
-def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
-    held, springs = set(), []
+def spring_groups(springs: list[tuple[int, int, float]]) -> list[core.Springs]:
+    """The group of springs to the ground, by node, direction and stiffness [N/m]; none without any."""
+    if not springs:
+        return []
+    nodes, ways, stiffness = (np.array(column) for column in zip(*springs, strict=True))
+    ground = np.full(len(nodes), -1)
+    return [core.Springs(np.column_stack([nodes, ground]), np.column_stack([ways, ways]), stiffness.astype(float))]
+
+
+#: Node, direction and share of a displacement that is one with others
+Term = tuple[int, int, float]
+
+
+def _held(mesh: Mesh) -> tuple[set[tuple[int, int]], list[tuple[int, int, float]]]:
+    """Nodes and directions that supports hold, and those on springs with their stiffness [N/m]."""
+    held: set[tuple[int, int]] = set()
+    springs: list[tuple[int, int, float]] = []
     for i, support in enumerate(mesh.held):
         for node in mesh.nodes_at(support, f"supports.held[{i}]").tolist():
             for letter in support.fix:
@@ -210,20 +225,21 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
                     springs.append((node, AXES[letter], support.stiffness))
     if mesh.ground is not None:
         held |= {(node, axis) for node in mesh.ground.tolist() for axis in (0, 1)}
-    if mesh.has_joints and options.cracking == "isotropic":
-        raise BadGeometry("joints open along their own direction: isotropic cracking is for walls without stones")
-    constant_loads, reference_loads = loads_of(mesh, options)
+    return held, springs
+
+
+def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tuple[core.Freedoms, list[Term]]:
+    """The freedoms of the nodes, and the common displacement that the load `moved` prescribes."""
     ties = [[(int(n), AXES[tie.direction], 1.0) for n in mesh.nodes_at(tie, f"ties[{i}]")] for i, tie in enumerate(mesh.ties)]
-    moved = next((load for load in reference_loads if load.kind == "displacement"), None)
+    common: list[Term] = []
     if moved is not None:
-        tie = []
         for part in moved.parts:
-            tie += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
-        if all(share == 0.0 for _, _, share in tie):
+            common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
+        if all(share == 0.0 for _, _, share in common):
             raise BadGeometry("displacement: every ratio is 0, nothing would move")
-        if len({n for n, _, _ in tie}) < len(tie):
+        if len({n for n, _, _ in common}) < len(common):
             raise BadGeometry("the parts of the displacement share nodes")
-        ties.append(tie)
+        ties.append(common)
     tied = {(n, d) for tie in ties for n, d, _ in tie}
     if clash := held & tied:
         node, direction = min(clash)
@@ -234,7 +250,36 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         raise BadGeometry(str(error)) from None
     if not (freedoms.equation >= 0).any():
         raise BadGeometry("every node is held: nothing can move")
+    return freedoms, common
 
+
+def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour, float]:
+    """How cracks and joints behave, and the growth of the compliance that ends a run; several: loads stay on while
+    others grow."""
+    closure = options.crack_closure
+    if closure is None:  # a single growing load hardly closes a crack
+        rotates = options.cracking == "rotating"
+        closure = mesh.has_joints or (rotates and several)
+    if mesh.has_joints and not closure:
+        raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
+    floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor
+    ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
+    if ratio > MOST_OF_FLOOR / floor:
+        raise BadGeometry(
+            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, "
+            f"which would carry the load; at most {MOST_OF_FLOOR / floor:g}"
+        )
+    most = MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes
+    return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor), ratio
+
+
+def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
+    held, springs = _held(mesh)
+    if mesh.has_joints and options.cracking == "isotropic":
+        raise BadGeometry("joints open along their own direction: isotropic cracking is for walls without stones")
+    constant_loads, reference_loads = loads_of(mesh, options)
+    moved = next((load for load in reference_loads if load.kind == "displacement"), None)
+    freedoms, common = _freedoms(mesh, held, moved)
     groups: list[core.Group] = []
     bands, points = [], []
     start = 0
@@ -254,36 +299,21 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     for name, bars, place in made:
         groups.append(bars)
         named.append(NamedBar(name, bars, sum(len(bar.place) for bar in named), place))
-    if springs:
-        nodes, ways, stiffness = (np.array(column) for column in zip(*springs, strict=True))
-        ground = np.full(len(nodes), -1)
-        groups.append(core.Springs(np.column_stack([nodes, ground]), np.column_stack([ways, ways]), stiffness.astype(float)))
+    groups += spring_groups(springs)
     for i, x in enumerate(options.section_x):
         if not mesh.low[0] <= x <= mesh.high[0]:
             raise BadGeometry(f"section_x[{i}] is {x:g} m, the wall reaches from {mesh.low[0]:g} to {mesh.high[0]:g} m")
     constant = nodal_forces(mesh, constant_loads, "constant")
     reference = nodal_forces(mesh, reference_loads, "reference")
     if moved is not None:
-        node, direction, share = max(ties[-1], key=lambda term: abs(term[2]))
+        node, direction, share = max(common, key=lambda term: abs(term[2]))
         reference[node, direction] = 1.0 / share  # unit force on the common displacement
         unit = 1.0
     else:
         unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
     if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
         raise BadGeometry("the reference load acts on held nodes only")
-    closure = options.crack_closure
-    if closure is None:  # a single growing load hardly closes a crack
-        rotates = options.cracking == "rotating"
-        closure = mesh.has_joints or (rotates and bool(constant_loads or options.stages))
-    if mesh.has_joints and not closure:
-        raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
-    floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor
-    ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
-    if ratio > MOST_OF_FLOOR / floor:
-        raise BadGeometry(
-            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, "
-            f"which would carry the load; at most {MOST_OF_FLOOR / floor:g}"
-        )
+    behaviour, ratio = _behaviour(mesh, options, bool(constant_loads or options.stages))
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant
     control = control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
@@ -291,13 +321,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         mesh=mesh,
         freedoms=freedoms,
         groups=groups,
-        behaviour=core.Behaviour(
-            options.cracking,
-            options.shear_retention,
-            closure,
-            MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
-            floor,
-        ),
+        behaviour=behaviour,
         constant=constant,
         reference=reference,
         unit=unit,

@@ -112,14 +112,7 @@ def run_stages(
             curve = Curve.stopped(core_model, stage_a)
             curve.name = options.stage_names[0]
             return [curve]
-        core_model.loads(model.constant, np.zeros_like(model.constant), carried=True)
-        wall = Wall(core_model.displacement(0.0), model.constant, core_model.damage(), NOTHING_DONE, 0, supports.held.copy(), [])
-        if stage_a is not None and len(stage_a):
-            wall.ledger = stage_a.ledger
-            wall.events = int(stage_a.number[-1])
-        elif np.any(model.constant):  # they are on, and nothing cracked
-            work = 0.5 * float((model.constant * wall.displacement).sum())
-            wall.ledger = (work, 0.0, 0.0)
+        wall = _under_constant_loads(core_model, supports, stage_a)
     for k, stage in enumerate(options.stages):
         name = options.stage_names[k]
         try:
@@ -177,6 +170,20 @@ def run_stages(
         wall.events = int(events.number[-1])
         wall.loads.append((staged.reference, reached))
     return curves
+
+
+def _under_constant_loads(core_model: core.Model, supports: Supports, stage_a: core.Events | None) -> Wall:
+    """The wall at the start of the first stage; stage_a: events while the constant loads came on."""
+    model = supports.model
+    core_model.loads(model.constant, np.zeros_like(model.constant), carried=True)
+    wall = Wall(core_model.displacement(0.0), model.constant, core_model.damage(), NOTHING_DONE, 0, supports.held.copy(), [])
+    if stage_a is not None and len(stage_a):
+        wall.ledger = stage_a.ledger
+        wall.events = int(stage_a.number[-1])
+    elif np.any(model.constant):  # they are on, and nothing cracked
+        work = 0.5 * float((model.constant * wall.displacement).sum())
+        wall.ledger = (work, 0.0, 0.0)
+    return wall
 
 
 def _stored(core_model: core.Model, staged: SlaModel, applied: np.ndarray, reached: float) -> float:
