@@ -44,6 +44,7 @@ CHAPTERS = (
     "meanings",
     "outputs",
     "joins",
+    "frames",
     "ways",
 )
 for chapter in CHAPTERS:
