@@ -94,12 +94,16 @@ def _scaled(work: Work) -> None:
         return
     curve = found.of(OverLevels)
     low, high = scaled_margin(curve)
-    down = work.rows["rocking"].outcome == "collapses"  # the run under the hazard itself is a factor of 1
-    work.bracket("rocking", low, 1.0 if high is None and down else high)
     words = f"{work.rows['rocking'].parameters}; its margin from {row.parameters}"
     if high is None and low != curve.levels[-1]:
         words += "; at the next factor blocks slide or hinges form elsewhere, so that rocking bounds the margin from below alone"
     work.rows["rocking"] = work.rows["rocking"].model_copy(update={"parameters": words})
+    outcome = work.rows["rocking"].outcome  # the run under the hazard itself is a factor of 1, on contacts where blocks slide
+    if high is None and outcome == "collapses":
+        high = 1.0
+    elif high is None and outcome == "stands":
+        low = max(low or 0.0, 1.0)
+    work.bracket("rocking", low, high)
     if curve.resurrections:
         work.context.warnings.append(
             "Rocking recovers at some factors above the least one that causes collapse. Do not rely on these safe regions."
