@@ -44,14 +44,14 @@ FACADE = '[[analysis]]\nkind = "local-mechanism"\nmechanism = "facade"\nheight =
 
 #: What is wrong, the words of the complaint, and a deck whose wrong line ends in "# here"
 WRONG = {
-    "tie in no stone": ("no stone is at", ARCH + "[[ties]]\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n" + TILT),
+    "tie in no stone": ("no block is at", ARCH + "[[ties]]\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n" + TILT),
     "tie in no stone, rocking": (
-        "no stone is at",
+        "no block is at",
         ARCH + PULSE + "[[ties]]\nstiffness = 1e6\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n" + ROCKING,
     ),
     "both ends of a tie in one stone": ("both of its ends", BLOCK + "[[ties]] # here\nstart = [-0.2, 1.0]\nend = [0.2, 2.0]\n" + TILT),
     "tie of an unknown stone": (
-        "there is no stone 'none'",
+        "there is no block 'none'",
         ARCH + '[[ties]]\nstart = [0.0, 1.0]\nstart_stone = "none" # here\nground = [0.0, 0.0]\n' + TILT,
     ),
     "rigid tie of what rocks": (

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.dem.solid_model import SolidModel, SolidValues
+from extrados.analyses.dem.impact_rules import ContactValues
+from extrados.analyses.dem.solid_model import SolidModel
 from extrados.decks.reader import DeckError
 from extrados.model.geometry.solids.assembly import Stone, assemble
 from extrados.model.geometry.solids.columns import doweled, drums
@@ -158,7 +159,7 @@ def test_dowels_stand_in_the_lower_drum(tmp_path) -> None:
     """And reach into the one above it, whatever the order in which stones and their contact are named."""
     made = doweled(drums(1.0, [0.5, 0.5, 0.5], None, 8, 0.0, 2000.0), 1e3, 0.1)
     turned = replace(made, a=made.b, b=made.a, normal=-made.normal, polygon=[p[::-1] for p in made.polygon])
-    values = SolidValues(*(np.ones(len(made.a)) for _ in range(5)), 1e-3, None)
+    values = ContactValues(*(np.ones(len(made.a)) for _ in range(5)), 1e-3, None)
     for one in (made, turned):
         dowels = SolidModel(one, supports_of(made), values).bodies().dowels
         assert dowels.body.tolist() == [[0, 1], [1, 2]]

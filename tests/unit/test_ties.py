@@ -255,10 +255,10 @@ def test_sweeps_and_surveys_reckon_with_ties() -> None:
 @pytest.mark.parametrize(
     ("tie", "word"),
     [
-        ({"start": [9.0, 9.0], "ground": [0.0, 0.0]}, "no stone is at x = 9"),
+        ({"start": [9.0, 9.0], "ground": [0.0, 0.0]}, "no block is at x = 9"),
         ({"start": [0.0, 3.5], "ground": [0.0, 5.0]}, "lies between 'left', 'right'"),
         ({"start": [-2.5, 0.2], "end": [-2.4, 0.3]}, "both of its ends are in the stone 'left'"),
-        ({"start": [0.0, 3.5], "ground": [0.0, 5.0], "start_stone": "middle"}, "there is no stone 'middle'"),
+        ({"start": [0.0, 3.5], "ground": [0.0, 5.0], "start_stone": "middle"}, "there is no block 'middle'"),
     ],
 )
 def test_anchors_are_named_where_they_are_wrong(tie: dict, word: str) -> None:

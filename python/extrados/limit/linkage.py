@@ -116,7 +116,7 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     parted = f", for it parts all along {_listed(names, mechanism.sliding)}" if mechanism.sliding else ""
     row = _independent(centroid, joined, point, assembly.size, driver, parted)
     made = Linkage(side, part, mass, centroid, inertia, joint, joined, point, row, driver, 1 if spin[driver - 1] > 0.0 else -1)
-    _same_motion(made, assembly, mechanism, spin, fastest)
+    _same_motion(made, assembly, mechanism, fastest)
     return made
 
 
@@ -204,7 +204,7 @@ def _independent(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, si
     return np.column_stack([kept_rows // 2 + 1, kept_rows % 2 + 1])
 
 
-def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: np.ndarray, fastest: float) -> None:
+def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, fastest: float) -> None:
     """CannotRock where the hinges move the parts otherwise than the mechanism found: it must part a joint to move."""
     rows = _jacobian(made.centroid, made.joined, made.point, assembly.size)
     moving = made.part > 0

@@ -59,3 +59,12 @@ class Opening(Table):
         if self.x[0] == self.x[1] or self.y[0] == self.y[1]:
             raise ValueError("an opening needs a width and a height: expected x = [from, to] and y = [from, to]")
         return self
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Left, right, bottom and top [m]."""
+        return self.x[0], self.x[1], self.y[0], self.y[1]
+
+    def is_outside(self, length: float, height: float) -> bool:
+        """Whether it lies beside a wall of these sizes [m]."""
+        return self.x[1] <= 0 or self.x[0] >= length or self.y[1] <= 0 or self.y[0] >= height

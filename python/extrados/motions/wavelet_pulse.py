@@ -21,6 +21,7 @@ _DB4 = np.array(
     ]
 )
 _CENTRE = 5.0 / 7.0  # cycles per unit of the mother wavelet's time, whose support is 7 units
+SHORTEST, LONGEST = 0.25, 15.0  # s: periods of pulses
 _WAVELETS = 10  # of one scale make up the pulse
 LEAST_PGV = 0.30  # m/s
 LIKE = 0.85  # indicator
@@ -62,7 +63,7 @@ def _wavelet(length: int) -> np.ndarray:
     return wave / np.sqrt(wave @ wave)
 
 
-def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, longest: float = 15.0) -> PulseClass:
+def classify(acceleration: np.ndarray, step: float) -> PulseClass:
     """Extract the strongest velocity pulse of an acceleration (points) [m/s^2] and classify the motion by it.
 
     The pulse is the wavelet of the greatest coefficient over all scales and times, and up to nine more of the same
@@ -74,11 +75,11 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     pgv = float(np.abs(velocity).max())
     if pgv == 0.0:
         return _none(velocity, "nothing moves")
-    if step * len(velocity) < 0.1 * shortest:  # a wavelet would have samples without end
+    if step * len(velocity) < 0.1 * SHORTEST:  # a wavelet would have samples without end
         return _none(velocity, f"the motion is over within {step * len(velocity):.3g} s, much before any pulse")
     # energy off the time grid's ends: a wavelet may reach beyond the record
-    top = min(longest, 0.9 * step * len(velocity) * _CENTRE)
-    periods = np.geomspace(shortest, max(top, 1.01 * shortest), 80)
+    top = min(LONGEST, 0.9 * step * len(velocity) * _CENTRE)
+    periods = np.geomspace(SHORTEST, max(top, 1.01 * SHORTEST), 80)
     lengths = np.unique(np.maximum(8, np.round(7.0 * _CENTRE * periods / step).astype(int)))
     best = (0.0, 0, 0)
     for length in lengths:

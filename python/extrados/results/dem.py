@@ -66,8 +66,8 @@ class TieRun(ResultModel):
     state: Literal["slack", "elastic", "yielded"] = fact("without force all along, below its yield force, or at it once")
 
 
-class DemRun(KindResults):
-    """dem: the blocks under a motion."""
+class BlocksRun(KindResults):
+    """What the blocks of a section and those in space have in common under a motion."""
 
     outcome: DemOutcome = fact("no joint opens or slides, joints slide, joints open and the blocks stand, or collapse")
     collapse_criterion: CollapseCriterion | None = fact("criterion of collapse besides the displacement; null without collapse")
@@ -102,8 +102,6 @@ class DemRun(KindResults):
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
     energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
-    restitution_measured: float | None = fact("of a single block: median rate after over before its impacts")
-    restitution_housner: float | None = fact("of a block: the momentum balance", source="Housner 1963")
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
     solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts; these have no stiffness")
@@ -125,12 +123,42 @@ class DemRun(KindResults):
     critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
     animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
-    sensitivity: list[Variation] = maybe("runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
-    friction_threshold: float | None = maybe("least friction at which no joint slides; null where not found")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
-        return _judged_run(self)
+        """The greatest displacement against the one that counts as collapse [m], or the slip against `SLIP_LIMIT` of its joint, whichever
+        is nearer to its limit. Open where blocks still move, slid too far, slid off a footing, or where the response is chaotic."""
+        most, limit, share = self.peak_displacement_m, self.collapse_displacement_m, self.slip_ratio
+        violated = [f"The footing under {name} ends where {name} slides on." for name in self.off_footing] + self.violated
+        unchecked = "" if self.perturbation_growth is not None else " Sensitivity to perturbations of the motion was not checked."
+        if self.outcome == "collapse":
+            how = f"{self.governing_block} collapses by {self.collapse_criterion}"
+            text = f"{how}, and moves farther than the {1e3 * limit:.3g} mm that count as collapse.{unchecked}"
+            return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
+        if self.still_moving:
+            return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
+        slip = (
+            f"Blocks slide by up to {1e3 * self.peak_slip_m:.3g} mm, {100 * share:.3g} % of the joint {self.slipped_joint} (limit "
+            f"{100 * SLIP_LIMIT:g} %, where half of the lever arm to its end is lost), and by {1e3 * self.residual_slip_m:.3g} mm at the end"
+        )
+        if share > SLIP_LIMIT:
+            text = f"{slip}: whether the support that is left suffices is not decided.{unchecked}"
+            return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
+        text = f"No block moves farther than {1e3 * most:.3g} mm; {1e3 * limit:.3g} mm count as collapse."
+        if self.slipped_joint is not None:
+            text += f" {slip}."
+        text += unchecked
+        if share / SLIP_LIMIT > most / limit:
+            return judge(text, share, SLIP_LIMIT, "of the joint", violated=violated)
+        return judge(text, most, limit, "m", "stands" if most < limit else "open", violated=violated)
+
+
+class DemRun(BlocksRun):
+    """dem: the blocks under a motion."""
+
+    restitution_measured: float | None = fact("of a single block: median rate after over before its impacts")
+    restitution_housner: float | None = fact("of a block: the momentum balance", source="Housner 1963")
+    sensitivity: list[Variation] = maybe("runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
+    friction_threshold: float | None = maybe("least friction at which no joint slides; null where not found")
 
 
 #: What the capacity of a tilt test is where blocks slide on joints whose forces statics does not fix
@@ -140,15 +168,8 @@ ONE_PATH = (
 )
 
 
-def _tilted(collapse: float, opposite: float, interval: bool, demand: Demand) -> Verdict:
-    """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]; an estimate that no bound is
-    claimed of where it is one state of an interval."""
-    found = judge_acceleration(min(collapse, opposite), demand)
-    return found.model_copy(update={"statement": f"{found.statement} {ONE_PATH}"}) if interval else found
-
-
-class DemTilt(KindResults):
-    """dem: the constant acceleration that brings the blocks down."""
+class BlocksTilt(KindResults):
+    """What the tilt tests of a section and of blocks in space have in common."""
 
     test: Literal["tilt"] = fact("the test")
     outcome: DemOutcome = fact("collapse occurs, at these accelerations")
@@ -156,11 +177,6 @@ class DemTilt(KindResults):
     collapse_acceleration_opposite_g: float = fact("constant acceleration that causes collapse, applied to -x", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, to -x", "deg")
-    load_direction: Literal["+x"] = fact("sense of the push that the hinges belong to")
-    hinges: list[NamedHinge] = fact("hinges of the mechanism")
-    hinges_opposite: list[NamedHinge] = fact("hinges of the mechanism to -x")
-    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
-    peak_slip_m: float = fact("greatest slip in the mechanism", "m")
     interval: bool = fact(INTERVAL)
     energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
     time_step_s: float = fact("time step", "s")
@@ -171,87 +187,41 @@ class DemTilt(KindResults):
     beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        return _tilted(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.interval, demand)
+        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]; an estimate that no bound is
+        claimed of where it is one state of an interval."""
+        found = judge_acceleration(min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g), demand)
+        return found.model_copy(update={"statement": f"{found.statement} {ONE_PATH}"}) if self.interval else found
 
 
-class SolidDemRun(KindResults):
+class DemTilt(BlocksTilt):
+    """dem: the constant acceleration that brings the blocks down."""
+
+    load_direction: Literal["+x"] = fact("sense of the push that the hinges belong to")
+    hinges: list[NamedHinge] = fact("hinges of the mechanism")
+    hinges_opposite: list[NamedHinge] = fact("hinges of the mechanism to -x")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
+    peak_slip_m: float = fact("greatest slip in the mechanism", "m")
+
+
+class SolidDemRun(BlocksRun):
     """dem: blocks in space under a motion."""
 
-    outcome: DemOutcome = fact("no contact opens or slides, contacts slide, contacts open and the blocks stand, or collapse")
-    collapse_criterion: CollapseCriterion | None = fact("criterion of collapse besides the displacement; null without collapse")
-    governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
-    collapse_time_s: float | None = fact("when the first block collapsed", "s")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
+    slip_ratio: float = fact("greatest slip over the least width of its contact")
     direction_deg: float = fact("direction in plan of the horizontal motion, from +x to +y", "deg")
     horizontal_components: int = fact("2 where a record moves the ground across that direction, too")
-    stopped: str = fact("why the run ended")
-    stopped_by: list[str] = fact("the blocks that ended it")
-    stop_time_s: float = fact("when it ended", "s")
-    still_moving: bool = fact("whether it still moved at the end")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
     dowel_slip_m: float = fact("greatest plastic slip of a dowel, slip during the initial settling under self-weight included", "m")
     dowels_out: int = fact("how many of them came out")
-    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse, unless the block only slides", "m")
-    peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     final_displacement_m: float = fact("greatest displacement of any block at the end", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that still touches", "m")
-    peak_slip_m: float = fact("greatest slip of contacts that still touch", "m")
-    residual_slip_m: float = fact("greatest slip of contacts at the end", "m")
-    slip_ratio: float = fact("greatest slip over the least width of its contact")
-    slip_limit_ratio: float = fact(
-        "limit of that ratio (0.25): beyond it more than half of the lever arm to the end of the joint is lost, and the verdict is open"
-    )
-    slipped_joint: str | None = fact("joint of that ratio; null if no joint slides by 1 %")
-    off_footing: list[str] = fact("blocks that slid beyond their footings, without a named floor")
-    decided_by_last_digits: bool = fact(
-        "chaotic response: under the motion times 1 + 1e-6 the displacements differ by more than a hundredth of the one that counts "
-        "as collapse, or only one of both runs collapses; beyond a thousandth, also under motions up to 1e-4 apart; false without this check"
-    )
-    perturbation_growth: float | None = fact(
-        "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
-        "that perturbation, until collapse; null where this was not checked"
-    )
-    perturbed_outcome: str | None = fact("outcome under the motion times 1 + 1e-6; null where this was not checked")
-    violated: list[str] = fact("assumptions that were checked and do not hold: no chaos, a sentence each")
-    peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
-    friction_loss_J: float = fact("energy lost in friction", "J")
-    damping_loss_J: float = fact("energy lost in damping", "J")
-    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
-    bounces: int = fact("times that blocks left the ground or each other")
-    airborne_time_s: float = fact("longest time that a block was without contact", "s")
-    solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones; these have no stiffness")
-    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
-    convergence: Convergence | None = maybe("of rigid contacts")
-    joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the contacts", "Pa/m")
-    joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the contacts", "Pa/m")
-    beta_s: float | None = fact("stiffness-proportional damping", "s")
-    damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints", source="thesis Eq. 7.13"
-    )
-    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
-    damping_ratio_edge: float | None = fact(
-        "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
-    )
-    steps: int = fact("time steps")
-    settling_steps: int = fact("time steps until the building settled under its weight")
-    time_step_s: float = fact("time step", "s")
-    critical_step_s: float | None = fact("greatest stable time step", "s")
-    contact_searches: int = fact("searches for contacts")
-    animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
-
-    def judged(self, demand: Demand) -> Verdict:
-        """As of a plane run."""
-        return _judged_run(self)
 
 
-class SolidDemTilt(KindResults):
+class SolidDemTilt(BlocksTilt):
     """dem: the constant acceleration along a direction that brings blocks in space down."""
 
-    test: Literal["tilt"] = fact("the test")
-    outcome: DemOutcome = fact("collapse occurs, at these accelerations")
     collapse_acceleration_g: float = fact("constant acceleration that causes collapse, applied along the direction", "g")
     collapse_acceleration_opposite_g: float = fact("collapse acceleration in the opposite direction", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg")
@@ -261,46 +231,6 @@ class SolidDemTilt(KindResults):
     contacts: int = fact("polygons along which they touch")
     opening_contacts: list[str] = fact("contacts that gape or slide as it begins to go, at most 20, the widest first")
     opening_contacts_opposite: list[str] = fact("contacts that open under the opposite direction")
-    interval: bool = fact(INTERVAL)
-    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
-    time_step_s: float = fact("time step", "s")
-    steps: int = fact("time steps of the last run")
-    solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones")
-    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
-    convergence: Convergence | None = maybe("of rigid contacts, in the last runs of both senses")
-    beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
-
-    def judged(self, demand: Demand) -> Verdict:
-        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        return _tilted(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.interval, demand)
-
-
-def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
-    """The greatest displacement against the one that counts as collapse [m], or the slip against `SLIP_LIMIT` of its joint, whichever
-    is nearer to its limit. Open where blocks still move, slid too far, slid off a footing, or where the response is chaotic."""
-    most, limit, share = run.peak_displacement_m, run.collapse_displacement_m, run.slip_ratio
-    violated = [f"The footing under {name} ends where {name} slides on." for name in run.off_footing] + run.violated
-    unchecked = "" if run.perturbation_growth is not None else " Sensitivity to perturbations of the motion was not checked."
-    if run.outcome == "collapse":
-        how = f"{run.governing_block} collapses by {run.collapse_criterion}"
-        text = f"{how}, and moves farther than the {1e3 * limit:.3g} mm that count as collapse.{unchecked}"
-        return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
-    if run.still_moving:
-        return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
-    slip = (
-        f"Blocks slide by up to {1e3 * run.peak_slip_m:.3g} mm, {100 * share:.3g} % of the joint {run.slipped_joint} (limit "
-        f"{100 * SLIP_LIMIT:g} %, where half of the lever arm to its end is lost), and by {1e3 * run.residual_slip_m:.3g} mm at the end"
-    )
-    if share > SLIP_LIMIT:
-        text = f"{slip}: whether the support that is left suffices is not decided.{unchecked}"
-        return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
-    text = f"No block moves farther than {1e3 * most:.3g} mm; {1e3 * limit:.3g} mm count as collapse."
-    if run.slipped_joint is not None:
-        text += f" {slip}."
-    text += unchecked
-    if share / SLIP_LIMIT > most / limit:
-        return judge(text, share, SLIP_LIMIT, "of the joint", violated=violated)
-    return judge(text, most, limit, "m", "stands" if most < limit else "open", violated=violated)
 
 
 Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
@@ -374,12 +304,13 @@ class DemDomain(KindResults):
                     capacity,
                     "s",
                 )
-        failing = [t for t in self.shortest_durations_s if t is not None]
-        if not failing:
-            return judge("None of the calculated pulses causes collapse.", None, None, "s")
-        return judge(
-            f"Of the {self.pulse} calculated pulses the shortest that causes collapse lasts {min(failing):.3g} s.", None, min(failing), "s"
+        least = min((t for t in self.shortest_durations_s if t is not None), default=None)
+        text = (
+            "None of the calculated pulses causes collapse."
+            if least is None
+            else f"Of the {self.pulse} calculated pulses the shortest that causes collapse lasts {least:.3g} s."
         )
+        return judge(text, None, least, "s")
 
 
 class DemParameters(KindResults):

@@ -292,16 +292,13 @@ class FailureDomain(KindResults):
                     "g",
                     violated=self._violated(duration, amplitude),
                 )
-        failing = [a for a in curve if a is not None]
-        if not failing:
-            return judge("None of the calculated pulses causes collapse.", None, None, "g", violated=self.conditions.violated)
-        return judge(
-            f"Over the {self.pulse} pulses that were run the lowest amplitude that causes collapse is {min(failing):.3g} g.",
-            None,
-            min(failing),
-            "g",
-            violated=self.conditions.violated,
+        least = min((a for a in curve if a is not None), default=None)
+        text = (
+            "None of the calculated pulses causes collapse."
+            if least is None
+            else f"Over the {self.pulse} pulses that were run the lowest amplitude that causes collapse is {least:.3g} g."
         )
+        return judge(text, None, least, "g", violated=self.conditions.violated)
 
 
 class MotionImpulse(ResultModel):

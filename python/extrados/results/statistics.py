@@ -390,13 +390,10 @@ class HarmonicMap(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""
-        failing = [a for a in self.lowest_overturning_amplitude_g if a is not None]
-        if not failing:
-            return judge("No harmonic motion of the map causes collapse.", None, None, "g", violated=self.conditions.violated)
-        return judge(
-            f"The lowest harmonic amplitude that causes collapse is {min(failing):.3g} g.",
-            None,
-            min(failing),
-            "g",
-            violated=self.conditions.violated,
+        least = min((a for a in self.lowest_overturning_amplitude_g if a is not None), default=None)
+        text = (
+            "No harmonic motion of the map causes collapse."
+            if least is None
+            else f"The lowest harmonic amplitude that causes collapse is {least:.3g} g."
         )
+        return judge(text, None, least, "g", violated=self.conditions.violated)

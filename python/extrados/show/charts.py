@@ -135,6 +135,17 @@ class Shown:
         self.out |= {"body_time": time, "body_pose": pose, **{f"body_{k}": v for k, v in lines.items()}}
         self.body = {"sort": "stones", "unit": unit, "label": label, "line": "line" in lines}
 
+    def _mechanism(self, pose: str, label: str) -> None:
+        """A body of stones that moves from rest to the stored pose (blocks, 3)."""
+        rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
+        share = np.linspace(0.0, 1.0, 24)
+        self._moving(share, rest + share[:, None, None] * (self.arrays[pose] - rest), "", label)
+
+    def _blocks(self, time: np.ndarray, pose: np.ndarray, **body: Any) -> None:
+        """Blocks in space that move along `time` by poses (times, blocks, 6)."""
+        self.out |= {name: self.arrays[source] for name, source in SOLIDS.items()} | {"body_time": time, "pose": pose}
+        self.body = {"sort": "space", **body}
+
     def _lines(self, *names: str) -> list[dict[str, str]]:
         """Stored lines of thrust, of states that are named."""
         words = {"collapse": "at collapse, load to +x", "least": "least thrust", "most": "greatest thrust", "central": "most central"}
@@ -149,10 +160,8 @@ class Shown:
 
     def _solids(self) -> None:
         """Blocks in space that move along a mechanism, and what they bear over the direction."""
-        for name, source in SOLIDS.items():
-            self.out[name] = self.arrays[source]
-        self.out |= {"body_time": np.linspace(0.0, 1.0, 24), "pose": self.arrays["mechanism_pose"]}
-        self.body = {"sort": "space", "unit": "", "label": "mechanism", "swings": True, "push": self._results.load_direction_deg}
+        share, pose = np.linspace(0.0, 1.0, 24), self.arrays["mechanism_pose"]
+        self._blocks(share, pose, unit="", label="mechanism", swings=True, push=self._results.load_direction_deg)
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
             self._draw(
@@ -220,12 +229,9 @@ class Shown:
             self._solids()
             return
         self._stones()
-        rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
         lines = self._lines("collapse", "least", "most")
         if "mechanism_pose" in self.arrays:
-            share = np.linspace(0.0, 1.0, 24)[:, None, None]
-            self.out["body_time"] = share[:, 0, 0]
-            self.out["body_pose"] = rest + share * (self.arrays["mechanism_pose"] - rest)
+            self._mechanism("mechanism_pose", "mechanism")
         self.body = {"sort": "stones", "unit": "", "label": "mechanism", "lines": lines, "swings": True}
         if "collapse_friction" in self.arrays:
             self.out["joint"] = np.arange(len(self.arrays["collapse_friction"]))
@@ -279,25 +285,20 @@ class Shown:
             if "support_outline" in self.arrays:
                 self.send("support_outline", "support_start")
         elif "solid_vertex" in self.arrays:
-            for name, source in SOLIDS.items():
-                self.out[name] = self.arrays[source]
-            self.out |= {"body_time": time[keep], "pose": self.arrays["pose"][keep]}
-            self.body = {"sort": "space", "unit": "s", "label": "time", "over_time": True}
+            self._blocks(time[keep], self.arrays["pose"][keep], unit="s", label="time", over_time=True)
         fine = self._over_time(len(time))
         self.out["time"] = time[fine]
         axis = _axis("time", "time", "s")
+        rows = []
         if "turn" in self.arrays:  # of blocks in space: by how much, whatever the axis
-            rows = []
             for i in self.arrays["tracked"][:6].tolist():
                 self.out[f"turn_{i}"] = np.linalg.norm(self.arrays["turn"][fine, i], axis=1)
                 rows.append(_series(f"turn_{i}", f"stone {i + 1}", factor=1e3))
-            self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
-        if "rotation" in self.arrays:
-            tracked = self.arrays["tracked"][:6]
-            rows = []
-            for i, label in zip(tracked.tolist(), self._results.peak_rotation_rad, strict=False):
+        elif "rotation" in self.arrays:
+            for i, label in zip(self.arrays["tracked"][:6].tolist(), self._results.peak_rotation_rad, strict=False):
                 self.out[f"rotation_{i}"] = self.arrays["rotation"][fine, i]
                 rows.append(_series(f"rotation_{i}", label, factor=1e3))
+        if rows:
             self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
         if "ground" in self.arrays:
             self.out["ground"] = self.arrays["ground"][fine]
@@ -323,9 +324,7 @@ class Shown:
             movement, pose = self.arrays[f"{which}_movement"], self.arrays[f"{which}_pose"]
             self._moving(1e3 * movement, pose, "mm", "movement", line=self.arrays[f"{which}_{line}"])
         elif "settled_pose" in self.arrays:
-            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
-            share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement")
+            self._mechanism("settled_pose", "share of the movement")
 
     def sla(self) -> None:
         """The load curve, and the wall as it cracks."""
@@ -490,9 +489,7 @@ class Shown:
             [_series("capacity", "capacity", factor=1e-3)],
         )
         if "mechanism_pose" in self.arrays and "outline" in self.arrays:
-            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
-            share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["mechanism_pose"] - rest), "", "mechanism")
+            self._mechanism("mechanism_pose", "mechanism")
 
     def assessment(self) -> None:
         """The motion, and its primary impulses beside the pulses that bring the structure down."""

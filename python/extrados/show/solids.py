@@ -71,7 +71,7 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
         for ax, solids, colours in ((axes[0], stones, plain), (axes[1], moved, SPEED(speed)[:, :3])):
             scene.show(ax, scene.picture(solids, VIEW, frame, colours), frame)
             scene.ground(ax, stones.vertices, VIEW)
-            scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg if ax is axes[1] else None)
+            scene.compass(ax, VIEW, r.load_direction_deg if ax is axes[1] else None)
             if ax is axes[0] and len(strands):
                 ax.add_collection(LineCollection(list(strands), colors=TIE, linewidths=1.6, zorder=3))
         x, y, z = np.ptp(stones.vertices, axis=0)
@@ -120,7 +120,7 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         image[..., 3] *= 0.75
         scene.show(ax, image, frame)
         scene.ground(ax, stones.vertices, VIEW)
-        scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
+        scene.compass(ax, VIEW, r.load_direction_deg)
         ax.add_collection(
             LineCollection(list(np.stack([middle - half, middle + half], axis=1)), colors=style.THRUST, linewidths=1.1, zorder=3)
         )
@@ -147,7 +147,7 @@ def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float
         scene.show(ax, scene.picture(stones, VIEW, frame, colours, FILM_PIXELS), frame)
         (drawn,) = ax.images
         scene.ground(ax, stones.vertices, VIEW)
-        scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
+        scene.compass(ax, VIEW, r.load_direction_deg)
         ax.set_title(_title(r))
 
         def draw(k: int) -> None:

@@ -97,7 +97,7 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
     ]
 
 
-def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = None, state: str = "LS", edition: str = "13") -> list[Line]:
+def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = None, state: str = "LS") -> list[Line]:
     """Height over thickness up to which no out-of-plane check is required, and that of parapets; s_x1, s_xs: spectral acceleration at 1 s
     and of short periods [m/s^2]."""
     slender = None if part.height is None or part.thickness is None else part.height / part.thickness
@@ -120,7 +120,7 @@ def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = Non
             None if limit is None else float(limit),
             slender,
             "",
-            f"ASCE 41-{edition} 11.3.3.3 Table 11-5 (verify clause)",
+            "ASCE 41-13 11.3.3.3 Table 11-5 (verify clause)",
             f"{storey}, {told}",
             "ASCE 41",
             scope="wall between anchored diaphragms; held at foot and top; any storey",
@@ -133,7 +133,7 @@ def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = Non
             most,
             slender,
             "",
-            f"ASCE 41-{edition} 13.6.5: h/t at most 2.5 at life safety in low and moderate seismicity, else 1.5 (verify clause)",
+            "ASCE 41-13 13.6.5: h/t at most 2.5 at life safety in low and moderate seismicity, else 1.5 (verify clause)",
             f"{told}, {'high' if high else 'low or moderate'} seismicity" if s_x1 is not None else told,
             "ASCE 41",
             scope="parapet of unreinforced masonry, laterally unsupported; on a building",

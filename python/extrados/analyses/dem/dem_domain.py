@@ -10,10 +10,11 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import measures, solid_settlement
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.from_deck import make_model
+from extrados.analyses.dem.impact_rules import ContactValues
 from extrados.analyses.dem.job import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.settlement import farthest_settlement
-from extrados.analyses.dem.solid_model import SolidModel, SolidValues, make_solid_model
+from extrados.analyses.dem.solid_model import SolidModel, make_solid_model
 from extrados.analyses.dem.standing import compared
 from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.dem.trial import start
@@ -44,7 +45,7 @@ class Curve:
     """What is asked of one set of joints and one solver."""
 
     label: str
-    values: JointValues | SolidValues
+    values: ContactValues
     rigid: bool = False
 
 
@@ -54,7 +55,7 @@ class Search:
     def __init__(self, context: Context, options: DemDomain, model: Model | SolidModel, curves: list[Curve], rounds: float):
         self.context, self.options, self.model, self.curves = context, options, model, curves
         self.settle = options.settle or dem_model.settle_time(model)
-        self.collapse = measures.Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
+        self.collapse = measures.Collapse.of(options.collapse_displacement, model.size)
         self.job = _of_section(self, model) if isinstance(model, Model) else _of_solids(self, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
         self.residual, self.steps, self.effort = 0.0, 0, dem_run.NO_EFFORT

@@ -7,7 +7,8 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
-from extrados.analyses.dem.solid_model import SolidModel, SolidValues
+from extrados.analyses.dem.impact_rules import ContactValues
+from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import DemTable
 from extrados.analyses.dem.ties import NO_TIES, ElementTies
 from extrados.core import dem, dem_run
@@ -22,16 +23,9 @@ Found = TypeVar("Found", bound=dem_run.FoundRun)
 
 
 @dataclass(frozen=True)
-class JointValues:
-    """Properties of all joints of an assembly (joints,), SI, and the damping constant beta [s]."""
+class JointValues(ContactValues):
+    """Properties of all joints of an assembly, and their lengths (joints,) [m]."""
 
-    stiffness: np.ndarray
-    shear_stiffness: np.ndarray
-    friction: np.ndarray
-    cohesion: np.ndarray
-    tension: np.ndarray
-    beta: float
-    impact: impact_rules.Impact
     length: np.ndarray
 
     def scaled(self, stiffness: float = 1.0, damping: float = 1.0, friction: float | None = None) -> "JointValues":
@@ -47,15 +41,6 @@ class JointValues:
             friction=self.friction if friction is None else np.full_like(self.friction, friction),
         )
 
-    @property
-    def settle_damping(self) -> float:
-        """beta that is critical at edge impact, by which joints are damped until all rests under its own weight [s]."""
-        return impact_rules.damping_constant(float(self.impact.edge.max()), 1.0)
-
-    def ratios(self) -> dict[str, float]:
-        """Least fraction of critical damping over the joints at each impact frequency."""
-        return {name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min()) for name in ("rotation", "corner", "edge")}
-
 
 @dataclass(frozen=True)
 class Model:
@@ -65,6 +50,16 @@ class Model:
     rigid: RigidBodies
     values: JointValues
     ties: ElementTies = NO_TIES
+
+    @property
+    def count(self) -> int:
+        """Mobile bodies."""
+        return self.rigid.count
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Masses of the bodies [kg]."""
+        return self.rigid.mass
 
     @property
     def body_names(self) -> list[str]:
@@ -160,7 +155,7 @@ def adjusted(model: Model) -> list[str]:
     return found
 
 
-def doubts_of_springs(values: JointValues | SolidValues) -> list[str]:
+def doubts_of_springs(values: ContactValues) -> list[str]:
     """Warnings that impacts are damped too little, and that mortar bears more in bending than an elastic joint."""
     ratio, found = values.ratios(), []
     if np.nanmax(values.tension, initial=0.0) > 0.0:

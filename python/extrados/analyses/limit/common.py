@@ -193,7 +193,7 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
     }
 
 
-def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Array]:
+def push_arrays(assembly: Assembly, state: State) -> dict[str, Array]:
     """The passive pressures that a state mobilises: where they act and how much; nothing where none counts."""
     earth = assembly.earth
     push = None if earth is None else passive_pressure(earth, assembly.depth, assembly.centroid)

@@ -304,7 +304,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),
-        **push_arrays(assembly, dead, state),
+        **push_arrays(assembly, state),
         **load_arrays(assembly, options.load),
         **tie_arrays(building, dead, {"collapse": state}),
         **zone_arrays(assembly, state, job.strength),

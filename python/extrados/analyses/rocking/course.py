@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.core.rocking import Outcome
+from extrados.core import rocking
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -18,37 +18,7 @@ LARGEST = 20_000_000
 ROOM = 20_000
 
 
-class Response(Protocol):
-    """A response of the core: series over `time` [s], accelerations of the ground [m/s^2], energies and work [J], events (kind, time,
-    value)."""
-
-    @property
-    def outcome(self) -> Outcome: ...
-    @property
-    def stop_time(self) -> float: ...
-    @property
-    def steps(self) -> int: ...
-    @property
-    def time(self) -> np.ndarray: ...
-    @property
-    def ground(self) -> np.ndarray: ...
-    @property
-    def vertical(self) -> np.ndarray: ...
-    @property
-    def kinetic(self) -> np.ndarray: ...
-    @property
-    def ledger(self) -> np.ndarray: ...
-    @property
-    def events(self) -> Any: ...
-    @property
-    def events_found(self) -> int: ...
-    @property
-    def work(self) -> float: ...
-    @property
-    def interrupted(self) -> bool: ...
-
-
-R = TypeVar("R", bound=Response)
+R = TypeVar("R", bound=rocking.Course)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,12 +70,12 @@ def keep_events(rock: Callable[[int], R]) -> R:
         room = response.events_found
 
 
-def impact_times(r: Response) -> list[float]:
+def impact_times(r: rocking.Course) -> list[float]:
     """Times of the impacts [s]."""
     return [t for kind, t, _ in r.events if kind == "impact"]
 
 
-def build_result(context: Context, r: Response, course: Course, **further: Any) -> Result:
+def build_result(context: Context, r: rocking.Course, course: Course, **further: Any) -> Result:
     """Results, tables and arrays that every rocking structure has; further: results of this structure, before those of all."""
     fell = r.outcome == "collapse"
     result = Result("rocking", status="interrupted" if r.interrupted else "ok")
@@ -154,7 +124,7 @@ def build_result(context: Context, r: Response, course: Course, **further: Any) 
     return result
 
 
-def _table(r: Response, course: Course) -> TableData:
+def _table(r: rocking.Course, course: Course) -> TableData:
     """The history as a table."""
     columns = {
         "time": (r.time, "s"),

@@ -305,7 +305,7 @@ class Fates:
         options, model = Dem(kind="dem", solver="nonsmooth", floor=contacts.floor), contacts.model
         step = COARSE * contacts.leaving.time_unit
         asked = core_options(context, options, model)
-        collapse = Collapse.of(0.2 * model.size, model.size)
+        collapse = Collapse.of(None, model.size)
         brief = replace(asked, end_time=dem_model.settle_time(model), output_step=step, stop_at_rest=True)
         return cls(contacts, brief, collapse)
 
@@ -315,7 +315,7 @@ class Fates:
         options = replace(
             self.options, settle_damping=model.values.settle_damping, end_time=dem_model.settle_time(model), domain=domain_of(model)
         )
-        return Fates(contacts, options, Collapse.of(0.2 * model.size, model.size))
+        return Fates(contacts, options, Collapse.of(None, model.size))
 
     def follow(self, ground: Ground, scale: float, end: float, threads: int = 1) -> Fate:
         """The run of a motion times a factor, whose mechanism is followed until `end` [s]; its outcome is UNKNOWN where contacts have no

@@ -283,7 +283,7 @@ def bring_on_constant_loads(
     if np.any(model.constant) and not (found is not None and found.interrupted):
         _settled(core_model, model)
         core_model.loads(model.constant, np.zeros_like(model.constant))
-        far = float(np.abs(core_model.displacement(0.0)[:, : model.dimensions]).max())
+        far = float(np.abs(core_model.displacement(0.0)[:, : model.place.shape[1]]).max())
         if not far <= FAR * model.extent:
             raise NotCarried(
                 f"the constant loads are not carried: under them the structure would move by {far:.3g} m, more than a tenth "

@@ -4,7 +4,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -31,49 +31,12 @@ MOST_CHANGES_OF_JOINTS = 1000
 FLOOR_OF_JOINTS = 1e-11
 
 
+@dataclass(kw_only=True)
 class EventModel(ABC):
-    """What the event loop takes from a model: a wall in its plane, or a building of shells."""
+    """What the event loop takes from a model: a wall in its plane, or a building of shells. constant, reference: nodal forces (nodes,
+    2 or 6) [N]; unit: resultant of the reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
 
-    if TYPE_CHECKING:
-        mesh: Mesh | ShellMesh
-        behaviour: core.Behaviour
-        constant: np.ndarray
-        reference: np.ndarray
-        unit: float
-        control: core.Monitor
-        mechanism_ratio: float
-        acceleration: float | None
-        already: float
-        settled: np.ndarray
-
-        @property
-        def dimensions(self) -> int: ...
-        @property
-        def extent(self) -> float: ...
-        @property
-        def reach(self) -> float: ...
-        @property
-        def driven(self) -> bool: ...
-        @property
-        def watched(self) -> list[core.Monitor]: ...
-        @property
-        def slides(self) -> bool: ...
-        @property
-        def continues(self) -> bool: ...
-        @property
-        def steps_alone(self) -> bool: ...
-
-    @abstractmethod
-    def open(self, options: Any, threads: int) -> core.Model:
-        """The model in the core; Refused names a free node or a bad element."""
-
-
-@dataclass
-class SlaModel(EventModel):
-    """A wall or stones ready for the core. constant, reference: nodal forces (nodes, 2) [N]; unit: resultant of the
-    reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
-
-    mesh: Mesh
+    mesh: Mesh | ShellMesh
     freedoms: core.Freedoms
     groups: list[core.Group]
     behaviour: core.Behaviour
@@ -81,21 +44,91 @@ class SlaModel(EventModel):
     reference: np.ndarray
     unit: float
     control: core.Monitor
-    bands: list[np.ndarray]  # crack band of the elements of each plane group before they crack [m]
-    point_xy: np.ndarray  # (points, 2) of the plane groups [m]
     mechanism_ratio: float  # growth of the compliance that ends a run
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
-    moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
     already: float = 0.0  # reference load that stages before have left on [N]
-    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # supports that go down with A, as of a building [m]
-    bars: list[NamedBar] = field(default_factory=list)
+    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each support has settled, with the constant loads [m]
 
-    dimensions = 2
+    @property
+    @abstractmethod
+    def place(self) -> np.ndarray:
+        """Places of the nodes (nodes, 2 or 3) [m]."""
+
+    @property
+    @abstractmethod
+    def point_count(self) -> int:
+        """Integration points that threads share."""
+
+    @property
+    @abstractmethod
+    def reach(self) -> float:
+        """Extent over which a drift is counted [m]."""
+
+    @property
+    @abstractmethod
+    def driven(self) -> bool:
+        """Whether the multiplier moves supports."""
+
+    @property
+    def watched(self) -> list[core.Monitor]:
+        """What is recorded at each event."""
+        return [self.control]
+
+    @property
+    def slides(self) -> bool:
+        """Whether a joint has a coefficient of friction."""
+        return any(isinstance(g, core.Joints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
+
+    @property
+    def continues(self) -> bool:
+        """Whether equilibrium iterations may follow the structure."""
+        return True
+
+    @property
+    def steps_alone(self) -> bool:
+        """Whether they follow it from the first load on."""
+        return False
+
+    @abstractmethod
+    def refuse_free(self, error: core.FreeNode) -> Refused:
+        """The refusal of a node that nothing holds."""
 
     @property
     def extent(self) -> float:
         """Greatest extent of the structure [m]."""
-        return float(np.ptp(self.mesh.xy, axis=0).max())
+        return float(np.ptp(self.place, axis=0).max())
+
+    def open(self, options: Any, threads: int) -> core.Model:
+        """The model in the core; Refused names a free node or a bad element."""
+        # Below this many points a thread costs more than it saves; results are the same for any number
+        threads = max(1, min(threads, self.point_count // POINTS_PER_THREAD))
+        try:
+            return core.Model(self.place, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads)
+        except core.FreeNode as error:
+            raise self.refuse_free(error) from None
+        except core.BadElement as error:
+            raise Refused(str(error), ("structure",)) from None
+
+
+@dataclass(kw_only=True)
+class SlaModel(EventModel):
+    """A wall or stones ready for the core."""
+
+    mesh: Mesh
+    bands: list[np.ndarray]  # crack band of the elements of each plane group before they crack [m]
+    point_xy: np.ndarray  # (points, 2) of the plane groups [m]
+    moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
+    bars: list[NamedBar] = field(default_factory=list)
+
+    @property
+    def place(self) -> np.ndarray:
+        """Places of the nodes (nodes, 2) [m]."""
+        return self.mesh.xy
+
+    @property
+    def point_count(self) -> int:
+        """Integration points of the plane groups."""
+        return len(self.point_xy)
 
     @property
     def reach(self) -> float:
@@ -119,36 +152,19 @@ class SlaModel(EventModel):
         return [group for group in self.groups if isinstance(group, core.Plane | core.Joints)]
 
     @property
-    def slides(self) -> bool:
-        """True where a joint has a coefficient of friction."""
-        return any(isinstance(g, core.Joints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
-
-    @property
     def continues(self) -> bool:
         """Whether equilibrium iterations may follow the wall: dry joints end in the mechanism of limit analysis by events."""
         joints = [g for g in self.groups if isinstance(g, core.Joints)]
         return not joints or any(g.tension is not None or g.cohesion is not None for g in joints)
 
-    @property
-    def steps_alone(self) -> bool:
-        """Whether they follow it from the first load on."""
-        return False
-
-    def open(self, options: Sla, threads: int) -> core.Model:
-        """The model in the core; Refused names a free node or a bad element."""
-        # Below this many points a thread costs more than it saves; results are the same for any number
-        threads = max(1, min(threads, len(self.point_xy) // POINTS_PER_THREAD))
-        try:
-            return core.Model(self.mesh.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads)
-        except core.FreeNode as error:
-            x, y = self.mesh.xy[error.node]
-            raise Refused(
-                f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
-                f"{error.direction}; {_coincident(self.mesh) or 'add supports'}",
-                ("supports", "held"),
-            ) from None
-        except core.BadElement as error:
-            raise Refused(str(error), ("structure",)) from None
+    def refuse_free(self, error: core.FreeNode) -> Refused:
+        """The refusal of a node that nothing holds."""
+        x, y = self.mesh.xy[error.node]
+        return Refused(
+            f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
+            f"{error.direction}; {_coincident(self.mesh) or 'add supports'}",
+            ("supports", "held"),
+        )
 
 
 def _coincident(mesh: Mesh) -> str:
@@ -272,24 +288,24 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     growing = reference if not options.stages else constant
     control = control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
     return SlaModel(
-        mesh,
-        freedoms,
-        groups,
-        core.Behaviour(
+        mesh=mesh,
+        freedoms=freedoms,
+        groups=groups,
+        behaviour=core.Behaviour(
             options.cracking,
             options.shear_retention,
             closure,
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
             floor,
         ),
-        constant,
-        reference,
-        unit,
-        control,
-        bands,
-        np.concatenate(points),
-        ratio,
-        acceleration_of(reference_loads),
+        constant=constant,
+        reference=reference,
+        unit=unit,
+        control=control,
+        bands=bands,
+        point_xy=np.concatenate(points),
+        mechanism_ratio=ratio,
+        acceleration=acceleration_of(reference_loads),
         bars=named,
     )
 

@@ -123,7 +123,7 @@ def cap_for_collapse_within(model: BlockModel, ratio: float, half_cycles: int) -
 def run(context: Context, options: Resonance) -> Result:
     """Fig. 6-2 for a block or an arch; Figs 6-3 and 6-4 for a block."""
     model = rocker_of(context, options)
-    cap = options.cap or _default_cap(context, options, model)
+    cap = options.cap or _default_cap(context, model)
     optimum = optimal_motion(model, cap, _start(context), options.half_cycles)
     r = optimum.response
     result = Result("resonance")
@@ -178,7 +178,7 @@ def _start(context: Context) -> float:
     return abs(context.building.initial.rotation_ratio) or START
 
 
-def _default_cap(context: Context, options: Resonance, model: Rocker) -> float:
+def _default_cap(context: Context, model: Rocker) -> float:
     """A little above the least cap, so that the growth is seen; half of uplift where that is not known."""
     if not isinstance(model.model, BlockModel):
         return 0.5 * model.uplift * GRAVITY

@@ -186,10 +186,9 @@ def _joints(wall: _Units, size: float) -> list[tuple[str, np.ndarray, np.ndarray
     return joints
 
 
-class Laid(Table):
-    """Keys of walls that are laid in running bond."""
+class Bonded(Table):
+    """Keys of walls in running bond, in a plane or around corners."""
 
-    openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course; courses alternate")
     lintels: bool = key(True, "a stone over each opening; without it the units above rest on the units beside the opening")
     lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
@@ -200,15 +199,21 @@ class Laid(Table):
         """How this wall is laid, of a unit [m]."""
         return Bond(unit_length, unit_height, self.begins, self.lintels, self.lintel_height, self.lintel_bearing, self.least_unit)
 
+
+class Laid(Bonded):
+    """Keys of plane walls that are laid in running bond."""
+
+    openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
+
     @property
     def holes(self) -> list[Box]:
         """The openings [m]."""
-        return [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in self.openings]
+        return [o.box for o in self.openings]
 
     def check_openings(self, length: float, height: float) -> None:
         """ValueError names an opening that lies beside the wall [m]."""
         for o in self.openings:
-            if o.x[1] <= 0 or o.x[0] >= length or o.y[1] <= 0 or o.y[0] >= height:
+            if o.is_outside(length, height):
                 raise ValueError(f"the opening x {o.x}, y {o.y} lies outside the wall")
 
 

@@ -12,7 +12,7 @@ from extrados.model.geometry.boxes import Box, openings_within
 from extrados.model.geometry.solids.assembly import MOST_SOLIDS, SolidAssembly, Stone, assemble
 from extrados.model.geometry.solids.polyhedra import Polyhedron, box
 from extrados.model.places import Opening
-from extrados.model.structures.brickwork import Bond, laid, levels_of, lintels_of
+from extrados.model.structures.brickwork import Bond, Bonded, laid, levels_of, lintels_of
 from extrados.model.structures.spatial import Spatial
 from extrados.schema.quantities import Length
 from extrados.schema.table import Table, key
@@ -127,7 +127,7 @@ def _placed(start: np.ndarray, way: np.ndarray, thickness: float) -> Callable[[B
     return place
 
 
-class Wall(Spatial):
+class Wall(Bonded, Spatial):
     """Walls one unit thick in running bond, with openings and lintels, around corners that the courses pass in turn."""
 
     word: ClassVar = "wall"
@@ -150,10 +150,6 @@ class Wall(Spatial):
     )
     closed: bool = key(False, "whether the last leg meets the first, as around a courtyard; then all corners are to the left")
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end")
-    lintels: bool = key(True, "a stone over each opening")
-    lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
-    lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default half a unit", gt=0)
-    least_unit: float = key(0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5)
 
     @model_validator(mode="after")
     def _sensible(self) -> "Wall":
@@ -164,13 +160,12 @@ class Wall(Spatial):
             if len(self.legs) > 1 and leg.length < 2.0 * self.thickness:
                 raise ValueError(f"legs: leg {i} is {leg.length:g} m long, less than two thicknesses of {self.thickness:g} m")
             for o in leg.openings:
-                if o.x[1] <= 0 or o.x[0] >= leg.length or o.y[1] <= 0 or o.y[0] >= self.height:
+                if o.is_outside(leg.length, self.height):
                     raise ValueError(f"legs: the opening x {o.x}, y {o.y} lies outside leg {i}")
         if self.closed and len(self.legs) < 4:
             raise ValueError(f"closed needs four legs at least, found {len(self.legs)}")
         return self
 
     def solids(self, density: float) -> SolidAssembly:
-        bond = Bond(self.unit_length, self.unit_height, self.begins, self.lintels, self.lintel_height, self.lintel_bearing, self.least_unit)
-        legs = [(leg.length, leg.turn == "left", [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in leg.openings]) for leg in self.legs]
-        return make_wall(bond, self.thickness, self.height, legs, self.closed, density)
+        legs = [(leg.length, leg.turn == "left", [o.box for o in leg.openings]) for leg in self.legs]
+        return make_wall(self.bond(self.unit_length, self.unit_height), self.thickness, self.height, legs, self.closed, density)

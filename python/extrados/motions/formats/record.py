@@ -129,9 +129,9 @@ class Lines:
                 "or delete the last line",
             )
 
-    def blanks(self, start: int, stop: int | None = None) -> list[tuple[int, list[str]]]:
+    def blanks(self, start: int) -> list[tuple[int, list[str]]]:
         """Rows of tokens between blanks; empty lines are left out."""
-        rows = ((at, self.lines[at].split()) for at in range(start, len(self.lines) if stop is None else stop))
+        rows = ((at, self.lines[at].split()) for at in range(start, len(self.lines)))
         return [(at, row) for at, row in rows if row]
 
     def fixed(self, start: int, count: int, width: int, columns: int) -> tuple[np.ndarray, int]:
@@ -177,10 +177,10 @@ def tidy(text: str) -> str:
     return re.sub(r"\s{3,}", "  ", text[: 100 * LONGEST_WORDS])[:LONGEST_WORDS]
 
 
-def read_file(file: str | Path, folder: Path | None = None, largest: int = LARGEST) -> File:
+def read_file(file: str | Path, folder: Path | None = None) -> File:
     """The file that a deck in `folder` names, or the one at a path; RecordError where it cannot be read."""
     try:
-        return files.read(file, largest, folder)
+        return files.read(file, LARGEST, folder)
     except files.BadFile as error:
         raise RecordError(str(error)) from None
 
