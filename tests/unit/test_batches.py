@@ -159,7 +159,7 @@ def test_a_copied_batch_counts_for_no_other_place(tmp_path: Path) -> None:
     shutil.copy(first, last.with_name(f"{last.stem.partition('-')[0]}-{digest}.npz"))
     again = context(out, resume=True)
     s = sweep(again, "t", Squares(), n, "squares")
-    assert np.array_equal(s["value"], np.arange(n) ** 2) and "computed again" in again.warnings[0]
+    assert np.array_equal(s["value"], np.arange(n) ** 2) and "calculated again" in again.warnings[0]
     sweep(context(out, resume=True), "t", Squares(3), n, "cubes")
     (cubes,) = (f for f in folder_of(out).glob("t-*") if f != first.parent)
     for path in cubes.iterdir():

@@ -108,7 +108,7 @@ WRONG = {
     ),
     "unknown joint of a type": ("names no joint", ARCH + '[[joints.types]]\njoints = ["none"] # here\nfriction = 0.3\n' + TILT),
     "load beside the structure": (
-        "lies beside",
+        "is adjacent to",
         ARCH + TILT + "[[analysis.load]]\nx = 0.0\nforce = 1e3\n[[analysis.load]] # here\nx = 99.0\nforce = 1e3\n",
     ),
     "chain of another name": ("there is no 'nave'", ARCH + '[[analysis]]\nkind = "thrust"\nchain = "nave" # here\n'),
@@ -309,7 +309,7 @@ WRONG = {
         "does not use side_walls",
         FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
     ),
-    "facade without weight": ("has weight", "[material]\ndensity = 0.0 # here\n" + FACADE),
+    "facade without weight": ("has no weight", "[material]\ndensity = 0.0 # here\n" + FACADE),
     "block without weight": ("has no weight", BLOCK + "[material]\ndensity = 0.0 # here\n" + TILT),
     "arch without weight that rocks": ("has no weight", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + ROCKING),
     "arch without weight, discrete elements": ("has no weight", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + DEM),
@@ -365,7 +365,7 @@ def test_a_second_assessment_is_refused(tmp_path: Path) -> None:
     path.write_text(ARCH + PULSE + 2 * '[[analysis]]\nkind = "assess"\n')
     deck = read_deck(path)
     (said,) = check_building(deck).complaints
-    assert said.startswith(f"{path}:13: ") and "holds one assess" in said
+    assert said.startswith(f"{path}:13: ") and "only one assess" in said
     assert run_one(Context(deck), deck.analyses[1], deck.buildings[1]).reason == said
 
 

@@ -380,7 +380,7 @@ def test_wrong_models_are_refused() -> None:
         dem3.run(solids([prism(np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 1.0)], Law(1e9, 1e9, 0.6)), options)
     with pytest.raises(ValueError, match="stiffnesses"):
         Law(0.0, 1e9, 0.6)
-    with pytest.raises(ValueError, match="law that is not there"):
+    with pytest.raises(ValueError, match="law that does not exist"):
         dem3.run(replace(good, joints={(0, 1): 3}), options)
     with pytest.raises(IndexError, match="joints names 7"):
         dem3.run(replace(good, joints={(0, 7): 0}), options)

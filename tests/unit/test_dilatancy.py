@@ -190,13 +190,13 @@ def test_rows_that_cannot_stand_have_capacity_zero(tmp_path: Path) -> None:
     swept = run(THIN, 0.7, kind="sweep", vary="thickness", values=[0.5, 1.0, 1.2, -1.0, 1.5], locate=False).results
     assert swept.values == [-1.0, 0.5, 1.0, 1.2, 1.5] and swept.collapse_accelerations_g[:3] == [None, 0.0, 0.0]
     assert [gap.status for gap in swept.gaps] == ["no-answer", "cannot-stand", "cannot-stand"]
-    assert all("ertificate: a motion" in gap.reason for gap in swept.gaps[1:])
+    assert all("ertificate: a mechanism" in gap.reason for gap in swept.gaps[1:])
     none = run(THIN, 0.7, kind="sweep", vary="thickness", values=[0.5, 0.6])
     assert isinstance(none.results, SelfWeight)
     (tmp_path / "s.csv").write_text("name,thickness\nstout,1.5\nthin,0.5\n")
     survey = run(THIN, 0.7, tmp_path, kind="survey", file="s.csv").results
     assert (survey.weakest, survey.weakest_collapse_acceleration_g, survey.standing) == ("thin", 0.0, 1)
-    assert "ertificate: a motion" in survey.cannot_stand[0].reason and survey.without_answer == []
+    assert "ertificate: a mechanism" in survey.cannot_stand[0].reason and survey.without_answer == []
 
 
 def test_partial_factors_may_bring_it_down() -> None:
@@ -225,7 +225,7 @@ def test_no_survey_cannot_stand_without_proof(monkeypatch: pytest.MonkeyPatch) -
 def test_a_dome_too_thin_for_its_weight() -> None:
     dome = {"kind": "dome", "radius": 10.0, "thickness": 0.3, "rings": 6, "lunes": 8}
     result = run(dome, 0.7, kind="tilt")
-    assert isinstance(result.results, SelfWeight) and "ertificate: a motion" in result.results.certificate
+    assert isinstance(result.results, SelfWeight) and "ertificate: a mechanism" in result.results.certificate
 
 
 def test_a_survey_with_an_open_joint_says_what_closing_it_gives() -> None:

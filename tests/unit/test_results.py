@@ -302,9 +302,9 @@ def test_what_is_shown_of_results_is_short_and_a_wrong_name_is_told_the_right_on
     shown = [run, live, live.deck, run["rocking"], run.results, run.arrays["rocking"]["rotation"]]
     for thing in [*shown, building.blocks(), building.rigid(), building.rocker()]:
         assert len(repr(thing)) < 1200 and "array(" not in repr(thing) and " object at " not in repr(thing)
-    with pytest.raises(KeyError, match="rocking has no array 'rotaton'; there are time, ground, "):
+    with pytest.raises(KeyError, match="rocking has no array 'rotaton'; the arrays are: time, ground, "):
         run.array("rocking", "rotaton")
-    with pytest.raises(KeyError, match="no result 'colapse'; there are collapse_acceleration_g"):
+    with pytest.raises(KeyError, match="no result has the key 'colapse'; the keys are: collapse_acceleration_g"):
         run["tilt"]["colapse"]
 
 

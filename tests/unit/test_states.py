@@ -166,7 +166,7 @@ def test_a_box_without_bed_joints_is_capped_by_coulombs_limit() -> None:
     verdict = r.judged(Demanded(0.1))
     assert verdict.outcome == "not-applicable" and verdict.bound == "upper" and verdict.demand is None
     assert verdict.capacity == pytest.approx(limit / weight, rel=1e-6) and len(verdict.violated) == 1
-    assert f"Sliding on {r.sliding_level}" in verdict.statement and "Coulomb" in found.answer and "at most" in found.answer
+    assert f"Sliding at {r.sliding_level}" in verdict.statement and "Coulomb" in found.answer and "at most" in found.answer
 
 
 def test_a_box_slides_on_its_sole_by_itself() -> None:

@@ -170,7 +170,7 @@ def test_what_a_user_put_or_changed_is_never_lost(what, tmp_path, with_figures, 
     (run / "tilt.csv").exists() or (run / "tilt.csv").write_text("")
     CHANGES[what](run)
     before = everything(run)
-    assert put(run) == tmp_path / "run-2" and "the results are in" in caplog.text
+    assert put(run) == tmp_path / "run-2" and "The results are in" in caplog.text
     assert everything(run) == before
     assert put(run) == tmp_path / "run-3"
 
@@ -363,9 +363,9 @@ def test_results_of_another_version_are_told(key, value, words, tmp_path, with_f
 @pytest.mark.parametrize(
     ("out", "words"),
     [
-        (".", "holds the current folder"),
-        ("..", "holds the current folder"),
-        ("/", "holds the current folder"),
+        (".", "contains the current folder"),
+        ("..", "contains the current folder"),
+        ("/", "contains the current folder"),
         ("/proc", "mounted file system"),
         ("x" * 248, "more than 200 bytes"),
         ("é" * 101, "more than 200 bytes"),

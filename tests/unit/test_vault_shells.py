@@ -334,4 +334,4 @@ def test_the_limit_of_a_dome_of_stones_hangs_on_their_friction(tmp_path):
 
     low, high, none = limit("0.7"), limit("2.0"), limit('"no-sliding"')
     assert high.results.collapse_acceleration_g > 1.5 * low.results.collapse_acceleration_g
-    assert none.status == "refused" and "restrain the blocks from all sides" in none.reason
+    assert none.status == "refused" and "restrain the blocks on all sides" in none.reason

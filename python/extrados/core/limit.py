@@ -16,7 +16,7 @@ def least_vertex(
     """
     k, n = rows.shape
     if len(least) != k or not len(cost) == len(low) == len(high) == n:
-        raise ValueError(f"{k} rows of {n} unknowns do not go with {len(least)} and {len(cost)}, {len(low)}, {len(high)}")
+        raise ValueError(f"{k} rows of {n} unknowns do not agree with the lengths {len(least)} and {len(cost)}, {len(low)}, {len(high)}")
     x, multipliers, sides, solved, status = _core.api_limit.vertex(rows.T, least, cost, low, high)
     check(status, "linear programme")
     return (x, multipliers, sides) if solved else None

@@ -154,9 +154,9 @@ def soft_base_history(
     """Rock the block under `ground` times `scale` until collapse or `end_time` [s]; start (4,): rotation [rad], sinking [m]
     and their rates; output_step [s]; room: most events that are kept."""
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
-        raise ValueError("end time, output step and tolerance must be positive, the scale a number")
+        raise ValueError("end time, output step and tolerance must be positive, and the scale must be a number")
     if not 1 <= room <= 10**7:
-        raise ValueError(f"number of events kept is {room}, expected 1 to 10,000,000 events")
+        raise ValueError(f"number of saved events is {room}, expected 1 to 10,000,000")
     rows = int(_core.api_soft_base.rows())
     times = output_times(end_time, output_step, rows)
     with MotionSet([ground]) as motions:

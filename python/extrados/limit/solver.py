@@ -112,7 +112,7 @@ class Programme:
             np.zeros(n, dtype=np.int32),
         )
         if passed == highspy.HighsStatus.kError:
-            raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
+            raise NoAnswer("the solver rejected the linear programme, because it contains a number that is not finite")
         if basis.valid:
             solver.setBasis(basis)
 
@@ -131,7 +131,7 @@ class Programme:
         if status in _INFEASIBLE:
             raise NoEquilibrium("no admissible thrust line")
         if status != highspy.HighsModelStatus.kOptimal:
-            raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
+            raise NoAnswer(f"the linear programme ended with this status: {solver.modelStatusToString(status)}")
         solution = solver.getSolution()
         dual = np.array(solution.row_dual)
         e = self.system.equations
@@ -206,12 +206,12 @@ def linear_programme(
         np.zeros(count, dtype=np.int32),
     )
     if passed == highspy.HighsStatus.kError:
-        raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
+        raise NoAnswer("the solver rejected the linear programme, because it contains a number that is not finite")
     status = _decided(solver)
     if status in _INFEASIBLE:
         raise NoEquilibrium("no admissible thrust line")
     if status != highspy.HighsModelStatus.kOptimal:
-        raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
+        raise NoAnswer(f"the linear programme ended with this status: {solver.modelStatusToString(status)}")
     found = solver.getSolution()
     return Optimum(np.array(found.col_value), solver.getObjectiveValue(), np.array(found.row_dual), np.array(found.col_dual))
 

@@ -282,7 +282,7 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
     )
     result.arrays |= {
         "intensity": Array(x, ("run",), "g", "intensity of each history"),
-        "drift": Array(drift, ("run",), "", "greatest chord rotation of a pier"),
+        "drift": Array(drift, ("run",), "", "greatest drift (chord rotation) of a pier"),
         "exceeded": Array(hit.astype(np.int8), ("run", "limit_state"), "", "1: the limit state is exceeded"),
     }
 

@@ -224,10 +224,10 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
 
 def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
     if found is None:
-        raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks from all sides")
+        raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks on all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
-        raise CannotStand(f"certificate: a motion, fastest at {name}, that no contact hinders and by which the weights do work")
+        raise CannotStand(f"certificate: a mechanism, fastest at {name}, that no contact resists and in which the weights do positive work")
     return found
 
 

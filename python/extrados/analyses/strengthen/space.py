@@ -184,7 +184,7 @@ class SpaceStatics(Statics):
         if isinstance(found, Falls) or found.gamma < 0.0:
             falls = found if isinstance(found, Falls) else limit.falls()
             name = "" if falls is None else limit.assembly.block_names[int(np.linalg.norm(falls.motion[:, :3], axis=1).argmax())]
-            raise NoEquilibrium(f"certificate: a motion in which the weights do work, fastest at {name}")
+            raise NoEquilibrium(f"certificate: a mechanism, fastest at {name}, in which the weights do positive work")
         return found
 
     def _told(self, limit: SolidLimit, found: Programme, sense: float) -> str:
