@@ -152,7 +152,9 @@ def test_the_confidence_factor_of_masonry_that_is_taken_not_to_crush_is_that_of_
         "analysis": {"kind": "code-checks", "spectrum": QUIET, "peak_velocity": 0.05, "confidence_factor": 1.0},
     }
     assert extrados.run(block)["code-checks"].overall().outcome == "open"
-    assert "All partial factors and confidence factors are 1" in extrados.run(CASES / "codes" / "pier.toml")["code-checks"].overall().statement
+    assert (
+        "All partial factors and confidence factors are 1" in extrados.run(CASES / "codes" / "pier.toml")["code-checks"].overall().statement
+    )
 
 
 def test_a_body_that_its_weight_brings_down_cannot_stand() -> None:

@@ -103,7 +103,7 @@ def test_all_complaints_at_once() -> None:
 
 
 def test_missing_motion_and_structure() -> None:
-    assert any("needs a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"'))
+    assert any("requires a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"'))
     assert any("needs a [structure]" in c for c in complaints('[analysis]\nkind = "tilt"'))
     assert any("no [analysis]" in c for c in complaints('title = "x"'))
 

@@ -210,7 +210,7 @@ def test_two_components_are_one_along_their_sum() -> None:
     for run in (along_x, along_y):
         assert run.place == pytest.approx(whole.place, abs=1e-9) and run.residual < 1e-2
     with dem3.Model(block, given) as model, as_motion_set(part[:2]) as motions:
-        with pytest.raises(IndexError, match="motion 5 is not in the set of 2"):
+        with pytest.raises(IndexError, match="motion number 5 does not exist: the set has 2"):
             model.run(motions, across=5)
 
 

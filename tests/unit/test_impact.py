@@ -245,7 +245,7 @@ def test_impulses_beyond_the_criterion_are_told(amplitude: str, outcome: str) ->
     run = extrados.run(base)
     assert (run["assessment"].verdict, run["assessment"].run_outcome) == ("stands", outcome)
     told = " ".join(run.results[0].warnings)
-    assert ("lies above" in told) == ("beyond the criterion" in told) == (outcome == "collapse")
+    assert ("exceeds this range" in told) == ("does not cover impulses" in told) == (outcome == "collapse")
 
 
 def test_another_rule_in_place_of_the_thesis_is_told() -> None:

@@ -147,7 +147,7 @@ def test_each_storey_of_a_wall_has_the_density_of_its_material() -> None:
     assert multiplier["front", 1] == pytest.approx(0.25 * (800.0 + 2600.0) / (800.0 * 1.5 + 2600.0 * 4.5))
     assert multiplier["front", 2] == pytest.approx(0.25 / 1.5)
     (told,) = extrados.run({**deck, "materials": {"light": materials["light"]}}).analyses
-    assert told["status"] == "refused" and "wall 'front': there is no [materials.heavy]" in told["reason"]
+    assert told["status"] == "refused" and "wall 'front': the deck has no [materials.heavy]" in told["reason"]
 
 
 def test_walls_that_are_all_held_have_no_mechanism_and_the_crushing_hinge_is_set_back() -> None:

@@ -135,7 +135,7 @@ def test_a_file_bears_as_the_plan_does(tmp_path):
         path.write_text(textwrap.dedent(text) + textwrap.dedent(material) + more)
         result = extrados.run(path).results[0]
         found.append(result.results)
-        where = {"file": "it cracks first in group side at x", "plan": "it cracks first in wall"}[name]
+        where = {"file": "the first crack forms in group side at x", "plan": "the first crack forms in wall"}[name]
         assert where in result.answer
     of_file, of_plan = found
     assert of_file.weight_N == pytest.approx(of_plan.weight_N, rel=1e-12) == pytest.approx(2 * 4 * 0.3 * 2000 * GRAVITY)
@@ -169,7 +169,7 @@ def test_a_thicker_variant_is_thicker_in_all_groups(tmp_path):
         path.write_text(textwrap.dedent(deck).format(default=default, front=front, more=more))
         result = extrados.run(path).results[0]
         found.append(result.results)
-        assert "it cracks first in the shell at x" in result.answer  # in no group
+        assert "the first crack forms in the shell at x" in result.answer  # in no group
     told, varied = found
     (thick,) = varied.variants
     assert thick.greatest_base_shear_N == pytest.approx(told.greatest_load_N, rel=1e-9)

@@ -288,7 +288,7 @@ def test_walls_that_do_not_fit_are_told() -> None:
 
 
 def test_kinds_in_space_refuse_what_looks_at_a_section() -> None:
-    with pytest.raises(DeckError, match="rocking cannot analyse a structure of kind 'dome': it is no plane section"):
+    with pytest.raises(DeckError, match="rocking cannot analyse a structure of kind 'dome': this structure has no plane section"):
         make_deck({"structure": SOLIDS["dome"], "motion": {"kind": "constant", "amplitude": "0.1 g"}, "analysis": {"kind": "rocking"}})
     for name, words in (("skew barrel", "skew arch"), ("round column", "round drums")):
         with pytest.raises(NoView, match=words):

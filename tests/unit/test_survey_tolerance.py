@@ -88,7 +88,7 @@ def test_random_surveys_give_a_band() -> None:
         }
     )
     assert "give the deviation" in run_analyses(Context(arch, threads=1))[0].reason
-    assert "a quarter of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
+    assert "1/4 of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
 
 
 def test_surveys_that_cannot_stand_belong_to_the_band() -> None:

@@ -258,4 +258,4 @@ def test_supports_of_free_blocks_move() -> None:
     assert found["movement_at_fall_m"] == pytest.approx(exact[-1].movement, rel=1e-6)
     assert "left haunch of the chain at 8 % of the span, intrados; crown of the chain, extrados" in found.answer
     pier = run({"block": rows(box("a", 0, 0), box("b", 0, 1))}, kind="supports")
-    assert pier.status == "refused" and "the structure has one support" in pier.reason
+    assert pier.status == "refused" and "the structure has only one support" in pier.reason

@@ -239,12 +239,12 @@ def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
     "keys, words",
     [
         ({"settlements": [{"out": 0.01}]}, "either wall"),
-        ({"settlements": [{"foot": "left"}]}, "nothing moves"),
-        ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "take two stages"),
-        ({"stages": [{"name": "a"}, {"name": "a"}]}, "stands twice"),
-        ({"stages": [{}], "directions": ["+", "-"]}, "beside stages"),
-        ({"stages": [{}], "without_equilibrium": "proportional"}, 'without_equilibrium = "proportional" cannot stand beside'),
-        ({"main_stage": "a"}, "there are none"),
+        ({"settlements": [{"foot": "left"}]}, "does not move"),
+        ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "give two stages"),
+        ({"stages": [{"name": "a"}, {"name": "a"}]}, "occurs twice"),
+        ({"stages": [{}], "directions": ["+", "-"]}, "together with stages"),
+        ({"stages": [{}], "without_equilibrium": "proportional"}, 'without_equilibrium = "proportional" cannot be used together with'),
+        ({"main_stage": "a"}, "there are no `stages`"),
     ],
 )
 def test_wrong_stages_are_told(keys, words):

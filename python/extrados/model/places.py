@@ -38,8 +38,8 @@ class Placed(Table):
     """Something on the nodes of an edge, within ranges of x and y, or (x and y single) on the nearest node."""
 
     edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
-    x: Range | None = key(None, "x of the place, or [from, to]")
-    y: Range | None = key(None, "y of the place, or [from, to]")
+    x: Range | None = key(None, "x of the place, or its range [from, to]")
+    y: Range | None = key(None, "y of the place, or its range [from, to]")
 
     @model_validator(mode="after")
     def _somewhere(self) -> "Placed":

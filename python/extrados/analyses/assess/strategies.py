@@ -282,7 +282,7 @@ def _dem(asked: Asked) -> Choice:
         if seconds(1.0) > 2.0 * share:
             raise LeftOut(_too_long(seconds(1.0), share, "with the joint stiffness of the deck"))
         whose = "the deck says" if given else "E divided by the block length gives"
-        return Choice(keys, f"{words}; the joint stiffness is what {whose}", seconds(1.0))
+        return Choice(keys, f"{words}; joint stiffness as {whose}", seconds(1.0))
     # steps grow as the root of the stiffness
     stiffness = float(np.median(values.stiffness)) * (share / seconds(1.0)) ** 2
     grounded = (assembly.a < 0) | (assembly.b < 0)

@@ -22,7 +22,7 @@ from extrados.results.model import Array, Result
 def run(context: Context, options: Dem, model: SolidModel) -> Result:
     """Brought in slowly, held, bisected, in both senses."""
     if without := unused(context, options):
-        context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
+        context.warnings.append(f"these have no effect in a tilt test: {', '.join(without)}")
     base = replace(
         core_options(context, options, model),
         end_time=RAMP + dem_model.settle_time(model),
@@ -68,9 +68,9 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     opening, slip, state = solid_measures.contacts(model, last)
     result.arrays = {
         **run_arrays(model, last, last.time[[_begun(model, last), -1]]),
-        "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 apart"),
-        "opening": Array(opening, ("time", "contact"), "m", "gap at the corner of each contact that gapes most"),
-        "slip": Array(slip, ("time", "contact"), "m", "slip at its most closed corner"),
+        "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 fully open"),
+        "opening": Array(opening, ("time", "contact"), "m", "greatest gap of each contact, over its corners"),
+        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact at its most closed corner"),
     }
     result.answer = solid_tilt_answer(r)
     return result
