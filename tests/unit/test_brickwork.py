@@ -108,11 +108,11 @@ def test_lintels_bear_and_share_piers() -> None:
     assert set(box) == {"lintel 1", "lintel 2"}  # the third opening reaches the top
     assert box["lintel 1"][[0, 2]] == pytest.approx(np.array([[0.375, 1.2], [1.05, 1.32]]))
     assert box["lintel 2"][[0, 2]] == pytest.approx(np.array([[1.05, 1.2], [1.725, 1.32]]))
-    with pytest.raises(BadGeometry, match="no place for its lintel"):
+    with pytest.raises(BadGeometry, match="a lintel has no place"):
         make_brickwork(bond, 3.0, 2.4, [(0.5, 1.0, 0.0, 1.2), (0.8, 1.6, 1.0, 1.8)])
-    with pytest.raises(BadGeometry, match="nothing of the wall"):
+    with pytest.raises(BadGeometry, match="occupy the whole wall"):
         make_brickwork(bond, 3.0, 2.4, [(0.0, 3.0, 0.0, 2.4)])
-    with pytest.raises(BadGeometry, match="too many"):
+    with pytest.raises(BadGeometry, match="are allowed"):
         make_brickwork(Bond(0.01, 0.01), 3.0, 2.4)
 
 
@@ -210,7 +210,7 @@ def test_macro_blocks() -> None:
     # Two slender piers and a beam, hinged at their toes: a parallelogram falls at its piers' width over height.
     portal = make_piers(3.0, 3.0, [(0.3, 2.7, 0.0, 2.4)], 2000.0, 0.25)
     assert LimitAnalysis(portal).collapse()[0].gamma == pytest.approx(0.3 / 2.4, rel=1e-9)
-    with pytest.raises(BadGeometry, match="no masonry is left there"):
+    with pytest.raises(BadGeometry, match="no masonry remains there"):
         make_piers(3.0, 3.0, [(0.0, 3.0, 0.0, 1.0)], 2000.0, 0.25)
 
 

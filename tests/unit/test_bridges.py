@@ -131,11 +131,11 @@ def test_the_parts_of_a_viaduct_fill_each_others_places() -> None:
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"spans": [SPAN, SPAN], "piers": [{"width": 0.4, "height": 3.0}]}, "pier: the arches meet in it"),
-        ({"abutments": {"width": 0.2, "height": 3.0}}, "left abutment: its width of 0.2 m ends before"),
-        ({"backing": {"height": 2.7}}, "backing: its top at 2.7 m must lie between"),
-        ({"backing": {"height": 0.1}}, "backing: its top at 0.1 m must lie between"),
-        ({"spans": [{**SPAN, "shape": "three-centred", "rise": 0.5}]}, "three-centred arch: side arcs of radius"),
+        ({"spans": [SPAN, SPAN], "piers": [{"width": 0.4, "height": 3.0}]}, "pier: the arches overlap in this pier"),
+        ({"abutments": {"width": 0.2, "height": 3.0}}, "left abutment: with a width of 0.2 m, the abutment ends before"),
+        ({"backing": {"height": 2.7}}, "backing: the top at 2.7 m must lie between"),
+        ({"backing": {"height": 0.1}}, "backing: the top at 0.1 m must lie between"),
+        ({"spans": [{**SPAN, "shape": "three-centred", "rise": 0.5}]}, "three-centred arch: side arcs with a radius of"),
     ],
 )
 def test_parts_that_do_not_fit_are_named(keys: dict[str, Any], words: str) -> None:
@@ -147,8 +147,8 @@ def test_parts_that_do_not_fit_are_named(keys: dict[str, Any], words: str) -> No
     ("keys", "words"),
     [
         ({"spans": [SPAN, SPAN]}, "2 spans need 1 pier"),
-        ({"spans": [{**SPAN, "rise": 4.5}]}, "rises by at most half its span"),
-        ({"spans": [{**SPAN, "shape": "pointed"}]}, "rises by at least half its span"),
+        ({"spans": [{**SPAN, "rise": 4.5}]}, "is at most half of the span"),
+        ({"spans": [{**SPAN, "shape": "pointed"}]}, "is at least half of the span"),
         ({"surfacing": ROAD}, "surfacing: requires fill"),
     ],
 )
@@ -560,7 +560,7 @@ def test_a_sweep_reaches_into_fill_and_spans() -> None:
     soil = run({"kind": "sweep", "vary": "fill.passive", "values": [0.0, 0.5, 1.0], "locate": False}, fill=FILL)
     assert soil["collapse_accelerations_g"][1] == pytest.approx(plain["collapse_acceleration_g"], rel=1e-9)
     assert np.all(np.diff(soil["collapse_accelerations_g"]) > 0.0)
-    assert "a number from 0 to 0 in place of '1'" in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
+    assert "a number from 0 to 0 instead of '1'" in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
 
 
 def test_pushes_go_with_sliding_that_does_not_dilate() -> None:

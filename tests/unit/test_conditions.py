@@ -149,7 +149,7 @@ def test_the_share_of_motions_that_slide_is_that_of_their_histories() -> None:
 def test_what_friction_does_not_carry_cannot_stand(kind: str) -> None:
     """Oppenheim's arch at friction .2: least .2057 by the bisection of limit analysis."""
     result = result_of(kind, OPPENHEIM, 0.2)
-    assert result.verdict.outcome == "cannot-stand" and "friction of at least 0.206" in result.verdict.statement
+    assert result.verdict.outcome == "cannot-stand" and "must be at least 0.206" in result.verdict.statement
 
 
 def test_an_arch_slides_where_limit_analysis_with_friction_says_so() -> None:
@@ -399,7 +399,7 @@ def test_a_margin_holds_as_far_as_friction_suffices() -> None:
     r = alone.results
     assert r.margin == pytest.approx(1.28, abs=0.01) and not r.conditions.violated
     (told,) = r.margin_conditions
-    assert "1.28 times the motion" in told and "needs up to 0.33" in told
+    assert "1.28 times the motion" in told and "requires up to 0.33" in told
     assert told in alone.verdict.statement and told in alone.warnings
     scaled = deck | {"motion": {**deck["motion"], "amplitude": f"{0.33 * r.margin} g"}, "analysis": [{"kind": "rocking"}]}
     assert extrados.run(scaled)["rocking"].conditions.violated  # by the run itself

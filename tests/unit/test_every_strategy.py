@@ -60,10 +60,10 @@ EARTHQUAKES = '[motion]\nkind = "generated"\nmmi = 9\nduration = 2.0'
 
 PRESSED = "no load of this kind causes collapse of the {}, because it only compresses the joints"
 TWO = (
-    "two stacked blocks rock in two coordinates, which `rocking`, `fragility`, `failure-domain`, `failure-curves`, `harmonic-map` and `dem` "
-    "follow"
+    "two stacked blocks rock in two coordinates. Only `rocking`, `fragility`, `failure-domain`, `failure-curves`, `harmonic-map` and `dem` "
+    "can follow them"
 )
-UNKNOWN = "the stones of the panel are not known: give unit_length and unit_height"
+UNKNOWN = "the units of the panel are not known: give unit_length and unit_height"
 REFUSED = {
     # Stone does not crush here, and a load on a body that stands on all its width, or on a lintel, finds its way down.
     ("block", "moving-load"): PRESSED.format("block"),

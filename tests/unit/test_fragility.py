@@ -215,7 +215,7 @@ def test_bad_questions(analysis: dict, said: str) -> None:
 
 def test_refusals() -> None:
     outside = run({"kind": "fragility", "count": 2}, motion={**GENERATED, "mmi": 11})
-    assert outside.status == "refused" and "outside the spectrum" in outside.reason
+    assert outside.status == "refused" and "outside the range of the spectrum" in outside.reason
     pulse = {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}
     assert "expected at most 1" in run({"kind": "fragility", "count": 2}, motion=pulse).reason
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.15, "embrace": 157.5, "voussoirs": 7}

@@ -125,9 +125,9 @@ def test_a_hazard_curve_that_ends_too_early_is_told() -> None:
         ({"histories": 3, "levels": [0.1]}, "unscaled motions"),
         ({"cloud": True, "hazard": {"intensities": [0.1, 0.2]}}, "give either intensities"),
         ({"cloud": True, "hazard": {**HAZARD, "file": "h.csv"}}, "give either intensities"),
-        ({"cloud": True, "hazard": {"intensities": [0.1, 0.2], "annual_rates": [0.1, 0.1]}}, "descend"),
-        ({"cloud": True, "hazard": {"intensities": [0.2, 0.1], "annual_rates": [0.1, 0.01]}}, "ascend"),
-        ({"cloud": True, "hazard": {"intensities": [0.1, 0.2, 0.3], "annual_rates": [0.1, 0.01]}}, "as many"),
+        ({"cloud": True, "hazard": {"intensities": [0.1, 0.2], "annual_rates": [0.1, 0.1]}}, "decrease"),
+        ({"cloud": True, "hazard": {"intensities": [0.2, 0.1], "annual_rates": [0.1, 0.01]}}, "increase"),
+        ({"cloud": True, "hazard": {"intensities": [0.1, 0.2, 0.3], "annual_rates": [0.1, 0.01]}}, "equal numbers"),
     ],
 )
 def test_bad_questions(keys: dict, said: str) -> None:
@@ -136,7 +136,7 @@ def test_bad_questions(keys: dict, said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"), [("0.1,0.1\n0.2\n", ":2: expected an intensity"), ("0.1,0.1\n", "1 pairs"), ("0.1,0.1\n0.2,0.2\n", "descend")]
+    ("text", "said"), [("0.1,0.1\n0.2\n", ":2: expected an intensity"), ("0.1,0.1\n", "1 pairs"), ("0.1,0.1\n0.2,0.2\n", "decrease")]
 )
 def test_bad_hazard_files_are_refused(text: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "h.csv").write_text(text)

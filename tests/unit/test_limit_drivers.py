@@ -104,7 +104,7 @@ def test_sweep_finds_changes_and_optimum() -> None:
 def test_sweep_through_impossible_geometry() -> None:
     result = run(CHURCH, kind="sweep", vary="buttress_width", values=[1.5, 5.0, 6.0, 7.0])
     reasons = {g["value"]: g["reason"] for g in result["gaps"]}
-    assert "no width is left for its span" in reasons[7.0]
+    assert "no width remains for the aisle" in reasons[7.0]
     assert result["collapse_accelerations_g"][0] > 0.06
     thick = run(ARCH, kind="sweep", vary="thickness", values=[0.5, 1.5, 11.0, -1.0])
     reasons = {g["value"]: g["reason"] for g in thick["gaps"]}
@@ -242,7 +242,7 @@ def test_refusals_say_why() -> None:
 @pytest.mark.parametrize(
     ("structure", "words"),
     [
-        ({"kind": "blocks"}, "either a file or"),
+        ({"kind": "blocks"}, "either a file, or"),
         ({"kind": "vault", "radius": 5.0}, "thickness is missing"),
         ({"kind": "aisled-vault", "preset": "vezelay-like", "aisle_span": 3.0}, "either aisle_span or half_width"),
         ({"kind": "vault", "preset": "dejong-c"}, "dejong-a"),

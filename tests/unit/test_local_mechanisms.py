@@ -82,7 +82,7 @@ def test_a_corner_says_that_its_stone_does_not_crush() -> None:
 
 def test_refusals_name_what_is_missing() -> None:
     (told,) = mechanism(mechanism="gable", height=3.0, thickness=0.4).analyses
-    assert told["status"] == "refused" and "needs width" in told["reason"]
+    assert told["status"] == "refused" and "requires width" in told["reason"]
     (told,) = mechanism(mechanism="facade", height=6.0, thickness=0.6, floors=[{"height": 6.0, "thrust": "10 kN"}]).analyses
     assert told["status"] == "ok" and told["verdict"]["outcome"] == "cannot-stand"
     (told,) = mechanism(mechanism="building").analyses
@@ -201,7 +201,7 @@ def test_what_a_wall_on_a_plan_cannot_be_asked_is_refused_with_its_key() -> None
 def test_what_goes_for_every_wall_is_said_once() -> None:
     _, run = walls_of(house(), peak_acceleration="0.1 g")
     told = run.results[0].warnings
-    assert len(told) == len(set(told)) and any("without a spectrum" in text for text in told)
+    assert len(told) == len(set(told)) and any("Without a spectrum" in text for text in told)
 
 
 def test_the_worked_example_of_a_pier() -> None:
@@ -266,7 +266,7 @@ def test_the_check_at_collapse_stands_beside_those_of_life_safety() -> None:
     stiff, slow = (mechanism(**above, building_period=t)["local-mechanism"] for t in (0.2, 2.4))
     assert stiff.checks["NTC nonlinear at SLC"].demand == pytest.approx(check.demand)
     assert slow.checks["NTC nonlinear at SLC"].demand > 2.0 * check.demand
-    with pytest.raises(DeckError, match="collapse_spectrum: code EN1998-1 needs acceleration"):
+    with pytest.raises(DeckError, match="collapse_spectrum: code EN1998-1 requires acceleration"):
         mechanism(**keys, collapse_spectrum={"code": "EN1998-1", "ground": "B"})
 
 

@@ -154,7 +154,7 @@ def test_check_makes_buildings_that_are_no_surveys_too(tmp_path: Path) -> None:
     assert found.exit_code == 2 and "vault.toml:1: structure: buttress: " in found.output
     deck.write_text(text.format("") + '[[joints.types]]\njoints = ["none"]\nfriction = 0.3\n')
     found = CliRunner().invoke(app, ["check", str(deck)])
-    assert found.exit_code == 2 and "names no joint 'none'" in found.output
+    assert found.exit_code == 2 and "joint 'none' does not exist" in found.output
 
 
 def test_joint_types_of_layers_reach_every_strategy() -> None:

@@ -131,7 +131,7 @@ def test_spandrel_walls_thicker_than_the_default_depth_are_refused() -> None:
         if wall < 0.5:
             assert deck.building.blocks().fill is not None
             continue
-        with pytest.raises(BadGeometry, match="leave no fill between them; the depth is 1 m"):
+        with pytest.raises(BadGeometry, match="leave no space for fill; the depth of 1 m"):
             deck.building.blocks()
 
 
@@ -154,7 +154,7 @@ def test_spandrel_walls_weigh_in_place_of_fill() -> None:
     soil = {"cover": 0.4, "density": 2000.0, "passive": 0.5}
     walls = {"thickness": 0.5, "density": 2000.0}
     assert factor(fill=soil, spandrels=walls) == pytest.approx(factor(fill={**soil, "passive": 0.375}), rel=1e-9)
-    with pytest.raises(DeckError, match="leave no fill"):
+    with pytest.raises(DeckError, match="leave no space for fill"):
         make_deck({"structure": {**BRIDGE, "spandrels": {"thickness": 2.0}}, "analysis": {"kind": "tilt"}})
     with pytest.raises(DeckError, match="spandrels: requires fill"):
         make_deck({"structure": {**BRIDGE, "fill": None, "spandrels": {"thickness": 0.3}}, "analysis": {"kind": "tilt"}})

@@ -223,7 +223,7 @@ def test_a_spreading_barrel_opens_in_three_hinge_lines(tmp_path):
         (
             '\n[[analysis.stages]]\nsettlements = [{ foot = "springing", out = 0.01 }]\n',
             ("", ""),
-            "no foot 'springing'; there are left, right",
+            "foot 'springing' does not exist; expected one of left, right",
         ),
         ("\n[[analysis.stages]]\nbase_shear = -5.0\n", ("", ""), "not below"),
         ('control = { wall = "a", storey = 1 }\n', ("", ""), "it has none"),
@@ -266,7 +266,7 @@ def test_what_a_foot_presses_with_is_told_in_words(thrust, vertical, words):
 
 
 def test_thick_walls_are_no_shells():
-    with pytest.raises(BadGeometry, match="no shell"):
+    with pytest.raises(BadGeometry, match="Shells require"):
         meshed(ON_WALLS.model_copy(update={"buttress_width": 2.5}))
     with pytest.raises(NoView, match="skew"):
         meshed(BARREL.model_copy(update={"skew": 10.0}))

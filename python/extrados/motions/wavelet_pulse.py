@@ -75,7 +75,7 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     if pgv == 0.0:
         return _none(velocity, "nothing moves")
     if step * len(velocity) < 0.1 * shortest:  # a wavelet would have samples without end
-        return _none(velocity, f"the motion is over within {step * len(velocity):.3g} s, much before any pulse")
+        return _none(velocity, f"the motion ends after {step * len(velocity):.3g} s, which is too early for a pulse")
     # energy off the time grid's ends: a wavelet may reach beyond the record
     top = min(longest, 0.9 * step * len(velocity) * _CENTRE)
     periods = np.geomspace(shortest, max(top, 1.01 * shortest), 80)
@@ -103,7 +103,7 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     early = _time_of(pulse, 0.10) < _time_of(velocity, 0.20)
     fails = []
     if indicator <= LIKE:
-        fails.append(f"the indicator {indicator:.2f} is not above {LIKE:g}")
+        fails.append(f"the pulse indicator {indicator:.2f} is not above {LIKE:g}")
     if not early:
         fails.append("the pulse does not arrive early in the motion")
     if pgv <= LEAST_PGV:

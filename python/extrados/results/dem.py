@@ -300,7 +300,7 @@ def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
     if run.still_moving:
         return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
     slip = (
-        f"Blocks slide by up to {1e3 * run.peak_slip_m:.3g} mm. This is {100 * share:.3g} % of the length of joint "
+        f"Blocks slide by up to {1e3 * run.peak_slip_m:.3g} mm. This is {100 * share:.3g} % of the joint length at "
         f"{run.slipped_joint} (limit {100 * SLIP_LIMIT:g} %, at which half of the lever arm to the end of the joint is "
         f"lost). The slip at the end is {1e3 * run.residual_slip_m:.3g} mm"
     )

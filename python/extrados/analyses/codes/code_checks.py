@@ -125,7 +125,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         )
         conditions = of_one(rocker, dynamic)
         context.warnings += told(conditions)
-        violated += [text for text in conditions.violated if text.startswith("Hinges form elsewhere")]
+        violated += [text for text in conditions.violated if text.startswith("Hinges form at other joints")]
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
     if violated:
         beside["violated"] = violated

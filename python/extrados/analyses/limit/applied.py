@@ -86,7 +86,8 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
         try:
             return solid_at(assembly, point, None, f"load {number + 1}", key, "z"), point
         except BadGeometry as error:
-            raise Refused(str(error).replace("; name it by z_stone", "; move it"), key) from None
+            of_a_tie = "If the tie is anchored outside its block, give the name of the block by z_stone"
+            raise Refused(str(error).replace(of_a_tie, "Move the load"), key) from None
     best, top = -1, -np.inf
     for part, block in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         first = part.vertices[[face[0] for face in part.faces]]

@@ -122,7 +122,7 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
         if np.isinf(min(watch.capacity)) and np.isinf(counted.friction):
             found.append(f"A joint is in tension or slides {share}. Use dem.")
         else:
-            reason = _rests(rocker, watch) if np.isfinite(min(watch.capacity)) else f"rocking needs up to {counted.friction:.2f}"
+            reason = _rests(rocker, watch) if np.isfinite(min(watch.capacity)) else f"rocking requires up to {counted.friction:.2f}"
             found.append(f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction.")
     if counted.elsewhere:
         share = _share(counted.elsewhere, counted.runs, runs)

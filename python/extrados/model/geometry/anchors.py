@@ -42,17 +42,20 @@ def stone_at(assembly: Assembly, point: np.ndarray, name: str | None, what: str,
     if name is not None:
         if name not in names:
             more = ", ..." if len(names) > 8 else ""
-            raise BadGeometry(f"{what}: there is no stone '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
+            raise BadGeometry(f"{what}: block '{name}' does not exist; the blocks are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
         return names.index(name)
     found = stones_at(assembly, point)
     place = f"x = {point[0]:.4g}, y = {point[1]:.4g} m"
     if not found:
         away = np.hypot(*(assembly.centroid - point).T)
         near = names[int(away.argmin())]
-        raise BadGeometry(f"{what}: no stone is at {place}; name it if it is anchored outside of one, '{near}' is near", (*key, end))
+        raise BadGeometry(
+            (f"{what}: no block is at {place}. If the anchorage is outside its block, give the name of the block; '{near}' is the nearest"),
+            (*key, end),
+        )
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
-        raise BadGeometry(f"{what}: {place} lies between {said}; name the one that it is anchored in", (*key, end))
+        raise BadGeometry(f"{what}: {place} lies between {said}: give the name of the block of the anchorage", (*key, end))
     return found[0]
 
 
@@ -64,7 +67,7 @@ def moved_joints(assembly: Assembly, names: Sequence[str]) -> list[int]:
         key = ("initial", "movements", k, "joint")
         if name not in assembly.joint_names:
             there = [n for n, on in zip(assembly.joint_names, grounded, strict=True) if on]
-            raise BadGeometry(f"names no joint '{name}'; on the ground there are {', '.join(there[:8])}", key)
+            raise BadGeometry(f"joint '{name}' does not exist; the joints on the ground are {', '.join(there[:8])}", key)
         found.append(assembly.joint_names.index(name))
         if not grounded[found[-1]]:
             raise BadGeometry(f"joint '{name}' is not on the ground", key)

@@ -74,7 +74,7 @@ def solid_at(assembly: SolidAssembly, point: np.ndarray, name: str | None, what:
     if name is not None:
         if name not in names:
             more = ", ..." if len(names) > 8 else ""
-            raise BadGeometry(f"{what}: there is no block '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
+            raise BadGeometry(f"{what}: block '{name}' does not exist; the blocks are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
         return names.index(name)
     hair = HAIR * assembly.size
     holding = [k for k, part in enumerate(assembly.parts) if _outside(part, point) < hair]
@@ -83,12 +83,15 @@ def solid_at(assembly: SolidAssembly, point: np.ndarray, name: str | None, what:
     if not found:
         near = names[int(np.linalg.norm(assembly.centroid - point, axis=1).argmin())]
         raise BadGeometry(
-            f"{what}: no block is at {place}; name the block by {end}_stone if the tie is anchored outside of it, '{near}' is near",
+            (
+                f"{what}: no block is at {place}. If the tie is anchored outside its block, give the name of the block by "
+                f"{end}_stone; '{near}' is the nearest"
+            ),
             (*key, end),
         )
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
-        raise BadGeometry(f"{what}: {place} lies between {said}; name the one in which the tie is anchored", (*key, end))
+        raise BadGeometry(f"{what}: {place} lies between {said}: give the name of the block in which the tie is anchored", (*key, end))
     return found[0]
 
 
@@ -116,7 +119,7 @@ def hoop_at(assembly: SolidAssembly, height: float, what: str, key: Key) -> tupl
                     points.append((part.vertices[i] + share * (part.vertices[j] - part.vertices[i]))[:2])
                     owner.append(block)
     if not points:
-        raise BadGeometry(f"{what}: no block is cut at z = {height:.4g} m; a hoop lies between two bed joints", key)
+        raise BadGeometry(f"{what}: no block exists at z = {height:.4g} m; a hoop must lie between two bed joints", key)
     plan, whose = np.array(points), np.array(owner)
     corners = plan[ConvexHull(plan).vertices]
     back, forth = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
