@@ -25,7 +25,7 @@ class Leg(Table):
 
     length: Length = key(about="total length, including the corners at its ends", gt=0, le=1e4)
     turn: Literal["left", "right"] = key(
-        "left", "side to which this leg turns off from the previous leg, at a right angle; no effect on the first leg"
+        "left", "side of the previous leg to which this leg runs, at a right angle; no effect on the first leg"
     )
     openings: list[Opening] = key([], "rectangular openings: x along the leg from its start, y upward", max_length=200)
 
