@@ -89,7 +89,7 @@ class DemRun(KindResults):
         "limit of the ratio of slip to joint length (0.25). Beyond it more than half of the lever arm to the end of the "
         "joint is lost, and the verdict is open"
     )
-    slipped_joint: str | None = fact("joint with the greatest ratio of slip to width; null if no joint slides by 1 % of its width")
+    slipped_joint: str | None = fact("joint with the greatest ratio of slip to length; null if no joint slides by 1 % of its length")
     off_footing: list[str] = fact("blocks that slid off their footings; recorded only if the deck names no floor")
     decided_by_last_digits: bool = fact(
         "whether the response is chaotic: if the motion is scaled by 1 + 1e-6, the displacements change by more than "

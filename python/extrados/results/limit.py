@@ -69,7 +69,7 @@ class Fracture(ResultModel):
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
     tilt_angle_deg: float = maybe(
-        "tilt of the ground with the same effect as the greatest collapse acceleration", "deg", source="thesis Eq. 3.1"
+        "tilt of the ground with the same effect as the collapse acceleration", "deg", source="thesis Eq. 3.1"
     )
     ratio: float = maybe("ratio of this collapse acceleration to that of the whole (uncracked) structure")
     crack_height_m: float = maybe("height above the base at which the crack begins", "m")

@@ -71,7 +71,7 @@ class SolidTilt(KindResults):
     """tilt of solids: the constant horizontal acceleration, in a direction in plan, at which they become a mechanism."""
 
     collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant) along the direction", "g")
-    collapse_acceleration_opposite_g: float = fact("constant acceleration opposite to the load direction that causes collapse", "g")
+    collapse_acceleration_opposite_g: float = fact("collapse acceleration opposite to the load direction (horizontal, constant)", "g")
     tilt_angle_deg: float = fact(
         "tilt of the ground with the same effect as the collapse acceleration along the load direction", "deg", source="thesis Eq. 3.1"
     )
@@ -101,13 +101,13 @@ class SolidTilt(KindResults):
         "g",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe(
-        "constant acceleration opposite to the load direction that causes collapse", "g"
+        "design value of the collapse acceleration in the opposite direction if contacts slide", "g"
     )
     collapse_acceleration_non_associated_g: float = maybe(
         "collapse acceleration along the direction for sliding without dilatancy: the least certified state found", "g"
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe(
-        "constant acceleration opposite to the load direction that causes collapse", "g"
+        "collapse acceleration in the opposite direction for sliding without dilatancy", "g"
     )
     non_dilatant: list[SolidNonDilatant] = maybe(
         "sliding without dilatancy, for each direction: along, opposite, and that of least capacity; all directions with "
@@ -123,7 +123,7 @@ class SolidTilt(KindResults):
         source="after Orduna and Lourenco 2005",
     )
     collapse_acceleration_face_law_opposite_g: float = maybe(
-        "constant acceleration opposite to the load direction that causes collapse", "g"
+        "upper bound in the opposite direction by the face law", "g"
     )
     face_law_spread_g: float = maybe("greatest range of the last iterations of the face law (a fixed-point iteration)", "g")
     face_law_reason: str = maybe("reason why the face law gives no value")

@@ -177,7 +177,7 @@ class OverLevels(Annual):
     hinges_elsewhere_share: list[float | None] = fact(
         "share of the motions in which hinges form at other joints, at each level of intensity"
     )
-    count: list[int] = fact("number of motions with a result, at each duration")
+    count: list[int] = fact("number of motions with a result, at each level of intensity")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each level of intensity")
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each level of intensity")

@@ -32,7 +32,7 @@ class Lintel(Table):
 class WallOpening(Table):
     """A rectangular door or window."""
 
-    storey: int = key(1, "number of the storey of the bed joint, from 1 at the ground", ge=1)
+    storey: int = key(1, "number of the storey of the opening, from 1 at the ground", ge=1)
     x: Range = key(about="[from, to] along the wall, from its start")
     z: Range = key(about="[from, to] above the floor of the storey")
     lintel: Lintel | None = key(None, "beam over it")
