@@ -83,7 +83,7 @@ NO_SECTION = Lacks("this structure has no plane section; its solids can be analy
 NO_STONES = Lacks("a mesh file contains elements, not blocks: describe the wall as `panel` or `blocks`")
 NO_PIERS = Lacks("only walls of the kinds panel and brickwork have piers")
 NO_FRAME = Lacks("only a building in plan (kind building) has a frame of piers and spandrels")
-NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists those that have")
+NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists the kinds that have shells")
 
 
 def _stones(

@@ -477,7 +477,7 @@ def test_a_proof_of_collapse_overrules_all_else() -> None:
     assert facts([rows[0], verdict("dem", "collapses")]).relation("tilt", "dem") == "agree"
     shared = [rows[0], verdict("dem", "cannot-stand", 0.0, 0.4, margin=0.0)]
     _, words = conclusion(facts(shared), [], [], "arch", (0.0, "tilt"), shared)
-    assert "proved by tilt." in words and "dem gives the same conclusion" in words and "counts only once" in words
+    assert "tilt proves that it collapses" in words and "dem gives the same conclusion" in words and "counts only once" in words
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,7 @@ def test_good_deck() -> None:
         ),
         ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
-        ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),
+        ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["number without a unit", "g"]),
         ('kind = "step-pulse"', 'kind = "step-puls"', 9, ["did you mean 'step-pulse'"]),
         ('kind = "tilt"', 'kind = "tlit"', 13, ["did you mean 'tilt'"]),
         ('kind = "tilt"', "", 12, ["kind is missing"]),

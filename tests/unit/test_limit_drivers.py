@@ -76,7 +76,7 @@ def test_a_sweep_claims_no_optimum_where_there_is_none() -> None:
         run(ARCH, kind="sweep", vary=vary, start=start, stop=stop, count=7).answer
         for vary, start, stop in (("material.density", 1500, 2500), ("joints.friction", 0.3, 0.9))
     ]
-    assert "from 1500 to 2500 kg/m^3: the same throughout, with 0.4333 g" in told[0]
+    assert "from 1500 to 2500 kg/m^3: the collapse acceleration is the same throughout, 0.4333 g" in told[0]
     assert "greatest from 0.5 to 0.9, with 0.4333 g" in told[1]
 
 

@@ -31,7 +31,7 @@ class BandFactor:
 
     def __init__(self, band: np.ndarray):
         if band.ndim != 2 or not band.size or band.dtype != np.float64 or not band.flags.c_contiguous:
-            raise ValueError(f"a band of shape {band.shape} and type {band.dtype}; expected rows of doubles, contiguous")
+            raise ValueError(f"the band matrix has shape {band.shape} and type {band.dtype}; expected contiguous rows of doubles")
         self._band = band.T
         check(_core.api_limit.factor_band(self._band), "factor of a band")
 

@@ -220,4 +220,4 @@ def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: 
     field[:, :2] /= assembly.size
     error = rows @ field.ravel() if len(rows) else np.zeros(1)
     if np.abs(error).max() * assembly.size > SAME * fastest:
-        raise CannotRock("the hinges alone do not give the motion found: the mechanism also moves at other joints")
+        raise CannotRock("the hinges alone do not give the mechanism that was found: it also moves at other joints")

@@ -19,7 +19,7 @@ class Damper(Table):
     end: Point | None = key(None, "[x, y] of the anchorage in another block; or give `ground`")
     ground: Point | None = key(None, "[x, y] of the anchorage in the ground, which moves with the supports")
     start_stone: str | None = key(None, "name of the block at `start`; required if this point lies between two blocks", max_length=80)
-    end_stone: str | None = key(None, "name of the block at `end`; required if that point lies between two blocks", max_length=80)
+    end_stone: str | None = key(None, "name of the block at `end`; required if this point lies between two blocks", max_length=80)
     damping: Damping | None = key(None, "c of a viscous damper: force per n-th power of the rate, in N (s/m)^n", gt=0)
     power: float = key(1.0, "power n of the rate; 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
     slip_force: Force | None = key(None, "force at which a friction damper slides", gt=0)

@@ -42,7 +42,7 @@ class Material(Table):
     )
     bed_angle: Angle = key(0.0, "angle from the x axis to the bed joints, counter-clockwise", ge=-180, le=180)
     softening: Literal["linear", "exponential", "hordijk"] = key(
-        "linear", "softening law: decrease of stress after the strength", source="thesis Fig. 4-1"
+        "linear", "softening law: shape of the stress decrease beyond the strength", source="thesis Fig. 4-1"
     )
     compressive_strength: Stress | None = key(None, "compressive strength; without this value, no crushing", gt=0)
     compressive_strength_parallel: Stress | None = key(

@@ -136,7 +136,7 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
     elif record.step is not None:
         step = record.step
     if step is None:
-        raise RecordError(f"{name}: the file has no time step; give time_step")
+        raise RecordError(f"{name}: the file gives no time step: give time_step")
     units = QUANTITIES[record.quantity]
     unit = treatment.unit
     if record.unit is not None and unit is not None and units.get(record.unit) != ACCELERATION.get(unit):

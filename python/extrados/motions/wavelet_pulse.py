@@ -107,7 +107,7 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     if not early:
         fails.append("the pulse does not arrive early in the motion")
     if pgv <= LEAST_PGV:
-        fails.append(f"the peak velocity of {100.0 * pgv:.3g} cm/s is not above {100.0 * LEAST_PGV:g}")
+        fails.append(f"the peak velocity of {100.0 * pgv:.3g} cm/s is not above {100.0 * LEAST_PGV:g} cm/s")
     return PulseClass(
         indicator,
         float(length * step / (7.0 * _CENTRE)),

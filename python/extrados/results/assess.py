@@ -39,7 +39,7 @@ class StrategyVerdict(ResultModel):
     demand: float | None = fact("demand, in `unit`")
     capacity: float | None = fact("capacity, in `unit`")
     unit: str = fact("unit of both")
-    outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
+    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open or not-applicable")
     bound: Bound | None = fact("type of the capacity: exact, lower bound or upper bound; null for an estimate")
     violated: list[str] = fact("assumptions of the strategy that were checked and are violated; the outcome is then open")
     margin: float | None = fact("critical scale factor of the hazard; null if not known")

@@ -122,7 +122,7 @@ class FramePushover(KindResults):
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
     walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
-    remarks: list[str] = fact("parts of the building that the frame neglects")
+    remarks: list[str] = fact("parts of the building that the frame model neglects")
     out_of_plane: OutOfPlane = maybe("check of the walls out of their planes; only with a seismic action")
     verification: Verification = maybe("displacement-based verification: all runs at the limit states of the code")
 

@@ -68,9 +68,7 @@ class Fracture(ResultModel):
     cracks: bool = maybe("whether the buttress cracks before the structure collapses")
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
-    tilt_angle_deg: float = maybe(
-        "tilt of the ground with the same effect as the collapse acceleration", "deg", source="thesis Eq. 3.1"
-    )
+    tilt_angle_deg: float = maybe("tilt of the ground with the same effect as the collapse acceleration", "deg", source="thesis Eq. 3.1")
     ratio: float = maybe("ratio of this collapse acceleration to that of the whole (uncracked) structure")
     crack_height_m: float = maybe("height above the base at which the crack begins", "m")
     crack_height_ratio: float = maybe("ratio of the height at which the crack begins to the height of the buttress")
@@ -407,7 +405,7 @@ class MovingLoad(KindResults):
 
     chain: str | None = fact("arch that the load crosses; null if the load crosses the whole top")
     collapse_load_N: float = fact("least collapse load over all positions; for a train, the total load on the structure at collapse", "N")
-    collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
+    collapse_load_kN_per_m: float = fact("least collapse load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle at the governing position (least collapse load)", "m")
     worst_place_over_span: float = fact("distance of the first axle from the left springing at the governing position, divided by the span")
     worst_way: Literal["+x", "-x"] = fact("direction of travel of the train at the governing position")
@@ -534,7 +532,7 @@ class GoverningMechanism(ResultModel):
     """A mechanism that governs somewhere in a sweep."""
 
     number: int = fact("its number in the figures")
-    hinges: str = fact("order of the hinges in words")
+    hinges: str = fact("sequence of the hinges from left to right, in words")
 
 
 class Change(ResultModel):

@@ -492,7 +492,7 @@ class Assessment(KindResults):
     coefficients_source: str = fact("source of the impulse")
     coefficients_of_this_arch: Coefficients = fact("coefficients of the failure curve fitted to this structure")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
+    impulses: list[AssessedImpulse] = fact("strongest impulses of the motion, and their comparison with the failure curve")
     verdict: Literal["stands", "fails"] = fact("whether an impulse of the motion causes collapse by the criterion")
     run_outcome: RockingOutcome | None = fact("outcome of the whole motion by the equation of motion")
     margin: float | None = fact("least ratio of failure amplitude to amplitude of an impulse; null if no impulse can cause collapse")

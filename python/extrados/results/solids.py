@@ -36,7 +36,7 @@ class BlockSize(ResultModel):
     """The capacity of the same structure in blocks of another size or bond."""
 
     change: str = fact("key of the structure that is changed, with the new value")
-    blocks: int | None = fact("number of blocks after this change; null without such a partition")
+    blocks: int | None = fact("number of blocks after this change; null if the change is not possible")
     collapse_acceleration_g: float | None = fact("upper bound of the collapse acceleration along the direction; null without a result", "g")
     relative_change: float | None = fact("relative change of the upper bound from that of the blocks in the deck")
     reason: str | None = fact("why there is no value")
@@ -122,9 +122,7 @@ class SolidTilt(KindResults):
         "g",
         source="after Orduna and Lourenco 2005",
     )
-    collapse_acceleration_face_law_opposite_g: float = maybe(
-        "upper bound in the opposite direction by the face law", "g"
-    )
+    collapse_acceleration_face_law_opposite_g: float = maybe("upper bound in the opposite direction by the face law", "g")
     face_law_spread_g: float = maybe("greatest range of the last iterations of the face law (a fixed-point iteration)", "g")
     face_law_reason: str = maybe("reason why the face law gives no value")
     ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")

@@ -332,7 +332,7 @@ class OverDurations(KindResults):
         outcome: Outcome = "stands" if most == 0.0 else "collapses" if least == 1.0 else "open"
         text = f"{100.0 * least:.3g} % of the motions of {short:g} s"
         if len(known) > 1:
-            text += f" and {100.0 * most:.3g} % of those of {long:g} s"
+            text += f" and {100.0 * most:.3g} % of the motions of {long:g} s"
         return judge(f"{text} cause collapse.", None, None, "probability", outcome, violated=self.conditions.violated)
 
 

@@ -20,8 +20,11 @@ def validity_of(kind: str) -> Validity | None:
 
 Tilt = Validity(
     ("Blocks are rigid; joints carry no tension and slide by Coulomb friction. The horizontal acceleration is constant in time."),
-    "Duration, impacts and recovery of an earthquake are not considered. Fracture and crushing of blocks and movements of "
-    "supports are considered only where the deck states them. With associated friction and sliding the capacity is an upper bound.",
+    (
+        "Duration, impacts and recovery of an earthquake are not considered. Fracture and crushing of blocks and "
+        "movements of supports are considered only if the deck gives them. If joints slide with associated friction, the "
+        "capacity is an upper bound."
+    ),
 )
 Thrust = Validity(
     ("The structure consists of rigid blocks whose joints carry no tension. It is in equilibrium under a given constant acceleration."),
@@ -34,8 +37,10 @@ Sweep = Validity(
 )
 Survey = Validity(
     "Limit analysis gives the capacity of each section of the table by itself.",
-    "Sections do not support one another: arching along the building and walls across it are not considered. The limits of tilt "
-    "apply to each section.",
+    (
+        "Sections do not support one another: arching along the building and transverse walls are not considered. The "
+        "limits of tilt apply to each section."
+    ),
 )
 Imperfections = Validity(
     (
@@ -68,8 +73,10 @@ MovingLoad = Validity(
     ),
 )
 Rocking = Validity(
-    "The structure moves as one rigid-body mechanism, that of limit analysis, without sliding. Impacts lose energy by the rule of "
-    "[joints] restitution.",
+    (
+        "The structure moves as a single rigid-body mechanism, which limit analysis gives, without sliding. Impacts lose "
+        "energy by the rule of [joints] restitution."
+    ),
     (
         "Hinges remain at the same joints; blocks do not slide, bounce or crush. Sliding and hinges at other joints are "
         "checked during the motion. If a check fails, the run continues with rigid contacts from that state (hand_over). "
@@ -79,13 +86,17 @@ Rocking = Validity(
 )
 FailureDomain = Validity(
     "A single pulse acts on the rigid-body mechanism at rest.",
-    "The curve is the lowest amplitude that causes collapse. Safe regions above the curve are not reliable. Earthquakes with "
-    "several pulses may cause collapse below it. The curves depend on the rule of impact.",
+    (
+        "The curve is the lowest amplitude that causes collapse. Safe regions above the curve are not reliable. "
+        "Earthquakes with several pulses may cause collapse below it. The curves depend on the impact rule."
+    ),
 )
 FailureCurves = Validity(
     "Single sines, or trains of sines, act on the rigid-body mechanisms at rest. Each motion is replaced by its primary impulse.",
-    "The parts of a motion before and after its primary impulse are not considered. Safe regions above a curve are not reliable, "
-    "and the curves depend on the rule of impact.",
+    (
+        "The parts of a motion before and after its primary impulse are not considered. Safe regions above a curve are "
+        "not reliable, and the curves depend on the impact rule."
+    ),
 )
 Assessment = Validity(
     (
@@ -115,13 +126,15 @@ Resonance = Validity(
     ),
 )
 RockingSpectrum = Validity(
-    "Rigid blocks, or arches of one shape in all sizes, rock from rest without sliding under one motion.",
+    ("Rigid blocks of all sizes, or arches of one shape and all sizes, rock from rest without sliding under one motion."),
     ("The spectrum is valid only for this motion and this impact rule. It cannot be derived from an elastic response spectrum."),
 )
 HarmonicMap = Validity(
     "A harmonic motion of constant amplitude acts for a fixed number of cycles on a mechanism at rest that does not slide.",
-    "Neighbouring points of the map may have different outcomes, because the response is chaotic near overturning. An earthquake "
-    "has fewer cycles of one frequency.",
+    (
+        "Neighbouring points of the map may have different outcomes, because the response is chaotic near overturning. "
+        "An earthquake has fewer cycles at a single frequency."
+    ),
 )
 CodeChecks = Validity(
     "The analysis applies simplified rules of codes, with their own reductions of demand and capacity.",
@@ -131,7 +144,7 @@ CodeChecks = Validity(
     ),
 )
 LocalMechanism = Validity(
-    "A part of the building rotates as rigid bodies about hinges: the linear and nonlinear kinematic analysis of codes.",
+    ("A part of the building rotates as rigid bodies about hinges. The analysis is the linear and nonlinear kinematic analysis of codes."),
     (
         "The result holds for the stated mechanism; another mechanism may be weaker. The connections to transverse walls "
         "and floors are those given in the deck. A rule outside its scope does not apply, and the row of this rule says "
@@ -140,8 +153,11 @@ LocalMechanism = Validity(
 )
 MotionStudy = Validity(
     ("The acceleration is integrated from rest. The spectra are those of linear oscillators without soil-structure interaction."),
-    "Measures describe the motion at its station, not the demand on a building. Displacements and long periods depend on "
-    "baseline and filter. The pulse classification is statistical and may fail for single records.",
+    (
+        "The measures describe the motion at its station, not the demand on a building. Displacements and long periods "
+        "depend on the baseline correction and the filter. The pulse classification is statistical and may fail for "
+        "single records."
+    ),
 )
 ShakeTable = Validity(
     "A shaking table with limits of stroke, velocity (or flow) and force moves a rigid mass.",

@@ -40,7 +40,7 @@ class Verdict(ResultModel):
     capacity: float | None = fact("capacity of the building; null if the analysis gives none")
     unit: str = fact("unit of demand and capacity")
     ratio: float | None = fact("safety factor: capacity / demand; null without a demand or a capacity")
-    outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
+    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open or not-applicable")
     bound: Bound | None = fact(
         "type of the capacity: exact; upper bound (true capacity is at most this value); lower bound (at least this "
         "value); null for an estimate"

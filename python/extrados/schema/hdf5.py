@@ -35,7 +35,7 @@ def refuse_elsewhere(path: str) -> None:
             if isinstance(link, h5py.ExternalLink):
                 raise Unreadable(f"the data of '{group.name}/{name}' are in another file, {link.filename[:100]!r}")
             if isinstance(link, h5py.SoftLink):
-                raise Unreadable(f"'{group.name}/{name}' is a link; save the file without links")
+                raise Unreadable(f"'{group.name}/{name}' is a link: save the file without links")
             one = group[name]
             if isinstance(one, h5py.Dataset):
                 if one.external or one.is_virtual:

@@ -75,12 +75,12 @@ def conclusion(
     if proven:
         overall = "cannot stand"
         first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
-        said.append(f"The {word} cannot stand: collapse under self-weight is proved by {first.label}.")
+        said.append(f"The {word} cannot stand: {first.label} proves that it collapses under self-weight.")
         if others := proven[1:]:
             said.append(f"{labels(others)} gives the same conclusion by the same certificate, which counts only once.")
         said.append(first.statement)
         if stands:
-            said.append(f"The certificate overrules the opposite result of {labels(stands)}.")
+            said.append(f"This certificate overrules the opposite result of {labels(stands)}.")
     elif not stands and not collapses and not left:
         overall = "open"
         said.append(f"No strategy has a verdict on the {word} under this hazard.")

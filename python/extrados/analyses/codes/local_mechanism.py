@@ -123,7 +123,7 @@ def _drawn(building: Building, options: LocalMechanism, body: Overturning | Bend
     if body is not None:
         rest, turned, hinge = body_outlines(options, body)
         return {
-            **packed("section", rest, "m", "bodies of the mechanism at rest"),
+            **packed("section", rest, "m", "outlines of the bodies of the mechanism at rest"),
             **packed("section_turned", turned, "m", "bodies of the mechanism at the rotation of the picture"),
             "section_hinge": Array(hinge, ("section_hinges", "axis"), "m", "hinges of the mechanism at the rotation of the picture"),
         }
@@ -295,9 +295,9 @@ def _result(judged: _Judged) -> Result:
     d0 = found.d0
     limit = "" if d0 is None else f", and becomes zero at d_0* = {d0:.3g} m"
     result.answer = (
-        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}; {100 * found.part:.3g} % of the {found.weight / 1e3:.4g} kN "
-        f"of the kinematic chain participate (M* = {found.mass:.4g} kg), a_0* = {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. "
-        f"{r.overall().statement}"
+        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}. Of the kinematic chain of "
+        f"{found.weight / 1e3:.4g} kN, {100 * found.part:.3g} % participate (M* = {found.mass:.4g} kg). The acceleration "
+        f"a_0* is {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. {r.overall().statement}"
     )
     return result
 

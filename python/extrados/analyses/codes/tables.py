@@ -127,7 +127,7 @@ class Floor(Table):
     """A floor, roof or vault that rests on the wall."""
 
     height: Length = key(about="height at which the load acts, above the foot of the wall", ge=0)
-    load: Force = key(0.0, "weight that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
+    load: Force = key(0.0, "weight of the load that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
     pushing: Force = key(
         0.0,
         (

@@ -365,5 +365,5 @@ def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> s
         )
     mode = r.four_hinge_mode_I_durations_s
     if mode and all(t is not None for t in mode) and np.isfinite(shortest).all():
-        text += f" The four-hinge model gives {', '.join(f'{t:.3f}' for t in mode)} s (after one impact)."
+        text += f" The four-hinge model gives {', '.join(f'{t:.3f}' for t in mode)} s (collapse after one impact)."
     return text

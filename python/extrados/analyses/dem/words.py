@@ -60,9 +60,8 @@ def motion_answer(r: DemRun, idle: bool) -> str:
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
     return (
-        f"{first}; {turn[0]} rotates by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, "
-        f"{r.bounces} bounces; {audit}."
-        f"{_tied(r.ties)}"
+        f"{first}; {turn[0]} rotates by {1e3 * abs(turn[1]):.3g} mrad at most, the greatest slip is "
+        f"{1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; {audit}.{_tied(r.ties)}"
     )
 
 

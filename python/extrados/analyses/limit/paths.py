@@ -17,7 +17,7 @@ def follow_paths(follow: Callable[[float, int], tuple[float, Certificate]], *, p
     for ratio in RATIOS:
         try:
             if not patient and rows and rows[-1].collapse_acceleration_g is None:
-                raise NoAnswer("not calculated, because the path before it stopped")
+                raise NoAnswer("not calculated, because the previous load path stopped without a result")
             gamma, proof = follow(ratio, PATIENT if patient else QUICK)
         except NoAnswer as error:
             rows.append(

@@ -184,7 +184,7 @@ def _undecided(margins: dict[str, float | None]) -> list[str]:
     falls = {margin is not None and margin <= 1.0 for margin in margins.values()}
     if len(falls) < 2:
         return []
-    each = ", ".join(f'"{rule}" {"no harm" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
+    each = ", ".join(f'"{rule}" {"none" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
     return [f"The impact rule decides the verdict. Safety factor by each rule: {each}."]
 
 

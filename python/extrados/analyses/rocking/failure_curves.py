@@ -109,7 +109,7 @@ def run(context: Context, options: FailureCurves) -> Result:
         "natural_time": Array(np.array([v.rocker.time_unit if _slender(v) else v.natural for v in variants]), ("curve",), "s"),
         "slender": Array(np.array([_slender(v) for v in variants]), ("curve",), "", "true of a block"),
     }
-    for name, about in (("fit", "Eq. 5.5 fitted to each curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
+    for name, about in (("fit", "Eq. 5.5, fitted to each failure curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
         if any(name in fit for fit in fits):
             lines = [fit[name][1](padded[0][k]) if name in fit else np.full(longest, np.nan) for k, fit in enumerate(fits)]
             result.arrays[name] = Array(np.array(lines), ("curve", "point"), "g", about)

@@ -364,7 +364,7 @@ def run(context: Context, options: FailureDomain) -> Result:
     result.arrays = {
         "duration": Array(durations, ("duration",), "s", "duration t_p of step and rectangular pulses, period T_p of other pulses"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
-        "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
+        "outcome": Array(curves.codes, ("duration", "amplitude"), "", "outcome: 0 no rocking, 1 recovery, 2 Mode I, 3 Mode II"),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude that causes collapse, with or without an impact"),
         "pocket": Array(curves.pocket / GRAVITY, ("duration",), "g", "lowest amplitude of the first safe region above the curve"),
         "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude that causes collapse in the first half cycle"),

@@ -145,7 +145,7 @@ class FailureCurves(RockingTable):
         60, "number of amplitudes up to the cap that are tried before the lowest one that causes collapse is refined", ge=2, le=2000
     )
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
-    accuracy: float = key(1e-4, "accuracy of the curves, in g", ge=1e-9, le=0.1)
+    accuracy: float = key(1e-4, "accuracy of the failure curves, in g", ge=1e-9, le=0.1)
     motions: int = key(12, "greatest number of motions of a suite or a generated set in the figure", ge=1, le=200)
     max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
     fits: bool = key(

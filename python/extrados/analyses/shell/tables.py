@@ -40,7 +40,9 @@ class Settlement(Table):
     )
     x: Range | None = key(None, "[from, to] along the wall; default: the whole wall")
     down: Length = key(0.0, "downward displacement; a negative value is a heave")
-    out: Length = key(0.0, "outward displacement: of a wall, perpendicular to it and away from the middle of the plan; of a dome, radial")
+    out: Length = key(
+        0.0, ("outward displacement; for a wall: perpendicular to the wall, away from the middle of the plan; for a dome: radial")
+    )
 
     @model_validator(mode="after")
     def _somewhere(self) -> "Settlement":

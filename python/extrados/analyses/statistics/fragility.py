@@ -266,7 +266,9 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
         compared = cloud.compare(measures | ({name: (swept["intensity"], unit)} if options.intensity == "sa" else {}), swept["outcome"])
         if len(compared) > 1:
             r["measures"] = compared
-            result.answer += f" Of {', '.join(sorted(one.measure for one in compared))}, {compared[0].measure} predicts collapse best."
+            result.answer += (
+                f" Among {', '.join(sorted(one.measure for one in compared))}, the measure {compared[0].measure} predicts collapse best."
+            )
     if options.histories and swept.complete:
         _histories(job, base, min(options.histories, motions), result)
     if options.sensitivity is not None and swept.complete:

@@ -265,6 +265,6 @@ def _answer(seen: Stripes, fits: dict[str, Lognormal], name: str, unit: str, wor
         said.append(f"Collapse: {100 * known[0]:.1f} % of the motions at the lowest level, {100 * known[-1]:.1f} % at the highest level")
     said.append(
         f"{r['resurrections']} motion{' leaves' if r['resurrections'] == 1 else 's leave'} the {word} standing at a level "
-        "above one that overturns it"
+        "although a lower level overturns it"
     )
     return ". ".join(said) + "."

@@ -332,7 +332,7 @@ class AisledVault(PresetStructure):
     aisle_embrace: Angle = key(150.0, "angle of embrace of the aisle vaults", ge=20, le=180)
     aisle_voussoirs: int = key(14, "number of voussoirs of each aisle vault", ge=4, le=5000)
     aisle_springing: Length | None = key(None, "height of the centres of the aisle vaults above the ground", gt=0)
-    aisle_span: Length | None = key(None, "clear span of the aisles; or give half_width", gt=0)
+    aisle_span: Length | None = key(None, "clear span of the aisles; alternatively give half_width", gt=0)
     half_width: Length | None = key(
         None, "distance from the axis to the outer face of the buttresses; the aisles take the remaining width", gt=0
     )

@@ -139,8 +139,8 @@ class Block(Structure):
     kind: Literal["block"]
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"width": "1.0", "height": "4.0"}
-    width: Length | None = key(None, "full width B of a rectangle", gt=0)
-    height: Length | None = key(None, "full height H of a rectangle", gt=0)
+    width: Length | None = key(None, "full width B of a rectangular block", gt=0)
+    height: Length | None = key(None, "full height H of a rectangular block", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
     mass: Mass | None = key(None, "mass of a body that is not a rectangle", gt=0)
     inertia: Inertia | None = key(None, "moment of inertia of the body about its centre of mass", gt=0)

@@ -79,8 +79,8 @@ class Chimney(Spatial):
         for place, width, thickness in zip(("base", "top"), self.widths, self.thicknesses, strict=True):
             if thickness >= 0.5 * width:
                 raise ValueError(
-                    f"thickness {thickness:g} m at the {place} leaves no flue in a width of {width:g} m: give a thickness below half "
-                    "of the width"
+                    f"thickness {thickness:g} m at the {place} leaves no space for a flue in a width of {width:g} m: give a thickness "
+                    "below half of the width"
                 )
         if self.blocks == 2:
             raise ValueError("blocks: rings of 2 halves do not interlock; expected 1, or at least 3")

@@ -101,9 +101,9 @@ class Vault(PresetStructure):
     embrace: Angle = key(about="angle of embrace of the vault between its end joints", ge=20, le=180)
     voussoirs: int = key(24, "number of voussoirs of the vault", ge=4, le=5000)
     face: Length = key(about="distance of the inner faces of the buttresses from the axis", gt=0)
-    buttress_width: Length = key(about="width of the buttresses, measured outward from `width_from`", gt=0)
+    buttress_width: Length = key(about="width of the buttresses, measured outward from the line given by `width_from`", gt=0)
     width_from: Literal["face", "extrados"] = key("face", "start of buttress_width: at the inner face, or at the extrados of the springing")
-    height: Length = key(about="height from the ground up to `height_to`", gt=0)
+    height: Length = key(about="height of the buttresses from the ground to the level given by `height_to`", gt=0)
     height_to: Literal["extrados", "centre"] = key(
         "extrados", "end of height: at the extrados of the springing, or at the level of the centre of the vault"
     )

@@ -219,7 +219,7 @@ class _Maker:
         pieces = {storey: _between(wall, storey, plan.storeys[storey - 1]) for storey in range(1, last + 1)}
         for storey, found in pieces.items():
             if not found:
-                raise BadGeometry(f"wall '{wall.name}', storey {storey}: its openings leave no pier")
+                raise BadGeometry(f"wall '{wall.name}', storey {storey}: the openings leave no pier")
         for level in range(last + 1):
             below, above = pieces.get(level, []), pieces.get(level + 1, [])
             groups = _groups([p[:2] for p in below], [p[:2] for p in above])
@@ -589,7 +589,7 @@ class _Maker:
                 ]
                 if not found or min(found)[0] > 0.5:
                     raise BadGeometry(
-                        f"rod {k + 1}: its end at {', '.join(f'{v:g}' for v in end)} m is not on a wall", ("structure", "rods", k)
+                        f"rod {k + 1}: the end at {', '.join(f'{v:g}' for v in end)} m is not on a wall", ("structure", "rods", k)
                     )
                 _, w, s = min(found)
                 row += sign * way / length @ self._vector(w, s, level)

@@ -105,8 +105,8 @@ class Mesh:
             nearest = int(distance.argmin())
             if distance[nearest] > 1.5 * self.size:
                 raise BadGeometry(
-                    f"{what}: no node near x {point[0]:g} m, y {point[1]:g} m; the nearest is at "
-                    f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
+                    f"{what}: no node near x {point[0]:g} m, y {point[1]:g} m; the nearest node is at {self.xy[nearest, 0]:g}, "
+                    f"{self.xy[nearest, 1]:g}"
                 )
             if distance[nearest] > 1e-3 * self.size:
                 self.tell(

@@ -51,8 +51,8 @@ def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed
     wanted = abs(signed_area(rings[0])) - sum(abs(signed_area(r)) for r in rings[1:])
     if abs(area.sum() - wanted) > 1e-6 * wanted:
         raise BadGeometry(
-            f"{drawing}: triangles of {size:g} m do not follow the outline (area {area.sum():.4g} m2 for "
-            f"{wanted:.4g} m2): use smaller elements"
+            f"{drawing}: triangles of {size:g} m do not follow the outline (their area is {area.sum():.4g} m2, that of the "
+            f"outline {wanted:.4g} m2): use smaller elements"
         )
     return xy, triangles, drawn.notes
 

@@ -233,7 +233,7 @@ def _grids(plan: Plan, junctions: dict, size: float, warnings: list[str]) -> lis
         beams = (*(lintel[:4] for lintel in _lintels(plan, wall)), *(beam[1:] for beam in _ring_beams(plan, wall)))
         for box in (*_holes(plan, wall), *beams):
             heights.update(box[2:4])
-    z = _lines(heights, float(plan.levels[-1]), size, "the heights of openings and storeys", warnings)
+    z = _lines(heights, float(plan.levels[-1]), size, "the heights of openings and of storeys", warnings)
     grids: list[_Grid] = []
     for w, wall in enumerate(plan.walls):
         breaks = {0.0, wall.length, *_loaded(plan, wall)}
