@@ -245,7 +245,7 @@ def test_shares_of_collapses_decide_where_all_agree(
     decided(found, agreed, conditions.violated if known else [])
     if known:
         assert f"{100.0 * min(known):.3g} % of the motions of" in found.statement
-        assert len(known) == 1 or f" {100.0 * max(known):.3g} % of those of" in found.statement
+        assert len(known) == 1 or f" {100.0 * max(known):.3g} % of the motions of" in found.statement
     share, count = shares[0], 4
     rules = None if by_rule is None else dict(zip(("energy-safe", "inelastic"), by_rule, strict=True))
     one = Ensemble.model_construct(

@@ -151,7 +151,7 @@ kind = "tilt"
 def test_what_nothing_brings_down_is_not_said_to_fall(session: Session) -> None:
     (reply,) = do(session, do="open", text=HELD)
     assert reply.words["scene"]["stands"] is True
-    assert "no such load causes collapse" in reply.words["scene"]["immovable"]
+    assert "no load of this kind causes collapse" in reply.words["scene"]["immovable"]
     list(session.answer({"do": "rest"}))
 
 

@@ -164,7 +164,7 @@ def test_the_vault_ends_as_on_rigid_contacts(cell: tuple[float, float]) -> None:
     found, contacts = both(VAULT, 0.7, sine(0.134 * cell[1], cell[0]))
     assert found.results.outcome == WORDS[contacts.outcome]
     over = found.results.hand_over
-    assert over.reason.startswith("Hinges form elsewhere: the thrust line leaves joint")
+    assert over.reason.startswith("Hinges form at other joints: the thrust line passes outside joint")
     assert over.contacts.energy_residual_ratio < 0.01
     wanted = {"collapse": "collapses", "recovery": "stands"}[found.results.outcome]
     assert found.verdict.outcome == ("open" if over.contacts.decided_by_last_digits else wanted)

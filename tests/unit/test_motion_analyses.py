@@ -221,10 +221,10 @@ def test_exported_record_is_the_motion(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("deck", "words"),
     [
-        ('kind = "record"\nfile = "x"\npga = 0.3', "motion.pga: a bare number is ambiguous"),
-        ('kind = "record"\nfile = "x"\npga = "0.3 g"\npgv = 0.1', "give one of pga"),
+        ('kind = "record"\nfile = "x"\npga = 0.3', "motion.pga: a number without a unit is ambiguous"),
+        ('kind = "record"\nfile = "x"\npga = "0.3 g"\npgv = 0.1', "give only one of pga"),
         ('kind = "record"\nfile = "x"\nsa = "0.3 g"', "sa and sa_period go together"),
-        ('kind = "suite"', "give one of files, pattern, folder and records"),
+        ('kind = "suite"', "give only one of files, pattern, folder and records"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nscaling = "sokolov"', "'thesis', 'fourier' or 'energy'"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nlines = [1.0]', "expected 2 to 2000"),
         ('kind = "compatible"\ncode = "ASCE7"\nsds = "1 g"', "needs sd1"),
@@ -247,7 +247,7 @@ def test_wrong_decks(deck, words) -> None:
         ({"kind": "generated", "mmi": 11, "duration": 3.0}, "expected 4 to 9"),
         ({"kind": "generated", "mmi": 6, "duration": 3.0, "spectrum": "../s.csv"}, "out of the deck's folder"),
         ({"kind": "compatible", "code": "table", "table": "t.csv"}, "no such file"),
-        ({"kind": "record", "file": "r.at2", "high_cut": 500.0}, "half the sampling rate"),
+        ({"kind": "record", "file": "r.at2", "high_cut": 500.0}, "half of the sampling rate"),
     ],
 )
 def test_refused_with_a_reason(tmp_path, motion, words) -> None:

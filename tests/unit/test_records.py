@@ -48,7 +48,7 @@ def test_at2(tmp_path) -> None:
         ("0.00 0.1\n0.02 0.2\n0.10 0.3\n0.12 0.1\n0.14 0.1\n", "time step is 0.08"),
         ("0.1\n0.2\nabc\n", ":3: 'abc' is not a number"),
         ("0.00,0.1\n0.02,inf\n0.04,0.1\n", ":2: 'inf'"),
-        ("words only\nno numbers\n", "holds no numbers"),
+        ("words only\nno numbers\n", "contains no numbers"),
     ],
 )
 def test_bad_records(tmp_path, text, words) -> None:
@@ -85,10 +85,10 @@ def test_units_and_steps_are_asked_for(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("treatment", "words"),
     [
-        ({"time_step": 10.0}, r"3000 samples every 10 s last 29990 s, at most 10800 s"),
-        ({"time_scale": 1e9}, "last 2.999e.10 s, at most"),
+        ({"time_step": 10.0}, r"3000 samples with a step of 10 s last 29990 s; at most 10800 s"),
+        ({"time_scale": 1e9}, "last 2.999e.10 s; at most"),
         ({"resample": 1e-7}, r"1e-07 s for 29.99 s are 3e.08 samples, at most 5,000,000"),
-        ({"low_cut": 1e-6}, r"a filter at 1e-06 Hz and its run-in take 6e.08 samples, at most 5,000,000"),
+        ({"low_cut": 1e-6}, r"a filter at 1e-06 Hz with its run-in requires 6e.08 samples, at most 5,000,000"),
         ({"high_cut": 1e-6}, "a filter at 1e-06 Hz"),
     ],
 )

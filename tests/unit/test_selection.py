@@ -114,7 +114,7 @@ def members_of(folder: Path, **keys: object) -> list:
 def test_a_selection_of_no_record_is_refused_with_the_first_reason(suite: Path) -> None:
     for k in range(6):
         (suite / "records" / f"r{k}.AT2").write_text("no numbers\n")
-    with pytest.raises(RecordError, match=r"\[motion.selection\]: none of the 6 records can be read; the first: .*r0.AT2"):
+    with pytest.raises(RecordError, match=r"\[motion.selection\]: none of the 6 records can be read. First reason: .*r0.AT2"):
         members_of(suite)
 
 
@@ -124,7 +124,7 @@ def test_a_record_that_cannot_be_read_and_a_count_not_reached_are_stated(suite: 
     assert len(members) == 5
     deck = make_deck({"motion": motion(count=6), "analysis": {"kind": "motion"}}, suite)
     stated = " ".join(run_analyses(Context(deck))[0].warnings)
-    assert "5 of 6 requested records are selected; 1 cannot be read: " in stated and "r0.AT2" in stated
+    assert "6 records were requested, and 5 are selected; 1 record(s) cannot be read: " in stated and "r0.AT2" in stated
     assert not any("requested" in note for note in members_of(suite, count=5)[1].notes)
 
 
@@ -140,7 +140,7 @@ def test_a_flatfile_is_matched_by_path_and_by_base_name_if_unique(suite: Path) -
     (suite / "flat.csv").write_text("file,magnitude\nrecords/r0.AT2,5\n./records/other/r0.AT2,6.5\n")
     assert [m.file for m in suite_members(deck.motion, suite)] == ["records/other/r0.AT2"]
     (suite / "flat.csv").write_text("file,magnitude\nx/r1.AT2,6.5\ny/r1.AT2,5\n")
-    with pytest.raises(RecordError, match=r"flat.csv:3: x/r1.AT2 \(line 2\) and y/r1.AT2 both fit the record records/r1.AT2"):
+    with pytest.raises(RecordError, match=r"flat.csv:3: x/r1.AT2 \(line 2\) and y/r1.AT2 both match the record records/r1.AT2"):
         members_of(suite, **keys)
 
 

@@ -149,7 +149,7 @@ def _pass_model(
         np.zeros(len(cost), dtype=np.int32),
     )
     if passed == highspy.HighsStatus.kError:
-        raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
+        raise NoAnswer("the solver rejected the linear programme, because it contains a number that is not finite")
 
 
 def _optimum(solver: highspy.Highs) -> Any:

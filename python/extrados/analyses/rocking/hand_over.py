@@ -378,7 +378,8 @@ def decide_cells(
         return unknown
     if len(index) > limit:
         context.warnings.append(
-            f"Joints slide or hinges form elsewhere in {len(index)} cells of the map; rigid contacts decide up to hand_over_cells = {limit}."
+            f"Joints slide or hinges form at other joints in {len(index)} cells of the map. This exceeds hand_over_cells = "
+            f"{limit}, so these cells are not decided with rigid contacts."
         )
         return unknown
     return decide(context, "map-contacts", contacts, grounds, index, scale, end)
