@@ -167,7 +167,7 @@ def test_the_page_has_no_answer_where_a_run_refuses_one(session: Session, more: 
     (reply,) = do(session, do="open", text=text)
     scene = reply.words["scene"]
     assert (scene["stands"], "capacity" in scene) == (None, False)
-    assert f"cannot take {told} into account" in scene["unknown"]
+    assert f"cannot consider {told}" in scene["unknown"]
     (refused,) = extrados.run(session.live.deck.data).results
     assert refused.status == "refused" and told in refused.reason
     do(session, do="rest")
@@ -264,7 +264,7 @@ def test_a_fault_of_the_program_is_told_and_changes_nothing(session: Session, mo
     with monkeypatch.context() as planted:
         planted.setattr("extrados.explore.statics.picture", fails)
         (reply,) = do(session, do="drag", handle="thickness", text="0.8")
-        assert "fault of the program" in reply.words["complaints"][0]
+        assert "fault of extrados" in reply.words["complaints"][0]
         (reply,) = do(session, do="open", preset="vault/dejong-a")
         assert "a fault that was planted" in reply.words["complaints"][0]
     assert session.document.text == before
@@ -314,7 +314,7 @@ def test_the_text_keeps_what_its_author_wrote() -> None:
 def test_saving_replaces_nothing_unasked(session: Session, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text("precious")
     (reply,) = do(session, do="save", path="mine.toml")
-    assert "is there already" in reply.words["complaints"][0]
+    assert "exists already" in reply.words["complaints"][0]
     assert (tmp_path / "mine.toml").read_text() == "precious"
     (reply,) = do(session, do="save", path="new/mine.toml")
     assert reply.words["saved"] == "new/mine.toml"

@@ -10,7 +10,7 @@ from extrados.decks.reader import Deck
 
 def _head(deck: Deck, program: str) -> list[str]:
     title = " ".join(deck.title.split()) or deck.path
-    return [f"; {title}", f"; geometry for {program} by extrados {VERSION}; lengths in m; properties and supports are yours", "model new"]
+    return [f"; {title}", f"; geometry for {program} by extrados {VERSION}; lengths in m; add the properties and supports", "model new"]
 
 
 def udec(deck: Deck) -> str:
