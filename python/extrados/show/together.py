@@ -51,7 +51,7 @@ def pushes(runs: list[tuple[str, Stored]]) -> list[Push]:
     for (title, run), short in zip(runs, last, strict=True):
         names = [name for name in run.arrays if "envelope_load" in run.arrays[name]]
         if not names:
-            raise StoreError(f"{title}: no analysis of it has a capacity curve; expected sla or pushover")
+            raise StoreError(f"{title}: the run has no analysis with a capacity curve; expected sla or pushover")
         for name in names:
             r: Any = run[name]  # of a wall, of a building or of a frame
             incremental = bool((run.array(name, "event_point") < 0).all())

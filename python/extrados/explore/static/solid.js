@@ -50,14 +50,14 @@ export function solidPanel(app, stageBox) {
     }
     return parts;
   }
-  /** Capacity over the direction of the push, from above. */
+  /** Capacity over the direction of the acceleration, from above. */
   function rose() {
     const { rose_direction: angle, rose_capacity: capacity } = it.push.arrays;
     if (!(angle?.length > 2)) return null;
     const most = Math.max(...capacity.filter(Number.isFinite)), c = 110, r = 84, at = (k, share) => { const t = (angle[k % angle.length] * Math.PI) / 180; return [c + r * share * Math.cos(t), c - r * share * Math.sin(t)]; };
     const share = (k) => Math.min(1, capacity[k % angle.length] / most);
     const d = `M${Array.from(angle, (_, k) => at(k, share(k)).map((v) => v.toFixed(1)).join(" ")).join("L")}Z`;
-    return h("div", { class: "rose" }, h("h3", {}, tr`Capacity over the direction of the push [g]`), s("svg", { viewBox: "0 0 220 224", width: 220, height: 224, class: "chart", role: "img", "aria-label": tr`Capacity over direction: at most ${number(most, 3)} g.` },
+    return h("div", { class: "rose" }, h("h3", {}, tr`Capacity over the direction of the acceleration [g]`), s("svg", { viewBox: "0 0 220 224", width: 220, height: 224, class: "chart", role: "img", "aria-label": tr`Capacity over direction: at most ${number(most, 3)} g.` },
       [0.5, 1].map((v) => s("circle", { class: "grid", cx: c, cy: c, r: r * v, fill: "none" })), [0.5, 1].map((v) => s("text", { x: c + 3, y: c - r * v - 3, text: `${number(v * most, 3)} g` })),
       s("line", { class: "grid", x1: c - r, x2: c + r, y1: c, y2: c }), s("line", { class: "grid", x1: c, x2: c, y1: c - r, y2: c + r }), s("text", { x: c + r + 6, y: c + 4, text: "x" }), s("text", { x: c - 3, y: c - r - 16, text: "y" }),
       s("path", { class: "line", d, fill: "none", stroke: "var(--c0)" })));
