@@ -1,4 +1,4 @@
-"""The formats that a deck's building is written in, by their names."""
+"""The list of export formats."""
 
 import logging
 from collections.abc import Callable
@@ -26,7 +26,7 @@ BLOCKS = ("compas", "udec", "3dec")
 
 
 def exported(deck: Deck, form: str) -> str:
-    """The text of a format; DeckError where there is no such format, or the building has no such view."""
+    """The text of the building in a format; DeckError if the format is unknown, or the building has no such model."""
     if form not in FORMS:
         raise DeckError([f"no format '{form}'; the formats are {', '.join(FORMS)}"])
     if deck.structure is None:
@@ -57,7 +57,7 @@ def _beyond_geometry(deck: Deck) -> list[str]:
 
 
 def scene(deck: Deck) -> Any:
-    """The stones as a pyvista.MultiBlock, a mesh for each by its name; ImportError says what to install."""
+    """The blocks as a pyvista.MultiBlock, one mesh per block by name; ImportError names the package to install."""
     try:
         import pyvista
     except ImportError:

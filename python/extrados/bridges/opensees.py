@@ -1,8 +1,8 @@
 """Scripts of OpenSeesPy: a rigid block on two toes, or finite elements with dry joints that open and slide.
 
-Contacts are node to node (zeroLengthContact2D: no tension, Coulomb friction), rigid bodies are stiff beams under the
-corotational transformation. Cracking, crushing, cohesion and impact rules of the deck have no counterpart there: a rocking block loses
-energy by the damping that the analysis is given, not at impacts.
+Contacts are node to node (zeroLengthContact2D: no tension, Coulomb friction); rigid bodies are stiff beams under the
+corotational transformation. Cracking, crushing, cohesion and impact rules of the deck are not exported: a rocking block loses
+energy only by the damping of the OpenSees analysis, not at impacts.
 """
 
 from collections.abc import Iterator
@@ -22,7 +22,8 @@ NO_SLIDING, HARD = 1e3, 1e6
 
 
 def written(deck: Deck) -> str:
-    """A block where the building is one that rocks, else the mesh of the deck's first analysis that has one, else of the default size."""
+    """The script of a single block if the building is one, otherwise of the first mesh of the deck, or of a mesh with the
+    default size."""
     title = " ".join(deck.title.split()) or deck.path
     lines = [
         f'"""{_words(title)}: by extrados {VERSION}; units N, m, kg, s. At its end the script has applied the self-weight."""',

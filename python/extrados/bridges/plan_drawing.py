@@ -50,7 +50,7 @@ class DrawnWall:
 def deck_of_file(
     drawing: Path, walls: Sequence[str], openings: Sequence[str], thickness: float | None, storeys: Sequence[float], unit: str | None = None
 ) -> str:
-    """`deck_of_plan` of a file; DeckError says what cannot be read."""
+    """`deck_of_plan` of a file; DeckError gives the reason if it cannot be read."""
     try:
         return deck_of_plan(read(drawing, LARGEST_FILE), walls, openings, thickness, storeys, unit)
     except BadGeometry as error:

@@ -1,4 +1,4 @@
-"""Decks looked at without a run: complaints, and how stones, solids and meshes come out."""
+"""The command `check`: errors of decks, and the fit of blocks, solids and meshes, without a run."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated

@@ -1,4 +1,4 @@
-"""The building of a deck elsewhere: on the interactive page, in other programs."""
+"""Commands that use the building of a deck outside a run: the interactive page, exports, import of a plan."""
 
 from pathlib import Path
 from typing import Annotated

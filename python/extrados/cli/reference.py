@@ -1,4 +1,4 @@
-"""What the program knows: words of decks and results, starter decks, cases, its version."""
+"""Commands that print reference information: keys of decks and results, starter decks, cases, version."""
 
 import json
 from pathlib import Path

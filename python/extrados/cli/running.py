@@ -1,4 +1,4 @@
-"""Commands that compute: decks, a single motion, a folder of buildings."""
+"""Commands that calculate: decks, a single motion, a folder of buildings."""
 
 import json
 import sys

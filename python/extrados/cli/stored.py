@@ -1,4 +1,4 @@
-"""Stored results: drawn anew, listed, compared."""
+"""Commands on stored results: redraw, list, compare."""
 
 import json
 from pathlib import Path

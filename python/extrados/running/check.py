@@ -1,4 +1,4 @@
-"""What `extrados check` looks at beyond the words of a deck: whether the building can be made, and how well it fits."""
+"""The checks of `extrados check` beyond the text of a deck: whether the building can be made, and how its blocks fit."""
 
 import csv
 import io

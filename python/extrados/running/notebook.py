@@ -1,4 +1,4 @@
-"""A run as notebooks show it: one line per analysis, and the main figure of the first that has one. A sweep: a table of members."""
+"""The representation of a run in a notebook: one line per analysis and the first figure. For a sweep: a table of members."""
 
 import html
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Many buildings at once: every deck of a folder assessed, and all of them in order, the worst first."""
+"""Assessment of many buildings: every deck of a folder, and a ranking with the worst first."""
 
 import csv
 import hashlib

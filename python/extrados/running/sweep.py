@@ -1,4 +1,4 @@
-"""Many runs of one deck with other values of its keys, in memory, for those who go on in Python."""
+"""Many runs of one deck with other values of its keys, in memory."""
 
 import copy
 import hashlib
@@ -114,10 +114,11 @@ def _holder(deck: Deck, names: Sequence[str], key: str) -> tuple[Any, str]:
 
 @dataclass(frozen=True)
 class Sweep:
-    """What a sweep gave: `frame()` for pandas, `dataset()` for xarray, `rows` for plain Python.
+    """The result of a sweep: `frame()` for pandas, `dataset()` for xarray, `rows` for plain Python.
 
-    keys: those of the deck that were varied, which are also names of columns and axes; shape: values of each where every one met every other, None for rows; rows: of each member its values and results by
-    name, in SI; units and about: of the columns, by name; members: how many were asked for.
+    keys: the varied keys of the deck, which are also names of columns and axes. shape: number of values of each key if all
+    combinations were run, None for given rows. rows: values and results of each member by name, in SI. units and about: of
+    the columns, by name. members: number of requested members.
     """
 
     keys: list[str]
@@ -146,8 +147,8 @@ class Sweep:
         return list(dict.fromkeys([*self.keys, *(name for row in self.rows for name in row)]))
 
     def column(self, name: str) -> np.ndarray:
-        """The values of a name, one of each member (members,), in the unit that `units[name]` says: numbers with NaN where
-        there is none, else objects; KeyError names those that there are."""
+        """The values of a column, one per member (members,), in the unit `units[name]`: numbers with NaN for missing values, or
+        objects. KeyError names the available columns."""
         if name not in self.columns:
             raise KeyError(f"no column '{name}'; there are {', '.join(self.columns)}")
         values = [row.get(name) for row in self.rows]
@@ -159,16 +160,16 @@ class Sweep:
         return np.array([v for v in values] + [None], dtype=object)[:-1]
 
     def frame(self) -> "pandas.DataFrame":
-        """One row a member; `frame.attrs` holds units and meanings by column. ImportError says what to install."""
+        """One row per member; `frame.attrs` has units and meanings by column. ImportError names the package to install."""
         pandas = _library("pandas")
         made = pandas.DataFrame({name: self.column(name) for name in self.columns})
         made.attrs = {"units": self.units, "about": self.about}
         return made
 
     def dataset(self) -> "xarray.Dataset":
-        """Results over the varied keys as axes, each with its unit; rows that belong together lie along `member`.
+        """Results over the varied keys as axes, with units; given rows lie along the axis `member`.
 
-        ImportError says what to install; ValueError where members are missing, so that there is no grid.
+        ImportError names the package to install; ValueError if members are missing, so that the grid is incomplete.
         """
         xarray = _library("xarray")
         dims: tuple[str, ...] = ("member",)

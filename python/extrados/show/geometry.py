@@ -1,4 +1,4 @@
-"""The picture of a survey before it is computed: stones, joints, supports, and what is amiss between them."""
+"""The picture of a survey before the calculation: blocks, joints, supports, and gaps and overlaps between blocks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

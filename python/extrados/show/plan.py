@@ -1,4 +1,4 @@
-"""The picture of a building before it is computed: its plan, and its walls with their mesh; of a vault its mesh in space."""
+"""Picture of a building before the calculation: plan, walls with their mesh; for a vault the mesh in space."""
 
 from dataclasses import dataclass, field
 from pathlib import Path

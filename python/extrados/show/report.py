@@ -1,4 +1,4 @@
-"""Figures and the report of a stored run: one self-contained HTML page, and on A4 paper as PDF."""
+"""Figures and report of a stored run: one self-contained HTML page, and PDF on A4."""
 
 import contextlib
 import os

@@ -1,4 +1,4 @@
-"""Figures of pushed buildings and vaults: capacity curves, cracks on the unfolded walls, from above and in space, drifts and
+"""Figures of pushovers of buildings and vaults: capacity curves, cracks on unfolded walls, from above and in space, drifts and
 damage by storey."""
 
 from functools import partial

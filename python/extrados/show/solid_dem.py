@@ -1,4 +1,4 @@
-"""Figures of discrete elements in space: drawings at telling times, histories, energies, contacts, the film."""
+"""Figures of discrete elements in space: selected times, histories, energies, contacts, the film."""
 
 from pathlib import Path
 

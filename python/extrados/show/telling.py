@@ -1,5 +1,5 @@
-"""What the report of a run says, in order: the answer, the building, the hazard, every strategy, its factors and limits, its sources.
-The annex holds all numbers and how to repeat the run. From stored results only."""
+"""The content of a report in its order: conclusion, building, hazard, analyses, factors, limits, sources. The annex has all
+numbers and the commands to repeat the run. From stored results only."""
 
 import re
 from dataclasses import replace

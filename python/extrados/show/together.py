@@ -1,4 +1,4 @@
-"""Capacity curves of several analyses in one picture: walls of plane stress, buildings of shells, incremental solutions."""
+"""Capacity curves of several analyses in one picture: walls in plane stress, buildings of shells, incremental solutions."""
 
 import tempfile
 from dataclasses import dataclass

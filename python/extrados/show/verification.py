@@ -1,4 +1,4 @@
-"""The verification by displacement as a figure and as rows: capacity curve, idealised curve, demand and capacity."""
+"""Figure and table of the verification by displacement: capacity curve, bilinear curve, demand and capacity."""
 
 from pathlib import Path
 

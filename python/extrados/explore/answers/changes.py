@@ -1,4 +1,4 @@
-"""Changes by hands: handles that are dragged, stepped or typed, keys that are set; and what is told when a hand rests."""
+"""Changes by the user: handles that are dragged, stepped or typed, keys that are set; and the reply when a drag ends."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Collapse under self-weight: the blocks, and the motion that proves it."""
+"""Collapse under self-weight: the blocks, and the collapse mechanism of the certificate."""
 
 from pathlib import Path
 

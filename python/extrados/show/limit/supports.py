@@ -1,4 +1,4 @@
-"""Figures of supports that give way: states of an arch on its way, the joints that open."""
+"""Figures of moving supports: states of an arch during the movement, and the joints that open."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Figures of thrust lines at a given acceleration: lines, force polygons, friction needed."""
+"""Figures of thrust lines at a given acceleration: lines, force polygons, required friction."""
 
 from pathlib import Path
 from typing import Any
