@@ -502,7 +502,7 @@ def test_a_tie_is_dragged_and_the_capacity_follows(session: Session) -> None:
     assert len({round(c, 6) for c in capacities}) == 3
     assert 'start_stone = "voussoir 1"' not in text and 'kind = "tilt"' in text
     (reply,) = do(session, do="drag", handle="tie-0-start", to=[0.0, 2.0], ends=True)
-    assert "the anchorage of a tie lies in a block" in reply.words["limit"]
+    assert "the anchorage of a tie must lie in a block" in reply.words["limit"]
 
 
 def test_a_page_without_a_server_has_every_module_that_its_modules_import() -> None:

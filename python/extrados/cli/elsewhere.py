@@ -20,7 +20,9 @@ def explore(
     ] = "127.0.0.1",
     standalone: Annotated[
         Path | None,
-        typer.Option(help="write this file instead: a page that needs no server, with sliders for one dimension and for the tilt"),
+        typer.Option(
+            help="write a page that needs no server to this file, and exit; the page has sliders for one dimension and for the tilt"
+        ),
     ] = None,
     pupils: Annotated[int, typer.Option(min=1, max=60, help="for --class: greatest number of pupils at the same time")] = 30,
 ) -> None:
@@ -94,7 +96,9 @@ def import_plan(
     walls: Annotated[
         list[str], typer.Option("--walls", help="layer of the walls; repeat the option for further layers", show_default=False)
     ],
-    openings: Annotated[list[str] | None, typer.Option("--openings", help="layer of the openings; default: gaps in the walls")] = None,
+    openings: Annotated[
+        list[str] | None, typer.Option("--openings", help="layer of the openings; without this layer, gaps in the walls are openings")
+    ] = None,
     thickness: Annotated[
         float | None,
         typer.Option("--thickness", help="thickness [m] of walls that are drawn by their axes; default: the lines are faces of walls"),
@@ -108,9 +112,9 @@ def import_plan(
     try:
         heights = [float(part) for part in storeys.split(",")]
     except ValueError:
-        raise typer.BadParameter(f"{storeys}: expected heights such as 3.0,2.8", param_hint="--storeys") from None
+        raise typer.BadParameter(f"{storeys}: expected heights of the storeys in m, such as 3.0,2.8", param_hint="--storeys") from None
     if not all(0.5 < height < 20.0 for height in heights) or len(heights) > 50:
-        raise typer.BadParameter(f"{storeys}: expected heights between 0.5 and 20 m", param_hint="--storeys")
+        raise typer.BadParameter(f"{storeys}: expected at most 50 heights of storeys, each between 0.5 and 20 m", param_hint="--storeys")
     if thickness is not None and not 0.0 < thickness < 5.0:
         raise typer.BadParameter(f"{thickness:g}: expected a thickness above 0 and below 5 m", param_hint="--thickness")
     with errors():

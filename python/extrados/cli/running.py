@@ -32,7 +32,7 @@ def run(
     from extrados.running.run import run_to
 
     if out is not None and len(decks) > 1:
-        err_console.say("--out takes one deck at a time")
+        err_console.say("--out needs a single deck: several decks would share one folder")
         raise typer.Exit(WRONG_DECK)
     worst = 0
     with errors(as_json):
@@ -76,7 +76,7 @@ def motion(
     columns: Annotated[
         str | None,
         typer.Option(
-            help="layout of several columns without times: series (the rows are one series) or components (choose one with --channel)"
+            help="for several columns without times: series (the rows in order form one series) or components (each column is one: choose with --channel)"
         ),
     ] = None,
     baseline: Annotated[str, typer.Option(help="baseline correction: none, mean, linear, quadratic or cubic")] = "none",

@@ -210,7 +210,7 @@ class Folder:
             try:
                 code = child.wait(WAITS)
             except subprocess.TimeoutExpired:
-                code = "none (its output ended, but the process did not)"
+                code = "unknown, because the process did not end after its output"
             yield "" if code in (0, 3) else f"the run ended with exit code {code}", True
         finally:
             if child.poll() is None:

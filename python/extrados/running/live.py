@@ -86,7 +86,7 @@ class Live:
             place = data["analysis"] if isinstance(data["analysis"], list) else [data["analysis"]]
             _, name, *way = [*way, last]
             if name not in self.names:
-                raise DeckError([f"{key}: no analysis '{name}'; there are {', '.join(self.names)}"])
+                raise DeckError([f"{key}: the deck has no analysis '{name}'; its analyses are {', '.join(self.names)}"])
             *way, last = [str(self.names.index(name)), *way]
         for part in way:
             place = _step(place, part, key) if isinstance(place, list) else place.setdefault(part, {})
@@ -109,7 +109,7 @@ class Live:
     def _computed(self, name: str) -> Result:
         """The result without its verdict, which may look at parts of the deck that the analysis does not."""
         if name not in self.names:
-            raise KeyError(f"no analysis '{name}'; there are {', '.join(self.names)}")
+            raise KeyError(f"the deck has no analysis '{name}'; its analyses are {', '.join(self.names)}")
         i = self.names.index(name)
         options, building = self.deck.analyses[i], self.deck.buildings[i]
         own = f"{_fingerprint(options)} {self.deck.folder}"
@@ -142,7 +142,7 @@ class Live:
         (time,)) and its `unit`. KeyError names the available arrays."""
         there = self._computed(analysis).arrays
         if name not in there:
-            raise KeyError(f"{analysis} has no array '{name}'; there are {', '.join(there) or 'none'}")
+            raise KeyError(f"{analysis} has no array '{name}'; its arrays are {', '.join(there) or 'none'}")
         return np.asarray(there[name].data)
 
 
@@ -238,5 +238,5 @@ def _forget(kept: dict[Any, Any], most: int) -> None:
 def _step(place: list[Any], part: str, key: str) -> Any:
     """The element of an array of tables that a part of a key names by its number, from 0."""
     if not part.isdecimal() or int(part) >= len(place):
-        raise DeckError([f"{key}: '{part}' is not one of the numbers 0 to {len(place) - 1}"])
+        raise DeckError([f"{key}: expected a number from 0 to {len(place) - 1}, found '{part}'"])
     return place[int(part)]

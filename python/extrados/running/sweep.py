@@ -150,7 +150,7 @@ class Sweep:
         """The values of a column, one per member (members,), in the unit `units[name]`: numbers with NaN for missing values, or
         objects. KeyError names the available columns."""
         if name not in self.columns:
-            raise KeyError(f"no column '{name}'; there are {', '.join(self.columns)}")
+            raise KeyError(f"the sweep has no column '{name}'; its columns are {', '.join(self.columns)}")
         values = [row.get(name) for row in self.rows]
         if all(isinstance(v, bool) for v in values):
             return np.array(values, dtype=bool)
@@ -177,7 +177,9 @@ class Sweep:
         if self.shape is None:
             coords = {name: (dims, self.column(name), self._told(name)) for name in self.keys}
         elif len(self.rows) < self.members:
-            raise ValueError(f"{self.members - len(self.rows)} members are missing ({self.stopped}): no grid; see frame()")
+            raise ValueError(
+                f"{self.members - len(self.rows)} members are missing ({self.stopped}), so that the grid is incomplete: use frame()"
+            )
         else:
             dims, shape = tuple(self.keys), self.shape
             coords = {}
@@ -197,7 +199,7 @@ def _library(name: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError:
-        raise ImportError(f"this needs {name}: pip install 'extrados[data]'") from None
+        raise ImportError(f"this function needs the package {name}: pip install 'extrados[data]'") from None
 
 
 def sweep(
@@ -252,13 +254,13 @@ def _members(over: Any) -> tuple[list[str], list[list[Any]], tuple[int, ...] | N
         axes = {key: found for key, values in lists.items() if (found := [as_deck(value) for value in values])}
         short = [key for key in over if str(key) not in axes]
         if short or not axes:
-            raise DeckError([f"over: {key}: expected a list of values" for key in short] or ["over: names no key"])
+            raise DeckError([f"over: {key}: expected a list of values" for key in short] or ["over: expected at least one key"])
         if (count := math.prod(map(len, axes.values()))) > MOST_MEMBERS:
-            raise DeckError([f"over: every value with every other is {count:,} members, at most {MOST_MEMBERS:,}"])
+            raise DeckError([f"over: all combinations of the values are {count:,} members, more than the {MOST_MEMBERS:,} allowed"])
         return list(axes), [list(row) for row in itertools.product(*axes.values())], tuple(map(len, axes.values()))
     given = [dict(row) for row in over]
     if not given or any(set(row) != set(given[0]) or not row for row in given):
-        raise DeckError(["over: expected lists of values by key, or rows that all give the same keys"])
+        raise DeckError(["over: expected a list of values for each key, or rows that all have the same keys"])
     keys = [str(key) for key in given[0]]
     return keys, [[as_deck(row[key]) for key in given[0]] for row in given], None
 

@@ -352,7 +352,7 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         curve.set_xlim(0.0, period[-1])
         curve.set_xlabel("period of the impulse T_p [s]")
         curve.set_ylabel("amplitude A_p [g]")
-        curve.set_title(f"Verdict: the arch {r.verdict}")
+        curve.set_title(f"Verdict: {'collapse' if r.verdict == 'fails' else 'no collapse'}")
         curve.legend(loc="upper right")
         t = run.array(name, "time")
         record.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.6)

@@ -51,7 +51,7 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     if name is None:
         return words, {}
     if name not in run.arrays:
-        raise StoreError(f"the run has no analysis {name[:60]!r} with arrays")
+        raise StoreError(f"the run has no analysis {name[:60]!r} with stored arrays")
     kind = run.analysis(name)["kind"]
     arrays = {key: array.numbers for key, array in run.arrays[name].items()}
     made = Shown(run, name, arrays)
@@ -416,7 +416,7 @@ class Shown:
             self.send("bin_count")
             self._draw(
                 "Greatest rotations",
-                _axis("bin_middle", "greatest rotation over the critical one", ""),
+                _axis("bin_middle", "greatest rotation / critical rotation", ""),
                 _axis("", "runs", ""),
                 [_series("bin_count", "runs", sort="bars")],
                 least=0.0,

@@ -61,7 +61,9 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
         plain.set_xlim(0.0, None)
         plain.set_xlabel(first)
         plain.set_ylabel("amplitude [g]")
-        plain.set_title(f"Lowest failing {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}")
+        plain.set_title(
+            f"Lowest amplitude that causes collapse, {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}"
+        )
         scaled.set_ylim(0.0, None)
         if slender:
             scaled.set_xlabel("frequency of the pulse / p")

@@ -35,7 +35,7 @@ class Drawn:
 
     def __getitem__(self, name: str) -> Figure:
         if name not in self.figures:
-            raise KeyError(f"no figure '{name}'; there are {', '.join(self.figures) or 'none'}")
+            raise KeyError(f"the analysis has no figure '{name}'; its figures are {', '.join(self.figures) or 'none'}")
         return self.figures[name]
 
     def save(self, folder: str | Path, suffix: str = "png") -> list[Path]:

@@ -128,7 +128,7 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
         saved = style.save(fig, folder, f"{name}-modes")
     where = "on the plan" if place.shape[1] == 3 else "of the blocks in their section"
-    return [(saved, f"Displacements in the first modes, {where}; the colour is their height.")]
+    return [(saved, f"Displacements in the first modes, {where}. The colour shows the height above the ground.")]
 
 
 def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -142,7 +142,7 @@ def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         right.set_xlabel("control displacement [mm]")
         right.set_ylabel("base shear [kN]")
         saved = style.save(fig, folder, f"{name}-history")
-    return [(saved, "Displacement of the control level relative to the ground, and base shear over it.")]
+    return [(saved, "Left: displacement of the control level relative to the ground. Right: base shear over this displacement.")]
 
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -177,6 +177,6 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
             axes[1].set_xlabel(f"{r.intensity} [g]")
             axes[1].set_ylabel("greatest drift of a pier [%]")
         saved = style.save(fig, folder, f"{name}-fragility")
-    caption = f"Fragility over {r.motions} motions: fitted curves" + (", and shares at the levels" if r.levels_g else "")
+    caption = f"Fragility over {r.motions} motions: fitted curves" + (", and shares of the motions at each level" if r.levels_g else "")
     caption += f". Right: greatest drift of every run, drawn up to {LARGEST_DRIFT:g} %." if history else ". Steps: shares of the motions."
     return [(saved, caption)]

@@ -83,7 +83,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 label="smoothed (Konno and Ohmachi)",
             )
             fourier.legend(loc="lower left", fontsize=7)
-            caption += ", raw and smoothed by Konno and Ohmachi's window (b = 40)"
+            caption += ", unsmoothed, and smoothed by the window of Konno and Ohmachi (b = 40)"
         found.append((style.save(fig, folder, f"{name}-spectra"), f"{caption}."))
     return found
 
@@ -150,7 +150,7 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 style.save(fig, folder, f"{name}-spectra"),
                 "Response spectra of the set"
                 + (
-                    ", and root mean square Fourier amplitude (a sum of few spectral lines has a peak at each line)."
+                    ", and root mean square Fourier amplitude (generated motions with few spectral lines have a peak at each line)."
                     if columns == 2
                     else "."
                 ),

@@ -57,8 +57,8 @@ def _stored(folder: Path | None, what: str) -> Iterator[None]:
     except Exception as error:
         said = error.args[0] if error.args else error
         raise StoreError(
-            f"{folder}: {what} cannot be made, since the results are damaged: {type(error).__name__}: {said}; "
-            "if nothing else has changed them, this is a fault of extrados"
+            f"{folder}: {what} cannot be made, because the results are damaged ({type(error).__name__}: {said}). "
+            "If no other program has changed the results, report this as a fault of extrados"
         ) from error
 
 

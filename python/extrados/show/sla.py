@@ -489,7 +489,7 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         number = np.arange(1, len(state) + 1)[state]
         ax.stackplot(number, get("stored")[state], get("dissipated")[state], colors=["#cfe3d6", "#f2c28b"], labels=["stored", "dissipated"])
         ax.plot(number, get("external")[state], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads")
-        ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="area of the teeth of the saw-tooth curves")
+        ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="energy of the teeth (area of the saw-tooth curves)")
         style.numbers(ax.xaxis)
         ax.set_xlabel("event")
         ax.set_ylabel("energy [J]")

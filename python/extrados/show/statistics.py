@@ -65,7 +65,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.text(
                 0.5,
                 0.5,
-                f"{int(counts[full[0]])} runs rotate by {where} of the critical rotation",
+                f"{int(counts[full[0]])} runs have greatest rotations of {where} times the critical rotation",
                 transform=ax.transAxes,
                 ha="center",
                 fontsize=8,
@@ -140,7 +140,7 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     at, share = run.array(name, "contribution_intensity"), run.array(name, "contribution")
     with style.figure(9.0, 3.8, columns=2) as (fig, (left, right)):
         left.plot(x, rate, "o-", color=style.GROUND, markersize=4)
-        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--", label=f"collapse, {r.annual_collapse_rate:.2g} a year")
+        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--", label=f"collapse, {r.annual_collapse_rate:.2g} per year")
         low, high = (np.nan if v is None else v for v in r.annual_collapse_rate_interval)
         if np.isfinite(low):
             left.axhspan(low, high, color=style.THRUST, alpha=0.15, linewidth=0)
@@ -156,13 +156,13 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.axvline(r.median, color=style.HINGE, linestyle="--", label=f"median of collapse, {r.median:.3g}")
         right.set_xscale("log")
         right.set_ylim(bottom=0.0)
-        right.set_ylabel("rate of collapse by ln(intensity) [1/year]")
+        right.set_ylabel("contribution to the rate of collapse per ln(intensity) [1/year]")
         right.set_title("Intensities of collapse")
         right.legend()
         for ax in (left, right):
             ax.set_xlabel(_axis(r))
         return style.save(fig, folder, f"{name}-annual"), (
-            f"Hazard curve with the annual rate of collapse and its {100 * r.confidence:g} % band; the area on the right is that rate."
+            f"Left: hazard curve, and annual rate of collapse with its {100 * r.confidence:g} % band. Right: contributions of the intensities to this rate, which equals the area."
         )
 
 
@@ -449,7 +449,7 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             if any(check.alternative for check in found.checks.values())
             else ""
         )
-        pale = " Pale bars: formulas for comparison." if any(not code for _, _, code in rows) else ""
+        pale = " Pale bars: formulas that serve only for comparison." if any(not code for _, _, code in rows) else ""
         return [
             (
                 style.save(fig, folder, name),

@@ -78,7 +78,7 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
         "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention "
-        "of the size that meets the target (if no size does: of the greatest size considered)."
+        "of the size that meets the target (if no size meets it: the greatest size considered)."
     )
 
 

@@ -249,7 +249,9 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
     if r.probes:
         found.append(Heading(words("Further runs"), 2))
         probed = [(p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes]
-        found.append(Table(("analysis", "difference from the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2)))
+        found.append(
+            Table(("analysis", "change with respect to the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2))
+        )
     if r.not_done:
         found.append(Words("Not done, or without a verdict: " + "; ".join(r.not_done) + ".", "warn"))
     return found
@@ -355,7 +357,7 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             h = run.results_of(a["name"], Assess).hazard
-            text = f"{h.told[:1].upper()}{h.told[1:]}. Strategies of a constant acceleration take {h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
+            text = f"{h.told[:1].upper()}{h.told[1:]}. Static strategies use the constant acceleration {h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
             if h.pulse_amplitude_g is not None and h.pulse_period_s is not None:
                 text += f" The primary impulse has {h.pulse_amplitude_g:.3g} g over {h.pulse_period_s:.3g} s."
             found.append(Words(text, lang=_foreign(words)))
@@ -576,7 +578,7 @@ def _numbers(run: Stored, hidden: set[str], words: Language) -> list[Block]:
 def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Language) -> list[Block]:
     lines = [f"extrados run {deck['path'] or 'deck.toml'}"]
     parts = [n for b in run.analyses if b["kind"] == "assess" and b["results"] for n in run.results_of(b["name"], Assess).parts]
-    lines += [f"extrados run {n}.toml        # of assess/, put beside the deck" for n in parts]
+    lines += [f"extrados run {n}.toml        # the deck is in assess/: copy it beside the original deck first" for n in parts]
     files = run.summary.get("files", {})
     sums = [
         (name, files[name]) for name in (STORE, *sorted(n for n in files if n.endswith(".csv") or n.startswith("assess/"))) if name in files

@@ -99,7 +99,7 @@ def draw(curves: list[Push], path: Path) -> Path:
             labels.append("incremental solution")
         if any(curve.walls for curve in curves):
             marks.append(Line2D([], [], color="#555", marker="+", markersize=7, linestyle=""))
-            labels.append("its walls at its greatest load")
+            labels.append("walls of the building at its greatest load")
         ax.set_xlabel("control displacement [mm]")
         ax.set_ylabel("base shear [kN]" if all(curve.weight is not None for curve in curves) else "load [kN]")
         ax.set_xlim(left=min(0.0, *(1e3 * float(curve.displacement.min()) for curve in curves), 0.0))

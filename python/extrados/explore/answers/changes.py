@@ -50,7 +50,7 @@ def set_keys(desk: Desk, message: Message) -> Iterator[Reply]:
     if not isinstance(changes, dict) or not 0 < len(changes) <= 50:
         raise BadMessage("a message may change 1 to 50 keys of the deck")
     if not all(KEY.fullmatch(key) for key in changes):
-        raise BadMessage("a changed key is not written as a key of a deck")
+        raise BadMessage("the name of a changed key is not valid in a deck")
     reply = _change(desk, changes)
     if message.get("rocking") is True and desk.there().deck.motion is not None:
         for response in motion.response(desk, {}):

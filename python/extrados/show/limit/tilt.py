@@ -88,7 +88,7 @@ def _caption(r: Tilt) -> str:
         slides += f" Without dilatancy, collapse is possible from {least:.4f} g (not drawn)."
         if r.collapse_acceleration_load_path_g is not None:
             slides += f" The analysis by load paths gives the design value {r.collapse_acceleration_load_path_g:.4f} g."
-    return f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}{slides}"
+    return f"Thrust line, hinges and mechanism at the collapse acceleration. Hinges: {letters}.{free}{slides}"
 
 
 def _title(r: Tilt) -> str:
@@ -120,7 +120,7 @@ def _draw_fracture(run: Stored, name: str, folder: Path, blocks: list[np.ndarray
             style.section_axes(ax)
         return (
             style.save(fig, folder, f"{name}-fracture"),
-            f"Mechanisms with the buttress whole and cracked; the crack starts {f.crack_height_m:.2f} m above the base. The wedge below the crack does not move.",
+            f"Mechanisms with the uncracked and with the cracked buttress. The crack starts {f.crack_height_m:.2f} m above the base. The wedge below the crack does not move.",
         )
 
 
