@@ -237,7 +237,7 @@ def test_the_line_follows_a_drag_from_the_stones_and_its_thrust_is_a_handle(page
     assert page.locator("[data-handle=thrust]").get_attribute("aria-valuetext").startswith(f"{middle / 1e3:.4g}"[:4])
 
 
-def test_what_was_asked_for_last_is_seen_last(page: Any) -> None:
+def test_what_was_requested_last_is_seen_last(page: Any) -> None:
     most = page.evaluate("window.extrados.scene.most_N")
     page.evaluate(
         """most => {

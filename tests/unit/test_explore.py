@@ -87,7 +87,7 @@ def _loads(session: Session) -> dict[str, Any]:
     return {"load": first["load"]} if "load" in first else {}
 
 
-def test_a_line_passes_where_it_is_asked_to_or_as_near_as_it_can(session: Session) -> None:
+def test_a_line_passes_through_the_requested_point_or_near_it(session: Session) -> None:
     (reply,) = do(session, do="show", through={"joint": 18, "share": 0.5})
     there = reply.words["scene"]["through"]
     assert there["reached"] == pytest.approx(0.5, abs=1e-7)
@@ -148,7 +148,7 @@ kind = "tilt"
 """
 
 
-def test_what_nothing_brings_down_is_not_said_to_fall(session: Session) -> None:
+def test_a_structure_that_nothing_overturns_is_not_reported_as_collapsing(session: Session) -> None:
     (reply,) = do(session, do="open", text=HELD)
     assert reply.words["scene"]["stands"] is True
     assert "no such load causes collapse" in reply.words["scene"]["immovable"]
@@ -256,7 +256,7 @@ def test_a_wall_rocks_where_it_stands(session: Session) -> None:
     assert reply.arrays["moving_outline"][:, 0].min() == pytest.approx(0.0, abs=1e-12)
 
 
-def test_a_fault_of_the_program_is_told_and_changes_nothing(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_of_the_program_is_reported_and_changes_nothing(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*_: Any) -> None:
         raise ValueError("a fault that was planted")
 
@@ -341,7 +341,7 @@ def test_the_map_gets_finer_and_is_kept(session: Session, monkeypatch: pytest.Mo
     assert len(do(session, do="domain")) == 1, "the same building: nothing to compute"
 
 
-def test_the_map_of_a_base_that_gives_way_begins_with_few_cells(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_map_of_a_compliant_base_begins_with_few_cells(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each of them takes long: the first reply is not to wait for a hundred."""
     monkeypatch.setattr("extrados.explore.rocking.PATIENCE", 0.0)
     do(session, do="open", preset="rocking/soft-base")

@@ -424,7 +424,7 @@ def test_a_page_that_goes_amid_long_work_holds_up_nobody(folder: Path, monkeypat
         page.close()
 
 
-def test_what_fails_at_the_end_of_a_page_is_told_on_the_log(
+def test_what_fails_at_the_end_of_a_page_is_reported_on_the_log(
     folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """And a session is closed under the same rules for files as all that its page asked for."""

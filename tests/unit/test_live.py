@@ -50,7 +50,7 @@ def calls(monkeypatch) -> Counter:
     return counted
 
 
-def test_nothing_runs_before_it_is_asked_for(calls) -> None:
+def test_nothing_runs_before_a_result_is_requested(calls) -> None:
     live = extrados.live(deck("tilt", "rocking"))
     assert not calls
     first = live["tilt"]["collapse_acceleration_g"]
@@ -162,7 +162,7 @@ def test_what_there_is_not_is_named() -> None:
         live.array("tilt", "gama")
 
 
-def test_a_refusal_tells_what_it_assumed_and_a_fault_in_a_verdict_is_no_traceback(monkeypatch) -> None:
+def test_a_refusal_reports_what_it_assumed_and_a_fault_in_a_verdict_is_no_traceback(monkeypatch) -> None:
     live = extrados.live(deck("tilt"))
     live.set("structure.thickness", 0.02)
     assert live.result("tilt").assumptions["joints.friction"].value == 0.7

@@ -263,7 +263,7 @@ def test_a_cluster_gives_the_bits_of_one(cluster) -> None:
     assert one.rows == two.rows and len(two) == 3
 
 
-def test_a_process_that_dies_is_told(tmp_path: Path) -> None:
+def test_a_process_that_dies_is_reported(tmp_path: Path) -> None:
     """A member that ends its process, as one for which there is no memory would."""
     from extrados.analyses import workers
 
