@@ -316,7 +316,7 @@ def a_survey_ranks_what_each_deck_says(deck: Deck, within: float) -> None:
         try:
             survey.decks_of(Path(name))
         except DeckError as error:
-            must("holds no decks" in str(error), str(error))
+            must("contains no decks" in str(error), str(error))
         else:
             must(False, "a folder without decks is surveyed")
         (Path(name) / "bad.toml").write_text("[structure]\nkind = 'block'\nwidth = -1.0\nheight = 2.0\n")

@@ -183,7 +183,7 @@ def test_relation(relation: Relation) -> None:
                 (place / f"{relation.name}.json").write_text(json.dumps(row), encoding="utf-8")
 
 
-def test_a_whole_run_asks_enough_buildings() -> None:
+def test_a_whole_run_runs_enough_buildings() -> None:
     assert sum(most_of(r) for r in RELATIONS.values() if not r.awaits) >= WHOLE
 
 

@@ -94,7 +94,7 @@ def test_only_missing_batches_run_again(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("at", [0, 10, 40, 200, -200, -30, -1])
-def test_a_damaged_batch_is_told_and_computed_again(tmp_path: Path, at: int) -> None:
+def test_a_damaged_batch_is_reported_and_computed_again(tmp_path: Path, at: int) -> None:
     """Wherever a bit flipped: neither taken nor in the way."""
     out = tmp_path / "run"
     sweep(context(out), "t", Squares(), 3000, "squares")

@@ -101,7 +101,7 @@ def test_bond_and_cut_units() -> None:
     assert len(make_brickwork(Bond(0.25, 0.12, least_unit=0.05), 1.02, 0.12).mass) == 5
 
 
-def test_lintels_bear_and_share_piers() -> None:
+def test_lintels_rest_on_piers_and_share_them() -> None:
     bond = Bond(0.25, 0.12)
     wall = make_brickwork(bond, 3.0, 2.4, [(0.5, 1.0, 0.0, 1.2), (1.1, 1.6, 0.6, 1.2), (2.2, 2.6, 0.0, 2.4)])
     box = {n: o for n, o in zip(wall.block_names, wall.outlines, strict=True) if n.startswith("lintel")}

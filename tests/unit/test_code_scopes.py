@@ -157,7 +157,7 @@ def test_the_confidence_factor_of_masonry_that_is_taken_not_to_crush_is_that_of_
     )
 
 
-def test_a_body_that_its_weight_brings_down_cannot_stand() -> None:
+def test_a_body_that_its_weight_overturns_cannot_stand() -> None:
     """1 m of wall, 0.6 m by 6 m, 2000 kg/m^3: 21.18 kNm hold, 60 kNm of thrust drive: 38.82 kNm per radian."""
     (told,) = run("facade", height=6.0, thickness=0.6, floors=[{"height": 6.0, "thrust": "10 kN"}]).analyses
     assert told["status"] == "ok" and told["verdict"]["outcome"] == "cannot-stand" and told["verdict"]["ratio"] == 0.0

@@ -215,7 +215,7 @@ def grown(model: BlockModel, motion, scale: float, end: float) -> tuple[float, f
     return found, turning(run.outcome, [one.outcome for one in others])
 
 
-def test_chaos_is_told_by_growth() -> None:
+def test_chaos_is_reported_by_growth() -> None:
     """1 x 5 m, 2 Hz, 1 g + k 1e-5 g: outcomes are scattered, and 39 of 40 runs say so by growth, many that two nudges leave as they are."""
     model, motion = BlockModel(make_block(1.0, 5.0)), pulses.harmonic(1.0, 2.0, 20.0)
     scales = [(1.0 + k * 1e-5) * GRAVITY for k in range(40)]
@@ -250,7 +250,7 @@ def test_ordinary_runs_are_not_chaotic() -> None:
     assert flagged["sine"] == 0 and flagged["record"] <= 4
 
 
-def test_a_window_of_collapse_among_recoveries_is_told() -> None:
+def test_a_window_of_collapse_among_recoveries_is_reported() -> None:
     """1.0525 g + k 1e-5 g: k = 2, 3, 4 collapse, k = 0, 1, 5, 6, 7 recover. A perturbation of 1e-6 leaves the three where they are."""
     model, motion = BlockModel(make_block(1.005, 1.005 * 5.01)), pulses.harmonic(1.0, 1.625, 10.0)
     ends = []

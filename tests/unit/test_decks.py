@@ -238,7 +238,7 @@ def test_decks_from_python() -> None:
         ({"analysis": {"kind": "moving-load", "dynamic": 1.4}}, "analysis.dynamic: unknown key; it belongs in analysis.factors"),
     ],
 )
-def test_a_key_at_the_wrong_place_is_told_its_own(tables: dict, words: str) -> None:
+def test_a_key_at_the_wrong_place_is_reported_with_its_right_place(tables: dict, words: str) -> None:
     arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
     with pytest.raises(DeckError, match=re.escape(words)):
         make_deck({"structure": arch, **tables})

@@ -52,7 +52,7 @@ def test_worn_corners_weaken() -> None:
     assert capacity[1] == pytest.approx(0.9 * 0.25, rel=0.02)
 
 
-def test_a_support_that_sinks() -> None:
+def test_a_support_that_settles() -> None:
     """An arch whose springing moves out hinges and stands; its support is named by a joint."""
     move = {"joint": "joint 7", "dx": 0.1, "duration": 1.0}
     dem = {"kind": "dem", "end_time": 1.5, "joints": {"normal_stiffness": 1e10}, "initial": {"movements": [move]}}

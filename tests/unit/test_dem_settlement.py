@@ -57,7 +57,7 @@ def test_what_falls_without_a_proof_is_refused(tmp_path) -> None:
     assert "friction may hold a wedged block" in found.reason
 
 
-def test_what_comes_to_no_rest_is_refused_and_not_called_falling(tmp_path, monkeypatch) -> None:
+def test_blocks_that_do_not_come_to_rest_are_refused_and_not_called_collapsing(tmp_path, monkeypatch) -> None:
     """In too few steps: limit analysis finds that the column stands."""
     stones = {f"drum {k}": [[0, k], [1, k], [1, k + 1], [0, k + 1]] for k in range(4)}
     monkeypatch.setattr(dem.Options, "__init__", _few_steps(dem.Options.__init__))
@@ -107,7 +107,7 @@ def test_what_rigid_contacts_hold_by_jamming_is_doubted(tmp_path, space, spread)
     assert any("by forces that self-weight does not cause" in text and "key falls" in text for text in found.warnings)
 
 
-def test_the_pulses_that_it_bears_are_doubted_too(tmp_path) -> None:
+def test_the_pulses_that_it_carries_are_doubted_too(tmp_path) -> None:
     pulses = 'solver = "nonsmooth"\nmode_II = false\npulse = "step"\namplitudes = ["0.2 g"]\ndurations = [0.1, 0.2]\nsettle = 0.5'
     found = answered(tmp_path, keystone(0.15), analysis=pulses, kind="dem-domain")
     assert found.status == "ok" and "with springs the structure collapses as it settles" in found.answer
@@ -271,7 +271,7 @@ def test_two_piers_on_one_level_have_footings_of_their_own(tmp_path) -> None:
     assert "floor" not in floored.names
 
 
-def test_what_slides_off_its_footing_is_told_of_the_floor(tmp_path) -> None:
+def test_a_block_that_slides_off_its_footing_gets_a_hint_at_the_floor(tmp_path) -> None:
     deck = tmp_path / "deck.toml"
     sliding = TOPPLING.replace("height = 2.0", "height = 0.2").replace("[motion]", "[joints]\nfriction = 0.3\n[motion]")
     deck.write_text(sliding)

@@ -100,7 +100,7 @@ def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: flo
 
 
 @pytest.mark.verify
-def test_dowels_bear_as_in_limit_analysis(tmp_path) -> None:
+def test_dowels_carry_the_force_of_limit_analysis(tmp_path) -> None:
     """A drum that slides on a dowel: friction plus the dowel's strength over the weight, within 1 % by both."""
     structure = 'kind = "column"\nsection = "round"\nsides = 16\nwidth = 1.0\nheight = 1.2\ndrums = 2\ndowels = "2 kN"'
     structure += '\n[[joints.types]]\njoints = ["ground"]\nfriction = 1.0'  # the lower drum does not slide first

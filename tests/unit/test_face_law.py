@@ -39,7 +39,7 @@ def test_a_block_without_torsion_keeps_its_capacity() -> None:
         assert FaceLaw(limit).push(0.0).gamma == pytest.approx(capacity, abs=1e-4)
 
 
-def test_both_are_told_where_they_differ(tmp_path: Path) -> None:
+def test_both_are_reported_where_they_differ(tmp_path: Path) -> None:
     (tmp_path / "c.obj").write_text(obj(corner()))
     tables = {
         "structure": {"kind": "blocks", "file": "c.obj"},

@@ -108,7 +108,7 @@ def test_the_verdict_is_on_the_accepted_rate() -> None:
     assert run({**levels, "hazard": HAZARD}).verdict.outcome == "not-applicable"
 
 
-def test_a_hazard_curve_that_ends_too_early_is_told() -> None:
+def test_a_hazard_curve_that_ends_too_early_is_reported() -> None:
     short = {"intensities": [0.3, 0.4], "annual_rates": [1e-2, 8e-3]}
     result = run({"count": 40, "levels": [0.2, 0.3, 0.4, 0.6], "bootstrap": 0, "hazard": short})
     assert any("ends of the hazard curve" in text for text in result.warnings)

@@ -184,7 +184,7 @@ def test_no_property_is_silently_without_effect(name: str) -> None:
     assert not set(silent) - ({"material.density"} if name in WEIGHTLESS else set()), silent
 
 
-def test_what_is_told_to_be_left_out_has_no_effect() -> None:
+def test_a_property_reported_as_neglected_has_no_effect() -> None:
     """The other way round, where it takes no time: the remark is true."""
     for name in ("tilt", "supports", "dem-parameters", "arch by codes", "pier"):
         for key, (one, other, *more) in VALUES.items():
@@ -217,7 +217,7 @@ worn_corners = "1 cm"
 """
 
 
-def test_it_is_told_once_with_file_and_line() -> None:
+def test_it_is_reported_once_with_file_and_line() -> None:
     remarks = left_out(read_text(TOLD.encode()))
     assert [remark.text.partition(";")[0] for remark in remarks] == [
         "deck.toml:8: joints.cohesion: tilt, thrust do not use this key",
@@ -231,13 +231,13 @@ def test_it_is_told_once_with_file_and_line() -> None:
     assert [sum("not use this key" in w for w in r.warnings) for r in run.results] == [3, 1]
 
 
-def test_check_tells_it_too_and_passes(tmp_path) -> None:
+def test_check_reports_it_too_and_passes(tmp_path) -> None:
     (tmp_path / "deck.toml").write_text(TOLD)
     answer = CliRunner().invoke(app, ["check", str(tmp_path / "deck.toml")])
     assert answer.exit_code == 0 and answer.output.count("warning: ") == 4 and answer.output.endswith("ok\n")
 
 
-def test_what_some_analyses_leave_out_is_told_of_what_bears_on_standing_alone() -> None:
+def test_a_property_that_only_some_analyses_neglect_is_reported_if_it_affects_stability() -> None:
     """Cohesion that dem has and tilt has not; not the restitution that statics never asks for."""
     deck = {
         "structure": ARCH,
@@ -252,12 +252,12 @@ def test_what_some_analyses_leave_out_is_told_of_what_bears_on_standing_alone() 
     assert left_out(make_deck(deck)) == [], "who overrides it for itself knows"
 
 
-def test_defaults_are_not_told() -> None:
+def test_defaults_are_not_reported() -> None:
     same = {"cohesion": 0.0, "friction": 0.7, "restitution": "inelastic", "types": []}
     assert left_out(make_deck({"structure": ARCH, "joints": same, "analysis": {"kind": "tilt"}})) == []
 
 
-def test_a_building_that_cannot_be_made_is_told_by_its_analysis(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_building_that_cannot_be_made_is_reported_by_its_analysis(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever goes wrong with it: the other analyses of the deck still count."""
 
     def fails(*_: object) -> None:

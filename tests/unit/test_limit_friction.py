@@ -170,7 +170,7 @@ def test_a_joint_that_carries_nothing_needs_no_friction() -> None:
     assert few.friction == pytest.approx([100.0, 0.65])
 
 
-def test_the_bound_without_friction_is_told_without_a_sign() -> None:
+def test_the_bound_without_friction_is_reported_without_a_sign() -> None:
     data = {
         "structure": {"kind": "brickwork", "units": 4, "courses": 3, "unit_length": 0.5, "unit_height": 0.25},
         "joints": {"friction": 0.65},
@@ -217,7 +217,7 @@ def test_a_load_may_pull_down_what_stands() -> None:
     assert LimitAnalysis(column, 0.7, loads=pushed).certificate() is not None
 
 
-def test_a_stone_held_by_friction_alone_bears_nothing() -> None:
+def test_a_stone_held_by_friction_alone_carries_nothing() -> None:
     """A stone between two piers, with nothing below it: it stands with dilatancy, which wedges it, and slides out without."""
     names = {"left": (0.0, 0.0, 1.0, 1.0), "right": (1.5, 0.0, 1.0, 1.0), "held": (1.0, 0.5, 0.5, 0.4)}
     stones = [{"name": name, "points": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]} for name, (x, y, w, h) in names.items()]

@@ -164,7 +164,7 @@ def test_walls_that_are_all_held_have_no_mechanism_and_the_crushing_hinge_is_set
     assert [found[name, 1] for name in ("front", "right", "back", "left")] == pytest.approx([alone.multiplier] * 4)
 
 
-def test_what_openings_share_is_left_out_once() -> None:
+def test_the_common_part_of_openings_is_deducted_once() -> None:
     """Two that overlap, and one that leaves nothing but what the other leaves, are one opening."""
     whole = {"storey": 1, "x": [1.0, 4.0], "z": [1.0, 2.5]}
     parts = [{**whole, "x": [1.0, 3.0]}, {**whole, "x": [2.0, 4.0]}, {**whole, "x": [2.5, 2.8], "z": [1.5, 2.0]}]
@@ -293,7 +293,7 @@ def test_the_floor_spectrum_of_the_circolare() -> None:
     assert late >= place(0.44, 0.08) * (0.44 / (2.0 * np.pi)) ** 2
 
 
-def test_at_a_height_the_floor_is_asked_and_either_check_suffices() -> None:
+def test_at_a_height_the_floor_is_used_and_either_check_suffices() -> None:
     base = {"mechanism": "wall", "height": 1.2, "thickness": 0.3, "spectrum": SITE}
     low = mechanism(**base)["local-mechanism"].checks
     high = mechanism(**base, base_height=9.0, building_height=10.0, storeys=3)["local-mechanism"]

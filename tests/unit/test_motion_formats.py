@@ -185,7 +185,7 @@ def test_no_such_file_folder_or_name(tmp_path) -> None:
 def test_channels(tmp_path) -> None:
     text = files.cosmos([[("acceleration", "cm/sec2(04)", A)], [("acceleration", "g(02)", G)]])
     path = put(tmp_path, "two.v2c", text)
-    with pytest.raises(RecordError, match="2 channels. Select one"):
+    with pytest.raises(RecordError, match=r"2 channels\. Select one"):
         read_record(path)
     assert read_record(path, 2).unit == "g" and read_record(path, "180 Deg").unit == "g"
     with pytest.raises(RecordError, match="channel 3 does not exist"):

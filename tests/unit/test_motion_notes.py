@@ -61,7 +61,7 @@ def warnings_of(folder: Path, text: str) -> list[list[str]]:
 
 
 @pytest.mark.parametrize("kind", USERS)
-def test_an_offset_is_told_by_every_kind(tmp_path, kind) -> None:
+def test_an_offset_is_reported_by_every_kind(tmp_path, kind) -> None:
     offset(tmp_path)
     building, keys = USERS[kind]
     for motion in (RECORD, SUITE):

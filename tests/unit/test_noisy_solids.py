@@ -138,7 +138,7 @@ def test_a_stone_on_slivers_alone_is_refused_by_name() -> None:
     assert len(assemble([base, slab], 1e-4).a) == 2
 
 
-def test_the_tolerance_that_is_told_closes_the_gap() -> None:
+def test_the_tolerance_that_is_reported_closes_the_gap() -> None:
     """A slab that lies askew by noise: the hint counts its slant, too."""
     askew = box((0, 0, 1), (1, 1, 1.3))
     tilt = np.array([[1, 0, 0], [0, 1, 0], [4e-3, 0, 1]])

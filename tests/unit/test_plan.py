@@ -132,12 +132,12 @@ def test_springs_of_the_ground_are_those_of_the_soles():
         ({"floors": [{"storey": 1, "kind": "flexible"}]}, "needs young"),
     ],
 )
-def test_wrong_plans_are_told(change, words):
+def test_wrong_plans_are_reported(change, words):
     with pytest.raises(ValidationError, match=words):
         plan(**{"walls": WALLS, **change})
 
 
-def test_what_does_not_fit_together_is_told():
+def test_parts_that_do_not_fit_together_are_reported():
     with pytest.raises(BadGeometry, match="ring"):
         meshed(plan([WALLS[0], WALLS[1], WALLS[2]], floors=[FLOOR]))
     with pytest.raises(BadGeometry, match="each other"):
@@ -158,7 +158,7 @@ def test_walls_that_lie_on_each_other_are_refused(start, end):
     assert not meshed(plan([WALLS[0], beside])).warnings
 
 
-def test_walls_that_end_short_of_each_other_are_told():
+def test_walls_that_end_short_of_each_other_are_reported():
     for gap, told in ((0.0, False), (0.05, True), (0.29, True), (0.31, False)):
         side = {"name": "side", "start": [6.0 + gap, 0.0], "end": [6.0 + gap, 5.0], "thickness": 0.3}
         warnings = meshed(plan([WALLS[0], side])).warnings

@@ -67,7 +67,7 @@ def test_truncation_at_every_byte(tmp_path) -> None:
             continue
 
 
-def test_units_and_steps_are_asked_for(tmp_path) -> None:
+def test_units_and_steps_are_required(tmp_path) -> None:
     bare = read_record(write(tmp_path, "0.01\n-0.2\n0.03\n0.0\n"))
     with pytest.raises(RecordError, match="no time step"):
         record_motion(bare, Treatment(unit="g"))

@@ -242,7 +242,7 @@ def test_the_template_of_an_office_orders_and_chooses(folder: Path, tmp_path: Pa
         ('logo = "../logo.png"', "logo.png"),
         ('logo = "/etc/passwd"', "inside the template's folder"),
         ('logo = "logo.svg"', "ends in"),
-        ('logo = "text.png"', "is no PNG"),
+        ('logo = "text.png"', "is not a PNG"),
         ('logo = "large.png"', "at most 1 MB"),
         ('colour = "red); #panic()"', "colour"),
         ('sections = ["answer", "answer"]', "each section once"),

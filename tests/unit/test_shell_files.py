@@ -102,7 +102,7 @@ def test_groups_say_what_elements_are(tmp_path, form):
     assert [foot.name for foot in mesh.feet] == [ground] and mesh.feet[0].nodes.tolist() == low.tolist()
 
 
-def test_a_file_bears_as_the_plan_does(tmp_path):
+def test_a_file_carries_as_the_plan_does(tmp_path):
     """The same corner of two walls from a file and on a plan: the same weight, stiffness and first crack."""
     written(tmp_path, "msh")
     material = """
@@ -213,13 +213,13 @@ def test_a_membrane_is_a_floor(tmp_path):
         ([{"name": "front", "membrane": True}, {"name": "ground", "support": "fixed"}], "a membrane must be horizontal"),
     ],
 )
-def test_groups_that_do_not_fit_are_told(tmp_path, groups, words):
+def test_groups_that_do_not_fit_are_reported(tmp_path, groups, words):
     with pytest.raises(BadGeometry, match=words) as told:
         read(written(tmp_path, "msh"), groups)
     assert str(told.value).startswith("corner.msh")
 
 
-def test_files_that_do_not_fit_are_told(tmp_path):
+def test_files_that_do_not_fit_are_reported(tmp_path):
     xyz, one, _, _, _ = corner()
     ground = [{"name": "7", "support": "fixed"}]
     for cells, words in (
@@ -290,7 +290,7 @@ def corner_with(folder, elsewhere, nodes, cells):
 
 
 @pytest.mark.parametrize("wrong", WRONG)
-def test_elements_that_are_none_are_told(tmp_path, wrong):
+def test_elements_that_are_none_are_reported(tmp_path, wrong):
     """With the line of the deck that names the file, by `check` as by a run."""
     words, *change = WRONG[wrong]
     corner_with(tmp_path, *change)
@@ -305,7 +305,7 @@ def test_elements_that_are_none_are_told(tmp_path, wrong):
     assert compute(Context(read_deck(deck))).results[0].reason == said
 
 
-def test_what_is_not_joined_is_told(tmp_path):
+def test_unjoined_parts_are_reported(tmp_path):
     """Nodes at one place, a node on the edge of an element: a warning, since a joint may be open. Orphans count for nothing."""
     support = [{"name": "7", "support": "fixed"}]
     whole = read(written(tmp_path, "vtu"), support)
@@ -341,7 +341,7 @@ def test_what_is_not_joined_is_told(tmp_path):
         lambda text: "\x00\x01" + text,
     ],
 )
-def test_damaged_files_are_told(tmp_path, change, capfd):
+def test_damaged_files_are_reported(tmp_path, change, capfd):
     """And what meshio prints of them is not."""
     path = written(tmp_path, "msh")
     before = path.read_text()
@@ -352,7 +352,7 @@ def test_damaged_files_are_told(tmp_path, change, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_negative_count_of_nodes_is_told_or_changes_nothing(tmp_path):
+def test_a_negative_count_of_nodes_is_reported_or_changes_nothing(tmp_path):
     """Older numpy takes it for all numbers that follow, which are those of the file."""
     path, support = written(tmp_path, "msh"), [{"name": "ground", "support": "fixed"}]
     whole = read(path, support)

@@ -151,7 +151,7 @@ def test_a_wall_that_passes_through_another_has_no_joint_with_it(tmp_path):
     assert told.exit_code == 2 and "wall 'flange' passes through 'web'" in told.output
 
 
-def test_joints_without_a_bond_along_them_are_told(tmp_path):
+def test_joints_without_a_bond_along_them_are_reported(tmp_path):
     text = BED.replace('cohesion = "30 kPa"', "").replace("shear_energy = 10", "")
     _, _, warnings = run(tmp_path, text, "events = 3".replace("events", "#"), HEIGHT=0.0, TENSION=2e4, ENERGY=10, LAYERS=3)
     assert any("joints without cohesion" in warning for warning in warnings)

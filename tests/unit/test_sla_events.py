@@ -190,7 +190,7 @@ CRUSHING = {"compressive_strength": 1e6, "crushing_energy": 2e3}
     ],
 )
 @pytest.mark.parametrize("events", [60, pytest.param(400, marks=pytest.mark.verify)])
-def test_what_is_left_out_holds_no_event(material, analysis, events) -> None:
+def test_a_skipped_region_holds_no_event(material, analysis, events) -> None:
     """A changed factor and the regions that an event concerns give the events of a new factor and of all points."""
     found = []
     for algorithm in ("update", "refactor"):

@@ -180,14 +180,14 @@ def test_a_stage_without_an_end_ends_the_run() -> None:
         ({**move(1e-4), "target_displacement": 0.0}, "at the start of this stage"),
     ],
 )
-def test_stages_that_make_no_sense_are_told(stage, words) -> None:
+def test_stages_that_make_no_sense_are_reported(stage, words) -> None:
     try:
         assert words in run_deck(wall([stage])).reason
     except DeckError as error:
         assert words in str(error)
 
 
-def test_what_stands_beside_stages_is_told() -> None:
+def test_what_stands_beside_stages_is_reported() -> None:
     with pytest.raises(DeckError, match="directions cannot be used together with stages"):
         make_deck(wall([PRESS], directions=["+", "-"]))
     with pytest.raises(DeckError, match="a name occurs twice"):

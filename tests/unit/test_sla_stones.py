@@ -265,7 +265,7 @@ def test_a_semicircle_below_the_least_thickness_cannot_stand(thickness: float, f
 
 
 @pytest.mark.parametrize("thickness", [1.0755, 1.08, 1.1, 1.3])
-def test_a_semicircle_above_the_least_thickness_bears_what_limit_analysis_says(thickness: float) -> None:
+def test_a_semicircle_above_the_least_thickness_carries_what_limit_analysis_says(thickness: float) -> None:
     """The load that a mechanism reaches within small displacements; what it would reach at kilometres is no state."""
     structure = {**SEMICIRCLE, "thickness": thickness}
     found = sla(structure, joints={"friction": "no-sliding"})

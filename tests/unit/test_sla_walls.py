@@ -247,7 +247,7 @@ def test_a_force_between_nodes_is_shared() -> None:
     assert np.count_nonzero(alone) == 1
 
 
-def test_a_node_that_is_not_where_it_was_asked_for_is_told() -> None:
+def test_a_node_that_is_not_where_it_was_requested_is_reported() -> None:
     data = wall(events=5, control=[{"x": 0.0123, "y": 0.0, "direction": "x"}])
     assert any("no node lies at x 0.0123 m" in w for w in run_deck(data).warnings)
 

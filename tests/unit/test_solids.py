@@ -273,12 +273,12 @@ def test_every_stone_of_a_groin_vault_has_a_bed(given: dict[str, Any]) -> None:
         ({**SOLIDS["bent wall"], "legs": [{"length": 0.3}, {"length": 2}]}, "less than two thicknesses"),
     ],
 )
-def test_wrong_keys_are_told_in_words(structure: dict[str, Any], told: str) -> None:
+def test_wrong_keys_are_reported_in_words(structure: dict[str, Any], told: str) -> None:
     with pytest.raises(DeckError, match=told):
         building(structure)
 
 
-def test_walls_that_do_not_fit_are_told() -> None:
+def test_walls_that_do_not_fit_are_reported() -> None:
     legs = [{"length": 2.4}, {"length": 2}, {"length": 2.2}, {"length": 2}]
     with pytest.raises(BadGeometry, match=r"the legs are not closed: the last leg ends at x = 0\.2"):
         building({**SOLIDS["room"], "legs": legs}).solids()
@@ -390,7 +390,7 @@ def test_groups_of_an_object_are_parts_of_one_stone(folder: Path) -> None:
     assert made.centroid[0] == pytest.approx([(2 * 1 + 1 * 0.5) / 3, 0.5, (2 * 0.5 + 1.5) / 3])
 
 
-def test_what_is_wrong_with_a_file_is_told(folder: Path) -> None:
+def test_errors_of_a_file_are_reported(folder: Path) -> None:
     concave = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2.0]])
     n = len(concave)
     vertices = np.concatenate([np.column_stack([concave, np.full(n, z)]) for z in (0.0, 1.0)])
@@ -432,7 +432,7 @@ def test_foundations_at_unlike_levels(folder: Path) -> None:
     assert [n for n, b in zip(made.joint_names, made.b, strict=True) if b < 0] == ["low on the ground", "high on the ground"]
 
 
-def test_check_tells_and_draws_solids(folder: Path, tmp_path: Path) -> None:
+def test_check_reports_and_draws_solids(folder: Path, tmp_path: Path) -> None:
     deck = make_deck({"structure": {"kind": "blocks", "file": "stack.obj"}, "analysis": {"kind": "tilt"}}, folder)
     checked = check_building(deck)
     assert checked.complaints == [] and checked.solids is not None and len(checked.solids.a) == 2

@@ -349,7 +349,7 @@ def test_a_summary_of_any_size_is_not_read(tmp_path, with_figures, monkeypatch) 
         ("warnings", 5, "analyses.0.warnings"),
     ],
 )
-def test_results_of_another_version_are_told(key, value, words, tmp_path, with_figures) -> None:
+def test_results_of_another_version_are_reported(key, value, words, tmp_path, with_figures) -> None:
     """What is not as this version writes it is told by its place in the file, before a reader stumbles over it."""
     run = tmp_path / "run"
     shutil.copytree(with_figures, run)

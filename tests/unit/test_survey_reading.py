@@ -69,7 +69,7 @@ def test_an_arch_of_loose_lines_and_arcs(tmp_path: Path) -> None:
     assert refused.status == "refused" and "2 mm apart" in refused.reason and "join_tolerance" in refused.reason
 
 
-def test_a_line_that_closes_no_stone_is_told(tmp_path: Path) -> None:
+def test_a_line_that_closes_no_stone_is_reported(tmp_path: Path) -> None:
     def draw(document: Any, space: Any) -> None:
         space.add_lwpolyline((SQUARE * [2, 1]).tolist(), close=True)
         space.add_lwpolyline([(0, 1), (0, 2), (2, 2), (2, 1.004)])  # a stone upon it that is 4 mm open

@@ -96,7 +96,7 @@ def test_check_lists_and_draws_what_run_refuses(tmp_path: Path) -> None:
     deepest = max(float(r["depth_mm"]) for r in listed)
     assert 4.0 < deepest < 6.0
     good = CliRunner().invoke(app, ["check", str(CHURCH), "--out", str(tmp_path / "good")])
-    assert good.exit_code == 0 and "0 places amiss" in good.output and good.output.rstrip().endswith("ok")
+    assert good.exit_code == 0 and "0 faulty places" in good.output and good.output.rstrip().endswith("ok")
 
 
 def test_a_crowd_of_blocks_in_one_place_is_refused_with_the_bound(tmp_path: Path) -> None:

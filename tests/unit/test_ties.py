@@ -207,7 +207,7 @@ def test_a_proof_that_nothing_stands_counts_what_ties_take() -> None:
         raise NoEquilibrium
 
 
-def test_supports_that_give_way_stretch_ties() -> None:
+def test_moving_supports_stretch_ties() -> None:
     """The frame's foot moves out by 2 cm: the rod, which the stones follow, keeps its yield force."""
     move = {"movements": [{"joint": "left on the ground", "dx": -0.02}]}
     (found,) = run(FRAME, [{**ROD, "yield_force": 5e3}], {"kind": "supports"}, initial=move, joints={"friction": "no-sliding"})

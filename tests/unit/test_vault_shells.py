@@ -101,7 +101,7 @@ def test_normals_look_outward():
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_feet_bear_the_weight_and_the_push(name):
+def test_feet_carry_the_weight_and_the_push(name):
     """What the feet press on the ground with is the weight, and against each other the push; alone they thrust alike."""
     mesh = meshed(EVERY[name], 0.8)
     options = Pushover(kind="pushover", mesh=ShellOptions(size=0.8, layers=3))
@@ -230,7 +230,7 @@ def test_a_spreading_barrel_opens_in_three_hinge_lines(tmp_path):
         ("", ("depth = 0.6", "depth = 0.6\nskew = 20"), "skew"),
     ],
 )
-def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
+def test_limits_of_a_vault_are_reported(tmp_path, stages, change, words):
     run = extrados.run(deck(tmp_path, stages, change)).results[0]
     assert run.status == "refused" and words in run.reason
 
@@ -247,7 +247,7 @@ def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
         ({"main_stage": "a"}, "there are no `stages`"),
     ],
 )
-def test_wrong_stages_are_told(keys, words):
+def test_wrong_stages_are_reported(keys, words):
     with pytest.raises(ValueError, match=words):
         Pushover(kind="pushover", **keys)
 
@@ -261,7 +261,7 @@ def test_wrong_stages_are_told(keys, words):
         (0.0, 1e-9, "carries nothing"),
     ],
 )
-def test_what_a_foot_presses_with_is_told_in_words(thrust, vertical, words):
+def test_the_force_of_a_foot_on_the_ground_is_reported_in_words(thrust, vertical, words):
     assert pushover._pressing({"thrust_N": thrust, "vertical_N": vertical}, 1e5) == words
 
 
@@ -310,7 +310,7 @@ def test_a_released_load_is_never_raised_on_the_way(tmp_path):
 
 
 @pytest.mark.verify
-def test_the_limit_of_a_dome_of_stones_hangs_on_their_friction(tmp_path):
+def test_the_limit_of_a_dome_of_stones_depends_on_their_friction(tmp_path):
     """Pushed, its stones slide; where they cannot, no push brings it down. A shell, which does not slide, is no other view of the
     same limit."""
 

@@ -105,7 +105,7 @@ def of_elements(mesh: Mesh) -> Drawn:
         "warnings": mesh.warnings,
     }
     if count > MOST_ELEMENTS:
-        words["warnings"] = [*mesh.warnings, f"{count} elements are too many to be drawn"]
+        words["warnings"] = [*mesh.warnings, f"{count} elements are too many to draw on the page"]
         groups = []
     held = [mesh.nodes_at(place, "supports.held") for place in mesh.held]
     faces = [mesh.xy[row] for group in groups for row in group]

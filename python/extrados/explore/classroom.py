@@ -111,11 +111,11 @@ class Pupil(Session):
         if do == "pause" and by_teacher:
             yield Reply({**told, "frozen": self.room.frozen})
         elif do not in ASKED or any(key in message for key in ("path", "dropped")) or message.get("here") == "dropped":
-            yield Reply({**told, "bad": "a class has no files and no runs"})
+            yield Reply({**told, "bad": "pupils of a class cannot open files or start runs"})
         elif self.room.frozen and not by_teacher and do not in ("hello", "rest"):
             yield Reply({**told, "bad": "the teacher has paused the class"})
         elif isinstance(text, str) and len(text) > LARGEST_DECK:
-            yield Reply({**told, "bad": f"a deck has at most {LARGEST_DECK} characters in a class"})
+            yield Reply({**told, "bad": f"in a class a deck may have at most {LARGEST_DECK} characters"})
         else:
             for reply in super().answer(message):
                 self._note(reply)
@@ -137,11 +137,11 @@ class Pupil(Session):
         deck, wrong = self.there().deck, []
         counts = [] if deck.structure is None else [v for v in deck.structure.model_dump().values() if isinstance(v, int)]
         if max(counts, default=0) > MOST_BLOCKS or _blocks(self) > MOST_BLOCKS:
-            wrong.append(f"a structure has at most {MOST_BLOCKS} blocks in a class")
+            wrong.append(f"in a class a structure may have at most {MOST_BLOCKS} blocks")
         lasting = [getattr(deck.motion, name, None) for name in ("duration", "period")]
         lasting += [getattr(options, "end_time", None) for options in deck.analyses]
         if max((v for v in lasting if isinstance(v, int | float)), default=0.0) > LONGEST:
-            wrong.append(f"motions and responses last at most {LONGEST:g} s in a class")
+            wrong.append(f"in a class motions and responses may last at most {LONGEST:g} s")
         if wrong:
             raise DeckError(wrong)
 
@@ -219,5 +219,5 @@ class Teacher(Session):
         """The deck of a pupil."""
         pupil = self.room.pupils.get(message.get("number", 0))
         if pupil is None:
-            raise BadMessage("there is no such pupil")
+            raise BadMessage("the class has no pupil of this number")
         return {"peeked": pupil.text, "number": pupil.number}

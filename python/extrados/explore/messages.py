@@ -49,7 +49,9 @@ def quantity(text: str, unit: str, label: str) -> float:
         pass
     found = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z%/^0-9*]+)", text[:60])
     if not found:
-        raise DeckError([f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"])
+        raise DeckError(
+            [f"{label}: '{text[:40]}' is not a quantity; expected a number such as 1.5, or a number with its unit such as 150 cm"]
+        )
     try:
         return float(found[1]) * quantities.factor(found[2], unit)
     except ValueError as error:

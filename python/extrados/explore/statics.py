@@ -147,7 +147,7 @@ def _ends(made: Picture, building: Building, options: LimitAnalysisTable) -> dic
     """Collapse to both sides; None without it, and the words of the picture give the reason."""
     words = made.words
     if ignored := [what for what in building.special_keys if what not in options.bears]:
-        words |= {"stands": None, "unknown": f"{options.kind} cannot take {' and '.join(ignored)} into account."}
+        words |= {"stands": None, "unknown": f"The analysis {options.kind} cannot consider {' and '.join(ignored)}."}
         return None
     limit: LimitAnalysis | None = None
     try:

@@ -158,7 +158,7 @@ def _optimum(solver: highspy.Highs) -> Any:
     if status in _INFEASIBLE:
         raise NoEquilibrium("no admissible thrust line")
     if status != highspy.HighsModelStatus.kOptimal:
-        raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
+        raise NoAnswer(f"the linear programme ended with this status: {solver.modelStatusToString(status)}")
     return solver.getSolution()
 
 

@@ -1,4 +1,4 @@
-"""Many buildings at once: every deck of a folder assessed, and all of them in order, the worst first."""
+"""Assessment of many buildings: every deck of a folder, and a ranking with the worst first."""
 
 import csv
 import hashlib
@@ -132,7 +132,7 @@ def decks_of(folder: Path) -> dict[str, str | DeckError]:
         except DeckError as error:
             found[path.stem] = DeckError([text.replace("deck:", f"{path}:", 1) for text in error.complaints])
     if not found:
-        raise DeckError([f"{folder}: holds no decks"])
+        raise DeckError([f"the folder {folder} contains no decks"])
     wrong = [one for one in found.values() if isinstance(one, DeckError)]
     if len(wrong) == len(found):
         raise DeckError([text for one in wrong for text in one.complaints])

@@ -1,6 +1,6 @@
-"""Pictures of solids: parallel projection, hidden parts by a depth buffer, edges where one face ends before another.
+"""Pictures of solids: parallel projection, hidden parts by a depth buffer, edges at the borders of faces.
 
-A depth buffer draws any bodies right, also where they pierce each other, and needs no graphics card or window system.
+A depth buffer draws any bodies correctly, also if they intersect, and requires no graphics card or window system.
 """
 
 from dataclasses import dataclass

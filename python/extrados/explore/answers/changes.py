@@ -1,4 +1,4 @@
-"""Changes by hands: handles that are dragged, stepped or typed, keys that are set; and what is told when a hand rests."""
+"""Changes by the user: handles that are dragged, stepped or typed, keys that are set; and the reply when a drag ends."""
 
 import math
 import re
@@ -27,7 +27,7 @@ def drag(desk: Desk, message: Message) -> Iterator[Reply]:
     """A handle led to a place (`to`), moved by steps, or given a value as text; `ends` lets go of it."""
     handle = desk.handles.get(str(message.get("handle")))
     if handle is None:
-        raise BadMessage("there is no such handle")
+        raise BadMessage("the drawing has no handle of this name")
     if handle.holds and desk.held is None:
         desk.held = desk.anchor
     if "to" in message:
@@ -48,9 +48,9 @@ def set_keys(desk: Desk, message: Message) -> Iterator[Reply]:
     response comes with the same reply, for a hand that draws a pulse."""
     changes = message.get("changes")
     if not isinstance(changes, dict) or not 0 < len(changes) <= 50:
-        raise BadMessage("expected up to 50 changes")
+        raise BadMessage("a message may change 1 to 50 keys of the deck")
     if not all(KEY.fullmatch(key) for key in changes):
-        raise BadMessage("that is no key")
+        raise BadMessage("the name of a changed key is not valid in a deck")
     reply = _change(desk, changes)
     if message.get("rocking") is True and desk.there().deck.motion is not None:
         for response in motion.response(desk, {}):

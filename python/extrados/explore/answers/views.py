@@ -28,7 +28,7 @@ def scene(desk: Desk) -> Reply:
     desk.check()
     structure = desk.there().deck.structure
     if structure is None:
-        why = "The deck has no [structure]: there is nothing to draw."
+        why = "The deck has no [structure], so nothing can be drawn."
         return _seen(desk, None, [], {"empty": why}, {})
     options, building, name = desk.analysis(LimitAnalysisTable, lambda: Tilt(kind="tilt"))
     try:
@@ -118,7 +118,7 @@ def _through(desk: Desk, wanted: Any, chain: str | None) -> tuple[int, float]:
         return statics.nearest(assembly, place, chain or statics.first_chain(assembly))
     joint, (share,) = wanted.get("joint"), numbers([wanted.get("share")], 1)
     if not isinstance(joint, int) or isinstance(joint, bool) or not 0 <= joint < len(assembly.a):
-        raise BadMessage("there is no such joint")
+        raise BadMessage("the structure has no joint of this number")
     return joint, min(max(share, 0.0), 1.0)
 
 
@@ -130,7 +130,7 @@ def _thrust(wanted: Any) -> float:
 def push(desk: Desk, _: Message) -> Iterator[Reply]:
     """Limit analysis of what no hand moves: blocks in space, along the deck's directions or all around."""
     if desk.picture is not None:
-        raise BadMessage("a section follows the hand unchanged")
+        raise BadMessage("a plane section is calculated with every drag; this request is for blocks in space")
     options, building, _name = desk.analysis(Tilt, lambda: Tilt(kind="tilt"))
     result = run_one(desk.there().context(), options, building)
     if result.status != "ok":

@@ -126,7 +126,7 @@ def _moved(run: Stored, name: str, points: np.ndarray, block: np.ndarray, pose: 
 
 def _pull(force: float) -> str:
     """A force in a tie as drawings tell it."""
-    return f"{force / 1e3:.3g} kN" if force > 0.0 else f"{-force / 1e3:.3g} kN pressed"
+    return f"{force / 1e3:.3g} kN" if force > 0.0 else f"{-force / 1e3:.3g} kN compression"
 
 
 def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text: str) -> None:
