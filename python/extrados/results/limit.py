@@ -167,7 +167,7 @@ class Tilt(KindResults):
     required_friction_joint: int = fact("the joint that needs it")
     geometric_safety_factor: float | None = fact(
         "upright: one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line "
-        "runs through all middles within 1 % of the joints (no horizontal demand), or if not requested"
+        "runs through all middles within 1 % of the joints (no horizontal demand), or if not requested. The part is found within 0.001"
     )
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
@@ -322,9 +322,9 @@ class Thrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
     geometric_safety_factor: float | None = fact(
         "one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line runs "
-        "through all middles within 1 % of the joints (no horizontal demand), or if not requested"
+        "through all middles within 1 % of the joints (no horizontal demand), or if not requested. The part is found within 0.001"
     )
-    least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
+    least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs, found within 0.001")
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     dilating: bool = fact(
