@@ -196,7 +196,7 @@ class Tilt(KindResults):
     geometric_safety_factor: float | None = fact(
         "geometric safety factor upright: 1 divided by the least central part of the joints that contains a thrust line, "
         "at most 100; null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no "
-        "horizontal demand)"
+        "horizontal demand). The part is found within 0.001"
     )
     weight_N: float = fact("weight of the structure, including its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
@@ -369,10 +369,10 @@ class Thrust(KindResults):
     geometric_safety_factor: float | None = fact(
         "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line, at most "
         "100; null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no horizontal "
-        "demand)"
+        "demand). The part is found within 0.001"
     )
     least_part_of_joints: float = maybe(
-        "least central part of the joints that contains a thrust line: the part that the most central line needs"
+        "least central part of the joints that contains a thrust line: the part that the most central line needs, found within 0.001"
     )
     weight_N: float = fact("weight of the structure, including its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
