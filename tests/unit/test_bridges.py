@@ -146,10 +146,10 @@ def test_parts_that_do_not_fit_are_named(keys: dict[str, Any], words: str) -> No
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"spans": [SPAN, SPAN]}, "2 spans need 1 pier"),
+        ({"spans": [SPAN, SPAN]}, "2 spans require 1 pier"),
         ({"spans": [{**SPAN, "rise": 4.5}]}, "is at most half of the span"),
         ({"spans": [{**SPAN, "shape": "pointed"}]}, "is at least half of the span"),
-        ({"surfacing": ROAD}, "surfacing: requires fill"),
+        ({"surfacing": ROAD}, "surfacing requires fill"),
     ],
 )
 def test_wrong_tables_are_complaints(keys: dict[str, Any], words: str) -> None:
@@ -437,7 +437,7 @@ def test_wrong_trains_are_complaints(keys: dict[str, Any], words: str) -> None:
 
 
 def test_refusals_of_trains() -> None:
-    assert "holds 1, not 3" in run(moving(train="LM1", lanes=3), depth=4.0).reason
+    assert "space for 1, not 3" in run(moving(train="LM1", lanes=3), depth=4.0).reason
     assert "exceeds the depth" in run(moving(width=5.0), depth=4.0).reason
 
 
@@ -603,7 +603,7 @@ def test_a_bare_ring_is_no_model_of_a_bridge(train: str) -> None:
     found = ring(train=train)
     assert found.verdict.ratio > 1.0 and found.verdict.outcome == "open"
     (violated,) = found.verdict.violated
-    assert f"{train} acts on the blocks of the arch themselves" in violated and violated in found.verdict.statement
+    assert f"{train} acts on the blocks of the arch directly" in violated and violated in found.verdict.statement
     assert any(violated in w and "Add fill to the structure" in w for w in found.warnings)
 
 

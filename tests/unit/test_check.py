@@ -139,7 +139,7 @@ WRONG = {
         '[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n',
     ),
     "no stages": ("expected at least 1", PANEL + SLA + "stages = [] # here\n"),
-    "opening beside its wall": ("the wall is 3 m long", WALL + "openings = [{ x = [2, 4], z = [0, 2] }] # here\n" + PUSH),
+    "opening beside its wall": ("the length of the wall is 3 m", WALL + "openings = [{ x = [2, 4], z = [0, 2] }] # here\n" + PUSH),
     "opening above its storey": ("does not fit in a storey", WALL + "openings = [{ x = [1, 2], z = [2, 5] }] # here\n" + PUSH),
     "opening of no width": ("requires a width", WALL + "openings = [{ x = [1, 1], z = [0, 2] }] # here\n" + PUSH),
     "opening as wide as a hair": ("expected more than", WALL + "openings = [{ x = [1, 1.0000001], z = [0, 2] }] # here\n" + PUSH),
@@ -198,7 +198,7 @@ WRONG = {
         + '[[structure.floors]] # here\nstorey = 2\nkind = "rigid"\nwalls = ["a", "b", "c", "d"]\n'
         + PUSH,
     ),
-    "floor above the building": ("no storey 3", ROOMS + '[[structure.floors]]\nstorey = 3 # here\nkind = "rigid"\n' + PUSH),
+    "floor above the building": ("storey 3 does not exist", ROOMS + '[[structure.floors]]\nstorey = 3 # here\nkind = "rigid"\n' + PUSH),
     "joists from a wall to itself": (
         "two different walls",
         ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
@@ -253,7 +253,7 @@ WRONG = {
     "speed of no film": ("requires animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
     "wall without a load": ("give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n'),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
-    "energy ratio of an arch": ("that of a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
+    "energy ratio of an arch": ("energy_ratio belongs to a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
     "energy ratio of spectra": ("square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n'),
     "spectra on a soft base": (
         "rigid ground",

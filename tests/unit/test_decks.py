@@ -235,7 +235,7 @@ def test_decks_from_python() -> None:
             {"joints": {"friction_rule": "non-associated"}, "analysis": {"kind": "tilt"}},
             "joints.friction_rule: unknown key; this key belongs in the [[analysis]] table",
         ),
-        ({"analysis": {"kind": "moving-load", "dynamic": 1.4}}, "analysis.dynamic: unknown key; it belongs in analysis.factors"),
+        ({"analysis": {"kind": "moving-load", "dynamic": 1.4}}, "analysis.dynamic: unknown key; this key belongs in analysis.factors"),
     ],
 )
 def test_a_key_at_the_wrong_place_is_reported_with_its_right_place(tables: dict, words: str) -> None:
@@ -249,7 +249,7 @@ def test_a_key_at_the_wrong_place_is_reported_with_its_right_place(tables: dict,
     [
         ("piers = { width = 1.0, height = 2.0 }", "expected a list of tables, [{ ... }], also for a single table"),
         ("piers = 2", "piers: 2: expected a list, [ ... ]"),
-        ("piers = [{ width = 1.0, height = 2.0 }]", "1 span needs no piers; there is 1"),
+        ("piers = [{ width = 1.0, height = 2.0 }]", "1 span needs no piers; found 1"),
         ('title = "x"', "unknown key"),
     ],
 )

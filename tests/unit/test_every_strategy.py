@@ -58,7 +58,7 @@ STRATEGIES = {
 PULSE = '[motion]\nkind = "sine-pulse"\namplitude = "1 g"\nperiod = 0.5'
 EARTHQUAKES = '[motion]\nkind = "generated"\nmmi = 9\nduration = 2.0'
 
-PRESSED = "no load of this kind causes collapse of the {}, because it only compresses the joints"
+PRESSED = "no load of this kind causes collapse of the {}, because such loads only compress the joints"
 TWO = (
     "two stacked blocks rock in two coordinates. Only `rocking`, `fragility`, `failure-domain`, `failure-curves`, `harmonic-map` and `dem` "
     "can follow them"

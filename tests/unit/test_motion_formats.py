@@ -251,7 +251,7 @@ def test_suites_stay_in_the_folder(tmp_path) -> None:
             list_suite(None, bad, None, tmp_path)
     inner = ["a**"] if sys.version_info < (3, 13) else []  # from then on "**" may stand anywhere
     for bad in ("", ".", "./", *inner):
-        with pytest.raises(RecordError, match="names no file"):
+        with pytest.raises(RecordError, match=r"names no file|not a valid pattern"):
             list_suite(None, bad, None, tmp_path)
     for pattern, folder in (("x" * 300, None), (None, "x" * 300)):  # longer than a name may be
         with pytest.raises(RecordError, match=r"cannot be searched|no such folder|no records match"):
@@ -286,7 +286,7 @@ def test_components_are_kept_together(tmp_path) -> None:
     np.testing.assert_allclose(vertical, 0.5 * horizontal, rtol=1e-5)
     assert np.abs(horizontal).max() == pytest.approx(2.0)
     other = put(tmp_path, "other.at2", files.at2(A, 0.01))
-    with pytest.raises(RecordError, match="steps of"):
+    with pytest.raises(RecordError, match="different time steps"):
         record_motion(read_record(ns), vertical=read_record(other))
 
 

@@ -128,7 +128,7 @@ def test_springs_of_the_ground_are_those_of_the_soles():
         ({"walls": [{**WALLS[1], "thicknesses": [0.3]}]}, "either thickness or thicknesses"),
         ({"walls": [{"name": "a", "start": [0.0, 0.0], "end": [1.0, 0.0], "thicknesses": [0.3]}]}, "1 thicknesses for 2"),
         ({"corners": [{"walls": ["front", "nowhere"], "bond": "open"}]}, "no wall 'nowhere'"),
-        ({"floors": [{"storey": 3, "kind": "none"}]}, "no storey 3"),
+        ({"floors": [{"storey": 3, "kind": "none"}]}, "storey 3 does not exist"),
         ({"floors": [{"storey": 1, "kind": "flexible"}]}, "needs young"),
     ],
 )

@@ -204,12 +204,12 @@ REFUSED = {
     "three columns": (THREE, {}, ':1: the row has 3 columns.*channel = 1 to 3.*columns = "series"'),
     "three and time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {}, "time step is"),
     "channel of a time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {"channel": 1}, "time step is"),
-    "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' holds whole numbers.*put #"),
+    "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' contains whole numbers.*put #"),
     "whole numbers below a title": ("Some quake\n300\n0\n" + COLUMN, {}, ":2: '300'"),
     "count": (f"{len(N)}.0\n{len(N)}\n" + COLUMN, {}, "count of the values that follow|exceeds twice"),
     "real numbers": ("-999.00\n-999.00\n" + COLUMN, {}, "exceeds twice the greatest value"),
-    "counts in other columns": ("400 0.01\n" + COLUMN, {}, ":2: 1 columns where 2 stood before; put #"),
-    "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "every value 2 further on"),
+    "counts in other columns": ("400 0.01\n" + COLUMN, {}, ":2: this line has 1 columns, but the lines above have 2; put #"),
+    "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "every value 2 places further"),
     "only times": ("".join(f"{0.01 * k:.2f}\n" for k in range(400)), {}, "increase like times"),
     "time last": ("".join(f"{v:.2f} {0.01 * k:.2f}\n" for k, v in enumerate(N)), {"channel": 2}, "put the times in the first column"),
     "fewer than stated": ("402 points in cm/s2\n" + COLUMN, {}, "the header states 402 values, but 400 follow"),
@@ -261,7 +261,7 @@ def test_what_a_header_says(tmp_path, header, quantity, unit) -> None:
     assert (record.quantity, record.unit) == (quantity, unit)
 
 
-@pytest.mark.parametrize(("size", "hint"), [(1e-5, "below 0.0001 g"), (0.981, "above 5 g.*; in m/s.2")])
+@pytest.mark.parametrize(("size", "hint"), [(1e-5, "below 0.0001 g"), (0.981, "above 5 g.*; with the unit m/s.2")])
 def test_a_peak_that_no_earthquake_has(tmp_path, size, hint) -> None:
     (tmp_path / "r.txt").write_text("".join(f"{size * v / 10.0:.8f}\n" for v in N))
     with pytest.raises(RecordError, match=hint):
@@ -278,7 +278,7 @@ def test_a_step_that_no_record_has(tmp_path, step) -> None:
 def test_a_suffix_against_its_header(tmp_path) -> None:
     text = "PEER\nQ\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 3, DT= .01 SEC\n.1 .2 .3\n"
     (tmp_path / "r.at2").write_text(text)
-    with pytest.raises(RecordError, match="the header names velocity, the suffix"):
+    with pytest.raises(RecordError, match="the header names velocity, but the suffix"):
         read_record(tmp_path / "r.at2")
     (tmp_path / "r.vt2").write_text(text.replace("TIME SERIES IN UNITS OF ", ""))
     assert read_record(tmp_path / "r.vt2").quantity == "velocity"

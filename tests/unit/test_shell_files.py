@@ -234,7 +234,7 @@ def test_files_that_do_not_fit_are_reported(tmp_path):
         with pytest.raises(BadGeometry, match=words):
             read(path, ground)
     (tmp_path / "no.msh").write_text("nothing of a mesh")
-    with pytest.raises(BadGeometry, match=r"no\.msh: is not a mesh"):
+    with pytest.raises(BadGeometry, match=r"no\.msh: this is not a mesh"):
         read(tmp_path / "no.msh", ground)
     flat = written(tmp_path, "vtu")
     with pytest.raises(BadGeometry, match="groups belong to shells"):

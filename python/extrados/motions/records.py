@@ -112,7 +112,7 @@ def _matching(pattern: str, root: Path) -> list[Path]:
     try:
         return sorted(p for p in root.glob(pattern) if p.is_file())
     except ValueError as error:
-        raise RecordError(f"{pattern}: is no pattern: {error}") from None
+        raise RecordError(f"{pattern}: this is not a valid pattern: {error}") from None
 
 
 def _records_in(folder: Path) -> list[Path]:

@@ -114,5 +114,5 @@ class Assess(Analysis):
     @model_validator(mode="after")
     def _once(self) -> "Assess":
         if len(set(self.strategies)) < len(self.strategies):
-            raise ValueError("strategies: one stands twice")
+            raise ValueError("strategies: one of them occurs twice")
         return self

@@ -110,7 +110,7 @@ def overturning(options: LocalMechanism, density: float, strength: float | None)
 def _refuse_sizes(options: LocalMechanism) -> None:
     missing = [name for name in NEEDS[options.mechanism] if getattr(options, name) is None]
     if missing:
-        raise Refused(f"{options.mechanism} needs {' and '.join(missing)}", ("analysis",))
+        raise Refused(f"{options.mechanism} requires {' and '.join(missing)}", ("analysis",))
     top = float(options.height or 0.0)
     if options.hinge_height >= top:
         raise Refused(f"{options.hinge_height:g} m is not below the top of the wall, {top:g} m", ("analysis", "hinge_height"))

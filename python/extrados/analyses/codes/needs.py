@@ -100,7 +100,7 @@ def _refuse_elsewhere(context: Context, options: LocalMechanism) -> None:
 
 def _refuse_nothing(building: Building) -> None:
     if building.structure is None:
-        raise Refused('"building" needs a [structure]', ("analysis", "mechanism"))
+        raise Refused('"building" requires a [structure]', ("analysis", "mechanism"))
 
 
 def _refuse_wall(building: Building, options: CodeChecks) -> None:

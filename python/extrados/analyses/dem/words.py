@@ -93,7 +93,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
         gave = f"slipped by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
     return (
-        f"{first}; {turn[0]} rotates by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} "
+        f"{first}; {turn[0]} rotates by {1e3 * turn[1]:.3g} mrad at most, the greatest slip is {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} "
         f"bounces; {r.blocks} blocks, {r.contacts} contacts; {audit}.{_tied(r.ties)}"
     )
 

@@ -232,7 +232,7 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
         np.array([s.part for s in frame.strips]),
         ("element", "box"),
         "m",
-        "deformable parts of the elements: from and to along the wall, and from and to in height",
+        "deformable parts of the elements: start and end along the wall, lower and upper height",
     )
     result.arrays["element_wall"] = Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0")
     result.arrays["element_pier"] = Array(np.array([int(e.pier) for e in frame.elements]), ("element",), "", "1: pier, 0: spandrel")
@@ -246,7 +246,7 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
         for o in wall.openings
     ]
     result.arrays["opening"] = Array(
-        np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "wall, from and to along the wall, and from and to in height"
+        np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "number of the wall, start and end along the wall, lower and upper height"
     )
     for k, path in enumerate(paths):
         result.arrays[f"state_{k + 1}"] = Array(

@@ -266,7 +266,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         capacity = factor * options.force * factors.live * factors.dynamic
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
-        raise Refused(f"no load of this kind causes collapse of the {structure.word}, because it only compresses the joints", WHOLE)
+        raise Refused(f"no load of this kind causes collapse of the {structure.word}, because such loads only compress the joints", WHOLE)
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
         raise NoAnswer(f"the load at {places[k]:.4g} m causes collapse in the sweep, but not in the second calculation at this position")

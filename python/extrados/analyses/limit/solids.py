@@ -364,7 +364,7 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
     along = f"along {r.load_direction_deg:g} degrees in plan"
     text = (
         f"The {word} becomes a mechanism at a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g "
-        f"{along}, or when its base is tilted by {r.tilt_angle_deg:.2f} degrees. In the opposite direction it is "
+        f"{along}, or when its base is tilted by {r.tilt_angle_deg:.2f} degrees. In the opposite direction the collapse acceleration is "
         f"{r.collapse_acceleration_opposite_g:.4f} g. "
     )
     moving = "all of its blocks move" if r.moving_blocks == r.blocks else f"{r.moving_blocks} of its {r.blocks} blocks move"

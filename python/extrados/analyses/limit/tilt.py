@@ -374,8 +374,8 @@ def _told(found: out.Tilt) -> str:
         if design is not None:
             text += f"Without dilatancy, the design value {way} is {design:.4f} g, the least of {len(paths)} load paths of elastic joints. "
         text += (
-            f"The least of {len(r.starts_g)} states found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). Its lower "
-            f"bound without friction is {lower}, and its upper bound with dilatancy is {upper}. "
+            f"The least of {len(r.starts_g)} states found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The lower "
+            f"bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
         )
     if found.non_associated_reason:
         text += f"No state without dilatancy is given: {found.non_associated_reason}. "

@@ -95,7 +95,8 @@ def _lm1(width: float, lanes: int | None) -> tuple[float, float]:
     most = 1 if width < 5.4 else 2 if width < 6.0 else int(width / 3.0)
     if lanes is not None and lanes > most:
         raise Refused(
-            f"lanes: a carriageway with a width of {width:g} m has {most} lanes, not {lanes} (EN 1991-2 Table 4.1)", ("analysis", "lanes")
+            f"lanes: a carriageway with a width of {width:g} m has space for {most}, not {lanes} (EN 1991-2 Table 4.1)",
+            ("analysis", "lanes"),
         )
     count = most if lanes is None else lanes
     lane = min(width, 0.5 * width if 5.4 <= width < 6.0 else 3.0)

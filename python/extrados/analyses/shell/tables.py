@@ -261,7 +261,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         if self.drives and self.pattern != "mass":
             raise ValueError("drives replace the pattern: remove pattern")
         if len({variant.name for variant in self.variants}) < len(self.variants):
-            raise ValueError("variants: a name stands twice")
+            raise ValueError("variants: a name occurs twice")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         if self.verification.model_fields_set and (self.stages or self.drives):

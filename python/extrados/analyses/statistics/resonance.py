@@ -245,8 +245,8 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     }
     if least is not None:
         result.answer += (
-            f" From this start, the rotation grows until it overturns under any cap above {least:.3f} g "
-            f"({least / model.uplift:.2f} times the uplift acceleration)."
+            f" From this start, any cap above {least:.3f} g ({least / model.uplift:.2f} times the uplift acceleration) makes the "
+            f"rotation grow until the {model.word} overturns."
         )
     return numbers
 

@@ -96,7 +96,9 @@ class Frame(Structure):
     @model_validator(mode="after")
     def _columns_apart(self) -> "Frame":
         if self.spacing <= self.width:
-            raise ValueError(f"columns of {self.width:g} m overlap at a spacing of {self.spacing:g} m; the spacing must exceed the width")
+            raise ValueError(
+                f"spacing: columns of {self.width:g} m overlap at a spacing of {self.spacing:g} m; the spacing must exceed the width"
+            )
         return self
 
     def assembly(self, density: float, folder: Path) -> FrameAssembly:

@@ -145,7 +145,7 @@ class StoreyFloor(Table):
         if self.kind == "joists" and len(set(self.bears_on)) != 2:
             raise ValueError("bears_on: for joists, expected the names of two different walls, between which the joists span")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
-            raise ValueError(f"walls: wall '{twice[0]}' stands twice")
+            raise ValueError(f"walls: wall '{twice[0]}' occurs twice")
         return self
 
 
