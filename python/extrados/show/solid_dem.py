@@ -87,7 +87,7 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
-    """What the colours of the stones tell [m]."""
+    """Legend of the colours of the blocks [m]."""
     bar = fig.colorbar(ScalarMappable(Normalize(0.0, farthest), MOVED), ax=axes, shrink=0.6, pad=0.02, aspect=30, panchor=False)
     bar.set_label("displacement of the stone [m]")
 
@@ -140,7 +140,7 @@ def _contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _film(run: Stored, name: str, folder: Path) -> None:
-    """The motion as a film, where the deck asks for one."""
+    """The motion as a film, if the deck requests one."""
     kind, speed = film.asked(run, name)
     if kind == "none":
         return
