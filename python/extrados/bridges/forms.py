@@ -41,7 +41,7 @@ def exported(deck: Deck, form: str) -> str:
 
 
 def _beyond_geometry(deck: Deck) -> list[str]:
-    """What of a building changes its capacity and is no geometry of blocks: ties, dowels, fill, and the like."""
+    """Parts of a building that affect its capacity but are not geometry of blocks: ties, dowels, fill and others."""
     found = list(deck.building.special_keys)
     try:
         stones: Assembly | SolidAssembly = deck.building.blocks()

@@ -1,7 +1,8 @@
-"""The frame of macro-elements of a building for other programs: OpenSees with Macroelement3d (EPFL), and tables of text.
+"""The frame of macro-elements of a building for other programs: OpenSees with Macroelement3d (EPFL), and text tables.
 
-The walls stand side by side in parallel planes, each along X: all nodes of a wall on a level have one displacement along it, floors
-are springs between these displacements, and corners are vertical springs. This is the frame of frame-pushover.
+The walls are drawn side by side in parallel planes, each along X. All nodes of a wall on a level have one displacement along
+the wall, floors are springs between these displacements, and corners are vertical springs. This is the frame of
+frame-pushover.
 """
 
 import logging

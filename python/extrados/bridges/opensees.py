@@ -131,7 +131,7 @@ def _mesh(mesh: Mesh) -> Iterator[str]:
 
 
 def _held(mesh: Mesh) -> dict[int, set[str]]:
-    """The nodes that are held, with their directions: those of the stones on the ground, and those of [[supports.held]]."""
+    """The supported nodes with their directions: those of blocks on the ground, and those of [[supports.held]]."""
     held = {} if mesh.ground is None else {int(node): set("xy") for node in np.ravel(mesh.ground)}
     for k, support in enumerate(mesh.held):
         key = ("supports", "held", k)

@@ -198,7 +198,7 @@ def joined(walls: list[DrawnWall]) -> list[DrawnWall]:
 
 
 def _opened(wall: DrawnWall, lines: np.ndarray) -> DrawnWall:
-    """The wall with the openings that lines of their layer show: those within its thickness, together where they touch."""
+    """The wall with openings from lines of their layer: lines within its thickness, joined where they touch."""
     normal = np.array([-wall.way[1], wall.way[0]])
     parts = []
     for points in lines.reshape(-1, 2, 2):

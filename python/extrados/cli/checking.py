@@ -54,8 +54,8 @@ def check(
 
 
 def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
-    """How the stones of a survey fit: its list on the terminal, all of it and its picture in a folder where there is
-    anything to list, or the folder is asked for."""
+    """Print the list of gaps and overlaps of a survey. Write the list and its picture into a folder if it has entries, or if the
+    folder is requested."""
     from rich.table import Table
 
     from extrados.running.check import write_check
@@ -118,7 +118,7 @@ def _tell_plan(checked: "Checked", folder: Path) -> None:
 
 
 def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
-    """How many solids touch along how many contacts; their picture where they come from a file, or the folder is asked for."""
+    """Print the numbers of solids and contacts. Write their picture if they are from a file, or if the folder is requested."""
     from extrados.running.check import write_solids
 
     solids = checked.solids

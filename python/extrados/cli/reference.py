@@ -18,7 +18,7 @@ def _kinds(begun: str) -> list[str]:
 
 
 def _words(begun: str) -> list[str]:
-    """What `explain` knows that begins so."""
+    """The words of `explain` that begin with a text."""
     from extrados.decks import synonyms
     from extrados.decks.explain import facts
 

@@ -150,7 +150,7 @@ def assess(
 
 
 def _tell(run: "Run", title: str, count: int | None = None) -> None:
-    """The answers of a run, of its first `count` analyses: those of the deck, without what these have asked for."""
+    """Print the results of the first `count` analyses of a run: those of the deck, without the parts that they have run."""
     if title:
         out_console.say(title, "bold")
     for condition in run.summary["deck"]["conditions"]:
@@ -165,7 +165,7 @@ def _tell(run: "Run", title: str, count: int | None = None) -> None:
 
 
 def _draw(folder: Path, figures: bool, quiet: bool) -> None:
-    """Draw figures and report of a run whose answer has been told, and say where all lies."""
+    """Draw figures and report of a run whose results are printed, and print the places of the files."""
     sys.stdout.flush()
     report = None
     if figures:

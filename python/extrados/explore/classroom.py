@@ -1,7 +1,7 @@
-"""A class: a bounded session without files for each pupil, and what the teacher sees of all and does with all.
+"""A class: a bounded session without files for each pupil, and the overview of the teacher.
 
-Decks of pupils come as text, as starters, or from the cases with known results, and name no file but the shipped ground
-motions. Size of deck, number of blocks, duration of motions, and computing time are bounded. Nothing is written to disk.
+Decks of pupils are texts, starters, or cases with known results, and can use only shipped ground motions. Size of deck,
+number of blocks, duration of motions, and computing time are bounded. Nothing is written to disk.
 """
 
 import asyncio
@@ -50,9 +50,9 @@ NOWHERE = Path("/nonexistent/extrados-class")
 
 
 class Classroom:
-    """The pupils of a class by their numbers. frozen: they may look and change nothing. changes: counts what they changed.
+    """The pupils of a class by their numbers. frozen: pupils can view but not change anything. changes: number of their changes.
 
-    The loop that serves owns `pupils`; all else may be read from any thread.
+    The serving loop owns `pupils`; any thread may read all other attributes.
     """
 
     def __init__(self, most: int = PUPILS):
@@ -82,7 +82,7 @@ class Classroom:
 
 
 class Pupil(Session):
-    """The session of a pupil. seen, text: what the teacher sees of it; left: computing time it may still use [s]."""
+    """The session of a pupil. seen, text: the view of the teacher; left: remaining computing time [s]."""
 
     shipped_alone = True
 
@@ -155,7 +155,7 @@ def _blocks(desk: Desk) -> int:
 
 
 def thumbnail(reply: Reply) -> dict[str, Any]:
-    """The drawing of a scene as a path of SVG with its box, the tilt [g], and whether it stands."""
+    """The drawing of a scene as an SVG path with its box, the tilt [g], and whether the structure is stable."""
     scene, title = reply.words["scene"], reply.words.get("deck", {}).get("title") or ""
     outline, start = reply.arrays.get("outline"), reply.arrays.get("outline_start")
     seen = {"title": title[:80], "gamma": scene.get("gamma"), "falls": scene.get("falls"), "capacity": scene.get("capacity")}

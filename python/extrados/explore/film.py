@@ -15,7 +15,7 @@ JPEG = b"\xff\xd8\xff"
 
 
 class BadFilm(ValueError):
-    """What was sent is no film, or it cannot be made; the text says why."""
+    """The received data are not a film, or the film cannot be made; the text gives the reason."""
 
 
 @dataclass(frozen=True)

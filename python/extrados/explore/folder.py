@@ -1,4 +1,4 @@
-"""The working folder of the page, and the decks with known answers: what may be read there, and what may be written."""
+"""The working folder of the page, and the shipped cases: which files may be read and written."""
 
 import contextlib
 import os
@@ -32,7 +32,7 @@ PLACE = re.compile(r"(?:[\w][\w .+-]{0,100}/){0,6}[\w][\w .+-]{0,100}")
 
 
 class NotThere(ValueError):
-    """What is asked for is not in the folder, or may not be; the text says why."""
+    """A requested file is not in the folder, or must not be read; the text gives the reason."""
 
 
 class Folder:
@@ -42,7 +42,7 @@ class Folder:
         self.root = root.resolve()
 
     def inside(self, path: str) -> Path:
-        """The place of a relative path; NotThere where it leads out."""
+        """The place of a relative path; NotThere if it leads out of the folder."""
         if not PLACE.fullmatch(path) or ".." in path:
             raise NotThere(f"{path[:100]!r} is not a path within the working folder")
         target = self.root / path
@@ -93,14 +93,14 @@ class Folder:
             raise NotThere(str(error)) from None
 
     def beside(self, place: Path, name: str) -> bytes:
-        """A file that a deck in `place` names; NotThere where it cannot be read."""
+        """A file that a deck in `place` names; NotThere if it cannot be read."""
         try:
             return files.read(name, 50_000_000, place).content
         except files.BadFile as error:
             raise NotThere(str(error)) from None
 
     def presets(self) -> list[dict[str, str]]:
-        """All decks with known answers: name and title."""
+        """All shipped cases: name and title."""
         global _presets
         if _presets is None:
             found = []
@@ -123,7 +123,7 @@ class Folder:
         return _presets
 
     def preset(self, name: str) -> tuple[bytes, Path, str]:
-        """A deck with known answers, by its name; the folder of its files, its file name."""
+        """A shipped case by its name: its content, the folder of its files, its file name."""
         if not any(row["name"] == name for row in self.presets()):
             raise NotThere(f"no shipped case has the name {name[:100]!r}")
         path = CASES / f"{name}.toml"
@@ -149,7 +149,7 @@ class Folder:
         return target.relative_to(self.root).as_posix()
 
     def run(self, path: str) -> Stored:
-        """A stored run; StoreError where it is damaged or too large for a page."""
+        """A stored run; StoreError if it is damaged or too large for a page."""
         target = self.inside(path)
         size = sum(f.stat().st_size for f in target.glob("*") if f.is_file() and not f.is_symlink()) if target.is_dir() else 0
         if size > LARGEST_RUN:

@@ -1,8 +1,8 @@
-"""Who may talk to the server: a page of its own, by its token, in requests of a decent size and rate.
+"""Access control of the server: only the program's own pages, by their token, with bounded size and rate of requests.
 
-A page of any other site that the same browser shows can send requests to 127.0.0.1, and a name that its owner points
-at 127.0.0.1 makes them look its own. Hence all three are asked for: the name in Host, the site in Origin, and a token
-that only the address holds which the program has printed.
+A page of any other site in the same browser can send requests to 127.0.0.1, and a host name that points to 127.0.0.1 makes
+these requests look like those of the same site. Three checks are therefore required: the name in Host, the site in Origin,
+and a token that only the printed address contains.
 """
 
 import hmac
@@ -96,7 +96,7 @@ class Guard:
         await self.app(scope, receive, _with_headers(send))
 
     def objection(self, scope: dict[str, Any]) -> tuple[int, str] | None:
-        """Status and reason why a request is not passed on, None where it is."""
+        """Status and reason of a refusal, None if the request is passed on."""
         socket = scope["type"] == "websocket"
         heads: dict[bytes, list[bytes]] = {}
         for name, value in scope["headers"]:

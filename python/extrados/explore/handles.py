@@ -1,7 +1,5 @@
-"""Handles of the drawing: places that a hand takes hold of, and what deck keys follow from where it leads them.
-
-Places are those of the building's own coordinates [m]. `values` of a place are the deck's, in SI and degrees.
-"""
+"""Handles of the drawing: points that can be dragged, and the keys of the deck that follow from their places. Places are in the
+coordinates of the building [m]; values are those of the deck, in SI and degrees."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -60,7 +58,7 @@ class KindHandles:
 
 
 def kind_handles(structure: Structure) -> KindHandles | None:
-    """The handles of the kind of a structure; None where it has none."""
+    """The handles of the kind of a structure; None for a kind without handles."""
     place = kinds.STRUCTURES[structure.kind].handles
     return None if place is None else kinds.load(place)
 
@@ -72,7 +70,7 @@ def anchor_of(structure: Structure, assembly: Assembly) -> np.ndarray:
 
 
 def handles_of(structure: Structure, assembly: Assembly | None) -> list[Handle]:
-    """The handles of a building, in the order in which the keyboard passes them; assembly: its blocks, where it has any."""
+    """The handles of a building in the order of the Tab key; assembly: its blocks, if it has any."""
     known = kind_handles(structure)
     return [] if known is None else list(known.make(structure, assembly))
 

@@ -1,4 +1,4 @@
-"""What a message of the page may give, read strictly; and what may go wrong with what it asks for."""
+"""Strict reading of the messages of a page, and their errors."""
 
 import re
 from typing import Any
@@ -41,7 +41,7 @@ def path(message: Message) -> str:
 
 
 def quantity(text: str, unit: str, label: str) -> float:
-    """A number typed with a unit or without, in `unit`; DeckError says what is wrong with it."""
+    """A number with or without a unit, converted to `unit`; DeckError gives the error."""
     text = text.strip().replace("−", "-").replace("°", " deg")
     try:
         return float(text)

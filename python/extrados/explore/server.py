@@ -48,7 +48,7 @@ WHOLE_REQUEST, MOST_IDLE = 30.0, 32
 
 
 class Inbox:
-    """What a page has asked for and its session has not begun; `lane` of a message: what it may replace there."""
+    """Requests of a page that its session has not begun; `lane` of a message: which waiting message it replaces."""
 
     def __init__(self) -> None:
         self.waiting: list[dict[str, Any]] = []
@@ -72,7 +72,7 @@ class Inbox:
 
 
 def _words(raw: str) -> dict[str, Any] | None:
-    """A message of a page; None where it is none."""
+    """A message of a page; None if it is not valid."""
     try:
         message = json.loads(raw)
     except (ValueError, RecursionError):
@@ -204,7 +204,7 @@ async def _file(request: Request) -> Response:
 
 
 async def _film(request: Request) -> Response:
-    """Pictures of what is seen, one after the other, as a film."""
+    """A film of a sequence of pictures."""
     state = request.app.state
     if request.scope["role"] == "pupil":
         return PlainTextResponse("pupils of a class cannot make films\n", 403)

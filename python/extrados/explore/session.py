@@ -1,4 +1,4 @@
-"""A session: one page's deck, kept alive; messages of the page in, replies out. It knows nothing of how they travel."""
+"""A session: the live deck of one page; messages in, replies out, independent of the transport."""
 
 import logging
 import time

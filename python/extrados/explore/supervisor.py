@@ -28,12 +28,12 @@ MOST_DEATHS, WITHIN = 5, 60.0
 
 
 class BadAddress(ValueError):
-    """A class cannot be held at an address; the text says why."""
+    """An address cannot be used for a class; the text gives the reason."""
 
 
 @dataclass(frozen=True)
 class ClassOptions:
-    """Where a class is held: an address of this machine on the local network, and the most pupils."""
+    """Address of this machine on the local network, and greatest number of pupils of a class."""
 
     address: str = "127.0.0.1"
     pupils: int = PUPILS

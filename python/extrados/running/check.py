@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Place:
-    """One row of the list: what is amiss where, how deep [m], and the key with the value that would mend it."""
+    """One row of the list: kind and place of a gap or overlap, its depth [m], and the key with the value that would repair it."""
 
     what: str
     status: str
@@ -82,7 +82,7 @@ def check_building(deck: Deck) -> Checked:
 
 
 def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":
-    """What of a sound deck's building stands in space, as one of its analyses looks at it."""
+    """The solids and the shell mesh of a valid deck, as its analyses use them."""
     solids, plan = None, None
     for options, building in zip(deck.analyses, deck.buildings, strict=True):
         if options.view == "shell" or as_shell(building, options):

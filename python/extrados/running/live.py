@@ -49,11 +49,11 @@ class Live:
         self.names = store.group_names([options.kind for options in deck.analyses])
 
     def back_to(self, deck: Deck) -> None:
-        """Take again a deck that this model has had: what was computed for it is still known."""
+        """Restore a deck that this model has had; its kept results are still valid."""
         self._take(deck)
 
     def context(self, deck: Deck | None = None) -> Context:
-        """What drivers are given, with the motions that are kept; of another deck where one is given."""
+        """The context of the drivers, with the kept motions; of another deck if one is given."""
         return Context(deck or self.deck, self.threads, motions=self._motions)
 
     def __repr__(self) -> str:
@@ -221,7 +221,7 @@ def _own_data(data: dict[str, Any], i: int) -> dict[str, Any]:
 
 
 def _fingerprint(part: Any) -> str:
-    """Text that two parts of a deck share only where they say the same."""
+    """A text that is equal for two parts of a deck only if their content is equal."""
     if isinstance(part, Table):
         return f"{part.model_dump_json()} {sorted(part.model_fields_set)}"
     if isinstance(part, dict):

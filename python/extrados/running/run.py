@@ -44,7 +44,7 @@ class Run(Stored):
 
     @classmethod
     def read(cls, folder: str | Path) -> "Run":
-        """The run that a `folder` holds; StoreError where it is damaged."""
+        """The run in a `folder`; StoreError if it is damaged."""
         found = store.read(folder)
         return cls(found.folder, found.head, found.analyses, found.arrays)
 

@@ -73,7 +73,7 @@ def _at(key: str) -> str:
 
 
 def singles(results: KindResults) -> dict[str, Any]:
-    """The numbers, words and truths of results by their keys, dotted; what is a list has no place in a row."""
+    """The scalar results by dotted keys; lists are omitted."""
 
     def walk(values: Mapping[str, Any], before: str) -> dict[str, Any]:
         found: dict[str, Any] = {}
@@ -88,7 +88,7 @@ def singles(results: KindResults) -> dict[str, Any]:
 
 
 def value_at(deck: Deck, names: Sequence[str], key: str) -> Any:
-    """The value of a key as a checked deck has it, in SI; None where it leads to no number, word or truth."""
+    """The value of a key in a checked deck, in SI; None if it is not a scalar."""
     holder, last = _holder(deck, names, key)
     value = getattr(holder, last, None) if isinstance(holder, Table) else None
     return value if isinstance(value, str | int | float) else None

@@ -246,7 +246,7 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
 
 
 def _once(ax: Any) -> tuple[list[Any], list[str]]:
-    """Lines and words of a legend in which each word stands once."""
+    """Lines and texts of a legend, without duplicates."""
     lines, words = ax.get_legend_handles_labels()
     first = {word: line for line, word in reversed(list(zip(lines, words, strict=True)))}
     return list(first.values()), list(first)

@@ -21,7 +21,7 @@ REACH = 1.35
 
 
 def draw_assess(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Margins of all strategies, their agreement, and the motion with what statics bears."""
+    """Margins of all strategies, their agreement, and the motion with the static capacities."""
     r = run.results_of(name, Assess)
     found = [_margins(r, folder, name), _agreement(r, folder, name), _hazard(run, r, name, folder), _tornado(r, folder, name)]
     return [one for one in found if one is not None]
@@ -134,7 +134,7 @@ def _cell(ax: Axes, x: int, y: int, colour: str, text: str, ink: str = style.EDG
 
 
 def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
-    """The motion of single runs, with the constant accelerations that statics bears and the primary impulse."""
+    """The motion of single runs, with the static capacities as constant accelerations and the primary impulse."""
     time, ground = run.array(name, "time"), run.array(name, "ground") / 9.80665
     rows = [v for v in r.verdicts if v.axis == "acceleration" and v.status == "ok" and v.capacity is not None]
     with style.figure(7.2, 3.2) as (fig, (ax,)):

@@ -1,5 +1,4 @@
-"""What the page shows of stored runs: words, charts and bodies that move, by the entry of the kind, from the arrays that are
-there."""
+"""Charts of stored runs for the page, by the entry of the kind, from the available arrays."""
 
 from typing import Any
 
@@ -88,7 +87,7 @@ def _rows(name: str, value: Any) -> dict[str, Any] | None:
 
 
 class Shown:
-    """Collects what the page is sent of one analysis."""
+    """Collects the data of one analysis for the page."""
 
     def __init__(self, run: Stored, name: str, arrays: Arrays):
         self.run, self.name, self.arrays = run, name, arrays
@@ -159,7 +158,7 @@ class Shown:
     # Kinds
 
     def _solids(self) -> None:
-        """Blocks in space that move along a mechanism, and what they bear over the direction."""
+        """Blocks in space that move along a mechanism, and their capacity over the direction."""
         share, pose = np.linspace(0.0, 1.0, 24), self.arrays["mechanism_pose"]
         self._blocks(share, pose, unit="", label="mechanism", swings=True, push=self._results.load_direction_deg)
         if len(self.arrays["rose_direction"]) > 2:
@@ -555,7 +554,7 @@ class Shown:
         )
 
     def others(self) -> None:
-        """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""
+        """Any other kind: arrays over their axis, if it has numbers of its own."""
         found = self.run.arrays[self.name]
         axes = {n: a for n, a in found.items() if a.dims == (n,) and np.size(a.numbers) > 1 and np.asarray(a.numbers).dtype.kind in "fiu"}
         for axis, about in axes.items():

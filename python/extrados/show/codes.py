@@ -13,7 +13,8 @@ from extrados.show.stones import outlines, window
 
 
 def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """The mechanism or the governing wall on the plan, a* over d* with what the checks ask, and demand over capacity of each."""
+    """The mechanism or the governing wall on the plan, a* over d* with the demands of the checks, and demand over capacity of
+    each."""
     r = run.results_of(name, LocalMechanism)
     there = run.arrays.get(name, {})
     drawn = []

@@ -72,7 +72,7 @@ def figures_of(run: Stored, name: str) -> Callable[[Stored, str, Path], list[tup
 
 
 def draw(run: Stored, name: str) -> Drawn:
-    """The figures of an analysis of a run by its name, none where it has no arrays; KeyError where there is no such analysis."""
+    """The figures of an analysis of a run, empty for an analysis without arrays; KeyError if there is no such analysis."""
     row = run.analysis(name)
     if row["status"] not in ("ok", "interrupted") or row["kind"] not in kinds.ANALYSES or not run.arrays.get(name):
         return Drawn({}, {})

@@ -28,9 +28,9 @@ PRINTED, ANNEX, SOURCE, ANNEX_SOURCE = "report.pdf", "annex.pdf", "report.typ", 
 
 
 def draw(run: Stored, folder: Path) -> dict[str, Figures]:
-    """All figures of a run into folder/figures; analysis name -> (figure name, caption).
+    """Draw all figures of a run into folder/figures; analysis name -> (figure name, caption).
 
-    StoreError where the stored results lack what a figure needs, or a figure cannot be written.
+    StoreError if the stored results lack an array of a figure, or if a figure cannot be written.
     """
     shown = [a for a in run.analyses if a["kind"] in kinds.ANALYSES and run.arrays.get(a["name"])]
     (folder / "figures").mkdir(exist_ok=True)

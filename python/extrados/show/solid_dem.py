@@ -87,7 +87,7 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
-    """What the colours of the stones tell [m]."""
+    """Legend of the colours of the blocks [m]."""
     bar = fig.colorbar(ScalarMappable(Normalize(0.0, farthest), MOVED), ax=axes, shrink=0.6, pad=0.02, aspect=30, panchor=False)
     bar.set_label("displacement of the stone [m]")
 
@@ -146,7 +146,7 @@ def draw_states(time: np.ndarray, state: np.ndarray, states: dict[str, str], fir
 
 
 def _film(run: Stored, name: str, folder: Path) -> None:
-    """The motion as a film, where the deck asks for one."""
+    """The motion as a film, if the deck requests one."""
     kind, speed = film.asked(run, name)
     if kind == "none":
         return

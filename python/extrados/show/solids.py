@@ -133,7 +133,7 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
 
 
 def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray) -> None:
-    """The mechanism as a film, where the deck asks for one: out and back, so that it goes on without a jump."""
+    """The mechanism as a film, if the deck requests one: forward and backward, so that it repeats without a jump."""
     kind, speed = film.asked(run, name)
     if kind == "none":
         return
@@ -157,7 +157,7 @@ def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float
 
 
 def speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:
-    """How far the fastest vertex of each stone goes, over that of all."""
+    """Displacement of the fastest vertex of each block, relative to the greatest of all."""
     gone = np.linalg.norm(moved.vertices - stones.vertices, axis=1)
     found = np.zeros(count)
     for face, block in zip(stones.faces, stones.block, strict=True):

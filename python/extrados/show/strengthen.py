@@ -193,7 +193,7 @@ def _places(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
 
 
 def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, str] | None:
-    """Cost against value: curves of all alternatives, and the line of those that no other beats."""
+    """Cost against value: curves of all alternatives, and the Pareto front."""
     curves = _paths(run, name, "curve")
     rows = [one for one in r.interventions if one.name in curves][:MOST]
     if len(rows) < 2:

@@ -320,7 +320,7 @@ def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:
 
 
 def label_of(words: Language, table: str, key: str) -> str:
-    """A key of the deck in words: "compressive strength", "spans 2: clear span" where it stands within another table."""
+    """A key of the deck in words: "compressive strength"; "spans 2: clear span" for a key within another table."""
     parts = []
     for part in table.split(".")[1:]:
         name, _, number = part.partition(" ")

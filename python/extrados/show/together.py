@@ -44,8 +44,7 @@ class Push:
 
 
 def pushes(runs: list[tuple[str, Stored]]) -> list[Push]:
-    """All curves of load against displacement of some runs, each with what it is called; StoreError names a run without
-    any."""
+    """All load-displacement curves of some runs, with their names; StoreError names a run without any."""
     found = []
     last = [Path(title).name for title, _ in runs]
     for (title, run), short in zip(runs, last, strict=True):

@@ -159,7 +159,7 @@ def _table(block: Table, words: Language) -> str:
 
 
 def _shares(block: Table) -> list[float]:
-    """Widths of the columns [mm]: as asked, but none less than its longest word."""
+    """Widths of the columns [mm]: as requested, but at least as wide as the longest word."""
     every = [block.head, *block.rows] if block.head else block.rows
     least = [
         BESIDE + LETTER * max((len(word) for row in every for word in BREAKS.sub(lambda m: m[0] + " ", row[k]).split()), default=0)

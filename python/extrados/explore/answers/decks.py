@@ -158,9 +158,8 @@ def _under(desk: Desk, record: Path) -> Iterator[Reply]:
 
 
 def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
-    """The stones of any building as free blocks, whose vertices hands can move: as heavy, as deep and as rough as they were.
-    What rests on them and what holds them stays behind, and so do joints of their own, whose names are gone: the new deck's
-    note says which."""
+    """Turn the blocks of any building into free blocks with vertices that can be dragged. Mass, depth and friction are kept.
+    Loads, restraints and special joints are not carried over; the note of the new deck lists them."""
     deck = desk.there().deck
     assembly = deck.building.blocks()
     count = sum(map(len, assembly.outlines))

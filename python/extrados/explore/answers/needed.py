@@ -1,4 +1,4 @@
-"""What is needed: the least interventions with which the structure carries an acceleration, by limit analysis."""
+"""Sizing of interventions: the least interventions with which the structure carries an acceleration, by limit analysis."""
 
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,7 @@
-"""A page without a server: one HTML file with a structure, computed beforehand over a size and the tilt of the ground.
+"""A page without a server: one HTML file with a structure, calculated in advance for values of a dimension and of the tilt.
 
-The file holds the modules of the page that draw (static/), and for each pair of values what the session replied. Nothing in it
-asks a network.
+The file contains the modules of the page that draw (static/), and the reply of the session for each pair of values. It uses
+no network.
 """
 
 import base64
@@ -119,7 +119,7 @@ def _around(value: float) -> np.ndarray:
 
 
 def _frame(reply: Reply) -> bytes:
-    """A reply without what the file does not show."""
+    """A reply without the arrays that the file does not show."""
     arrays = {name: array for name, array in reply.arrays.items() if not name.endswith("velocity") and name != "polygon"}
     return Reply({"scene": reply.words["scene"]}, arrays).pack()
 

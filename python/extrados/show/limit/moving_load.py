@@ -107,13 +107,13 @@ def _borne(r: MovingLoad) -> str:
 
 
 def _road_of(run: Stored, name: str, blocks: list[np.ndarray]) -> float:
-    """Level at which loads stand [m]: the top of the surfacing, the fill or the stones."""
+    """Level of the loads [m]: the top of the surfacing, the fill or the blocks."""
     tops = [run.array(name, what) for what in ("fill_outline", "surfacing_outline") if what in run.arrays[name]]
     return max(float(o[:, 1].max()) for o in [*blocks, *tops])
 
 
 def _load_marks(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray], size: float) -> None:
-    """Axles as arrows and even loads as bands, on the road, or on the stones where there is no fill."""
+    """Axles as arrows and uniform loads as bands, on the road, or on the blocks of a structure without fill."""
     paved = any(what in run.arrays[name] for what in ("fill_outline", "surfacing_outline"))
     road = _road_of(run, name, blocks)
     for x in run.array(name, "axle"):
@@ -155,7 +155,7 @@ def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
 
 
 def _zones(ax: Axes, run: Stored, name: str, links: list[np.ndarray]) -> None:
-    """Zones of thrust along the chains: what of the joints the strength needs to carry the compression."""
+    """Zones of thrust along the chains: the part of each joint that carries the compression at the given strength."""
     if "zone_inner" not in run.arrays[name]:
         return
     inner, outer = run.array(name, "zone_inner"), run.array(name, "zone_outer")

@@ -130,7 +130,7 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 
 def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Capacities of the random surveys: how many bear at most how much, the band, and the survey that is given."""
+    """Capacities of the random surveys: distribution, band, and the value of the given survey."""
     r = run.results_of(name, Imperfections)
     gamma = run.array(name, "gamma")
     lesser = np.sort(np.nan_to_num(gamma.min(axis=1), nan=0.0))
