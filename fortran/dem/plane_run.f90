@@ -107,7 +107,7 @@ contains
       call finish_step(run%model)
    end subroutine move_bodies
 
-   !> Ledger at the time of the last forces
+   !> Energy balance at the time of the last forces
    function measure_energy(run) result(now)
       class(block_simulation), intent(in) :: run
       type(energy_terms) :: now

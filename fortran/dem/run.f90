@@ -81,7 +81,7 @@ contains
    end subroutine settle_bodies
 
    !> Rest on springs, damped as much as rest needs, whatever the damping of the motion. Mortar does not break while the
-   !> weight comes, which comes at once and overshoots; then what cannot bear the weight at rest breaks, and all comes
+   !> weight comes, which comes at once and overshoots; then joints that cannot carry the weight at rest break, and all comes
    !> to rest anew.
    subroutine rest_with_mortar(run, rests, status)
       class(simulation), intent(inout), target :: run
@@ -276,8 +276,8 @@ contains
       end associate
    end subroutine run_on
 
-   !> Energy that came from nowhere, over the energy that went round; what rigid contacts take they must not give back,
-   !> or it came from nowhere too. Without inertia there is no ledger
+   !> Error of the energy balance over the total energy exchanged; energy that rigid contacts dissipate must not return,
+   !> or it counts as an error, too. Without inertia there is no energy balance
    function energy_from_nowhere(run, energy) result(ratio)
       class(simulation), intent(inout), target :: run
       type(energy_terms), intent(in) :: energy       !! now

@@ -35,7 +35,7 @@ module dem3_model
       real(wp) :: reach = 0.0_wp                      !! a body that has moved farther makes them stale [m]
       real(wp) :: margin = 0.0_wp                     !! features nearer than this are points of a pair [m]
       real(wp) :: far = 0.0_wp                        !! bodies that have moved farther apart find them anew [m]
-      real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
+      real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is checked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
       real(wp) :: support_work = 0.0_wp               !! of them [J]
       ! Contacts without springs, see dem3_moreau
@@ -638,7 +638,7 @@ contains
       bound = size * exp((scale + log(norm2(power))) / 16.0_wp)
    end function above_eigenvalues
 
-   !> Ledger at the time of the last forces: leap-frog keeps m v(n-1/2) v(n+1/2) / 2 plus the energy of linear springs
+   !> Energy balance at the time of the last forces: leap-frog keeps m v(n-1/2) v(n+1/2) / 2 plus the energy of linear springs
    pure function energy_now(model) result(now)
       type(solid_model), intent(in) :: model
       type(energy_terms) :: now
