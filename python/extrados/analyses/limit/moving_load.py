@@ -89,22 +89,24 @@ class Places:
         """Collapse under the train; None where it brings nothing down.
 
         Even loads that stand only where they are adverse, and the mechanism that they belong to, are found in turn,
-        from the axles alone and from the whole train, or without axles from each half too: each step lessens the factor.
+        from the axles alone, from the whole train and from each half of it: each step lessens the factor of its start, and the least of all
+        counts.
         """
         axles, (force, x, block) = self._axles(k), self._even(k)
         every = np.ones(len(force), dtype=bool)
         starts = [every]
         if self.adverse and len(force):
             half = x <= 0.5 * (x.min() + x.max())
-            starts += [~every] if axles.any() else [half, ~half]
-        best = None
+            starts += [half, ~half] + ([~every] if axles.any() else [])
+        best: Collapse | None = None
         for standing in starts:
+            own: Collapse | None = None
             for _ in range(PATTERNS):
                 live = axles + pressed(np.where(standing, force, 0.0), x, block, len(axles))
                 found = self.under(live, standing)
-                if found is None or (best is not None and found.factor >= best.factor * (1.0 - 1e-9)):
+                if found is None or (own is not None and found.factor >= own.factor * (1.0 - 1e-9)):
                     break
-                best = found
+                own = found
                 if not self.adverse or not len(force):
                     break
                 v = found.mechanism.velocity[block]
@@ -112,6 +114,8 @@ class Places:
                 if not (downward != standing).any():
                     break
                 standing = downward
+            if own is not None and (best is None or own.factor < best.factor):
+                best = own
         return best
 
     def under(self, live: np.ndarray, standing: np.ndarray) -> Collapse | None:
