@@ -12,6 +12,8 @@ RockingOutcome = Literal["no-hinging", "recovery", "collapse"]
 WholeOutcome = Literal["no-hinging", "slid", "recovery", "collapse"]
 #: Numbers of the outcomes in stored arrays, as the core counts them
 NO_HINGING, RECOVERY, COLLAPSE = range(len(get_args(RockingOutcome)))
+#: Number in maps of blocks that only slide, by rigid contacts; collapse of a second mode takes the one before
+SLID = COLLAPSE + 2
 Pulse = Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"]
 
 
@@ -62,7 +64,7 @@ class RuleOutcome(ResultModel):
 
     rule: str = fact("word of [joints] restitution, or a number that discrete elements may keep")
     restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
-    outcome: RockingOutcome = fact("no rocking, rocking and recovery, or collapse")
+    outcome: WholeOutcome = fact("no rocking, sliding alone, rocking and recovery, or collapse")
 
 
 class RestraintForces(ResultModel):

@@ -300,7 +300,14 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         result.arrays["fourier"] = Array(
             np.sqrt(np.mean(spectra["fourier"] ** 2, axis=0)), ("frequency",), "m/s", "root mean square Fourier amplitude"
         )
-    if isinstance(model, models.Generated):
+    if model.floor is not None:  # targets and intensities are those of the ground
+        result.answer = (
+            f"{count} motions of a floor: median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s, "
+            f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
+        )
+        if not isinstance(model, models.Suite) or model.selection is not None:
+            result.warnings.append("The target of the set is that of the ground. The motions of the floor are not compared with it.")
+    elif isinstance(model, models.Generated):
         r |= _compare_with_intensity(result, r, model, context)
     elif isinstance(model, models.Compatible):
         known = periods <= (model.longest if model.code == "table" else np.inf)

@@ -33,7 +33,7 @@ from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results.dem import DemRun
 from extrados.results.model import Array, Result
-from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, WholeOutcome
+from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, SLID, WholeOutcome
 from extrados.views.building import Building
 from extrados.views.rockers.rocker import Rocker
 from extrados.views.rockers.stack import StackModel
@@ -45,11 +45,11 @@ BEFORE = 1e-3
 COARSE = 0.02
 #: Heights of joints on the ground that differ by no more than this share of the size are one level
 LEVEL = 1e-6
-#: Outcome of `rocking` for one of contacts; of many runs sliding counts as recovery
+#: Outcome of `rocking` for one of contacts
 WORDS: dict[str, WholeOutcome] = {"at-rest": "no-hinging", "slid": "slid", "rocked": "recovery", "collapse": "collapse"}
 #: Outcome of a member whose contacts gave no result
 UNKNOWN = -2
-CODES = {"no-hinging": NO_HINGING, "slid": RECOVERY, "recovery": RECOVERY, "collapse": COLLAPSE}
+CODES: dict[WholeOutcome, int] = {"no-hinging": NO_HINGING, "slid": SLID, "recovery": RECOVERY, "collapse": COLLAPSE}
 
 
 def leaving_time(response: Response, astray: float, time_unit: float) -> float | None:
@@ -280,14 +280,17 @@ def stored(result: Result) -> dict[str, Array]:
     }
 
 
+def word_of(code: int) -> WholeOutcome:
+    """The outcome of a number in CODES."""
+    return next(word for word, number in CODES.items() if number == code)
+
+
 class Fate(NamedTuple):
-    """How a run ends on contacts, in OUTCOMES or UNKNOWN, its greatest rotation from there on [rad], that over the critical one, and
-    whether it only slides."""
+    """How a run ends on contacts, in CODES or UNKNOWN, its greatest rotation from there on [rad], and that over the critical one."""
 
     outcome: int
     rotation: float
     ratio: float
-    slides: bool = False
 
 
 @dataclass(frozen=True)
@@ -337,7 +340,7 @@ class Fates:
             return Fate(UNKNOWN, 0.0, 0.0)
         seen = Seen.of(c.model, run, c.floor is not None)
         outcome = outcome_of(left.rocks, seen.fate(self.collapse).outcome)
-        return Fate(CODES[outcome], *c.leaving.greatest(seen.rotation), outcome == "slid")
+        return Fate(CODES[outcome], *c.leaving.greatest(seen.rotation))
 
 
 @dataclass(frozen=True)
@@ -353,24 +356,24 @@ class ContactRuns:
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         members = range(first, first + count)
         found = [self.fates.follow(self.grounds[self.motion[k]], float(self.scale[k]), float(self.end[k]), threads) for k in members]
-        return {"outcome": np.array([one.outcome for one in found], dtype=np.int8), "peak": np.array([one.rotation for one in found])}
+        return {"outcome": np.array([one.outcome for one in found], dtype=np.int8), "ratio": np.array([one.ratio for one in found])}
 
 
 def decide(
     context: Context, name: str, contacts: Contacts, grounds: list[Ground], motion: np.ndarray, scale: np.ndarray, end: np.ndarray
-) -> np.ndarray:
-    """Outcomes (runs) on contacts of runs whose mechanism a condition leaves, UNKNOWN where contacts gave no result; see
-    ContactRuns."""
+) -> dict[str, np.ndarray]:
+    """On contacts, of runs whose mechanism a condition leaves (see ContactRuns): `outcome` (runs) in CODES, UNKNOWN where contacts gave no
+    result, and `ratio` of the greatest rotation to the critical one (runs)."""
     job = ContactRuns(Fates.of(context, contacts), grounds, motion, scale, end)
-    return sweep(context, name, job, len(motion), "rigid contacts", slow=True, parallel=True).whole()["outcome"]
+    return sweep(context, name, job, len(motion), "rigid contacts", slow=True, parallel=True).whole()
 
 
 def decide_cells(
     context: Context, rocker: Rocker, limit: int, linear: bool, grounds: list[Ground], index: np.ndarray, scale: np.ndarray, end: np.ndarray
-) -> np.ndarray:
-    """Outcomes (runs) of cells of a map whose mechanism a condition leaves: motion index[k] times scale[k] until end[k] [s]; UNKNOWN where
+) -> dict[str, np.ndarray]:
+    """See `decide`: of cells of a map whose mechanism a condition leaves, motion index[k] times scale[k] until end[k] [s]; UNKNOWN where
     contacts do not decide them, or where they are more than `limit`, with a warning."""
-    unknown = np.full(len(index), UNKNOWN)
+    unknown = {"outcome": np.full(len(index), UNKNOWN), "ratio": np.full(len(index), np.nan)}
     if not len(index):
         return unknown
     contacts = contacts_of(rocker, context.building, linear)

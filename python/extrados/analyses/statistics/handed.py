@@ -9,7 +9,7 @@ from extrados.analyses.rocking.hand_over import Fates, contacts_of
 from extrados.analyses.statistics.tables import Fragility
 from extrados.analyses.statistics.uncertain import Sample
 from extrados.core.rocking import Ground
-from extrados.results.rocking import COLLAPSE, NO_HINGING
+from extrados.results.rocking import COLLAPSE, NO_HINGING, SLID
 from extrados.views.rockers.rocker import Rocker
 
 
@@ -37,7 +37,7 @@ class Handed:
             found = fates.follow(ground, float(rows["scale"][k]), ground.end + settle, threads)
             if found.outcome < 0:
                 continue
-            rows["outcome"][k], rows["handed"][k] = NO_HINGING if found.slides else found.outcome, 1
+            rows["outcome"][k], rows["handed"][k] = NO_HINGING if found.outcome == SLID else found.outcome, 1
             rows["half_cycles"][k], rows["stop_time"][k] = 0, np.nan  # of the mechanism, which does not hold
             rows["peak"][k] = found.rotation
             rows["peak_ratio"][k] = max(1.0, found.ratio) if found.outcome == COLLAPSE else found.ratio
