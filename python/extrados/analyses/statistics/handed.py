@@ -1,6 +1,6 @@
 """Members of an ensemble in which joints slide or hinges form elsewhere: rigid contacts decide them, one by one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.hand_over import Fates, contacts_of
 from extrados.analyses.statistics.tables import Fragility
 from extrados.analyses.statistics.uncertain import Sample
-from extrados.core.rocking import Ground
+from extrados.core.rocking import Body, Ground
 from extrados.results.rocking import COLLAPSE, NO_HINGING, SLID
 from extrados.views.rockers.rocker import Rocker
 
@@ -19,6 +19,11 @@ class Handed:
 
     fates: Fates
     sample: Sample | None = None
+
+    def by(self, body: Body) -> "Handed":
+        """The nominal building by another body, of another rule of impact, until contacts follow it."""
+        contacts = self.fates.contacts
+        return Handed(replace(self.fates, contacts=replace(contacts, leaving=replace(contacts.leaving, body=body))))
 
     def settle(
         self, rows: dict[str, np.ndarray], members: np.ndarray, buildings: np.ndarray, grounds: list[Ground], settle: float, threads: int
