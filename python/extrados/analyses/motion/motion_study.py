@@ -20,7 +20,7 @@ from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.measures import BANDWIDTH, HOUSNER_BAND, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
 from extrados.motions.processing import drift
-from extrados.motions.wavelet_pulse import classify
+from extrados.motions.wavelet_pulse import classify, classify_directions
 from extrados.results import motion as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -126,7 +126,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     rotd: dict[str, np.ndarray] = {}
     if motion.horizontal is not None:
         rotd = _all_directions(context, options, periods, result)
-        r |= {**rotd_peaks(motion), "rotd_damping": _damping(options)}
+        r |= {**rotd_peaks(motion), "rotd_damping": _damping(options), "directed_pulses": _directed(motion)}
     result.tables = {
         "motion": TableData(
             {"time": time, "acceleration": a, "velocity": velocity, "displacement": displacement},
@@ -186,6 +186,24 @@ def _all_directions(context: Context, options: MotionStudy, periods: np.ndarray,
     return found
 
 
+def _directed(motion: Motion) -> list[out.DirectedPulse]:
+    """Candidates of pulses over all directions of a record with both horizontal components."""
+    assert motion.horizontal is not None
+    return [
+        out.DirectedPulse(
+            indicator=one.indicator,
+            period_s=one.period,
+            angle_deg=float(np.degrees(one.angle)),
+            pgv_m_s=one.pgv,
+            pgv_ratio=one.pgv_ratio,
+            energy_ratio=one.energy_ratio,
+            energy_before=one.before,
+            pulse_like=one.pulse_like,
+        )
+        for one in classify_directions(motion.horizontal, motion.ground.step)
+    ]
+
+
 def describe(name: str, r: out.OneMotion) -> str:
     """The numbers of one motion in words."""
     said = ", ".join(part for part in (r.title, r.station) if part)
@@ -199,6 +217,14 @@ def describe(name: str, r: out.OneMotion) -> str:
         text += (
             f"Primary impulse {abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s from {first.start_s:.2f} s "
             f"(explains {100 * first.goodness_of_fit:.0f} % of the motion over its span). "
+        )
+    if r.directed_pulses is not None:
+        like = [one for one in r.directed_pulses if one.pulse_like]
+        text += (
+            f"Over all directions it is pulse-like: period {like[0].period_s:.2f} s at {like[0].angle_deg:.0f} degrees from the first component "
+            "(Shahi and Baker 2014). "
+            if like
+            else "Over all directions it is not pulse-like (Shahi and Baker 2014). "
         )
     pulse = r.wavelet_pulse
     if pulse.pulse_like:
@@ -256,6 +282,7 @@ def _members(context: Context, options: MotionStudy, warnings: list[str]) -> tup
 
 def _run_set(context: Context, options: MotionStudy) -> Result:
     model, folder = context.deck.motion, context.deck.folder
+    assert model is not None  # is_set
     suite = isinstance(model, models.Suite)
     damping = model.damping if isinstance(model, models.Compatible) else _damping(options)
     warnings: list[str] = []
