@@ -167,6 +167,22 @@ def test_the_factor_refers_to_the_ground_also_under_a_floor(suite: Path) -> None
     assert amplified > 2.0 * 0.4 * GRAVITY
 
 
+@pytest.mark.parametrize("kind", ["suite", "generated", "compatible"])
+def test_the_motions_of_a_floor_are_compared_with_no_target_of_the_ground(suite: Path, kind: str) -> None:
+    """The sets have targets (or an intensity) of the ground; above it they are many times as strong at its period."""
+    sets = {
+        "suite": motion(),
+        "generated": {"kind": "generated", "mmi": 7.0, "duration": 10.0, "lines": 20},
+        "compatible": {"kind": "compatible", "code": "EN1998-1", "acceleration": "0.2 g", "duration": 10.0},
+    }
+    floor = {"height": 9.0, "building_height": 9.0, "building_period": 0.5, "building_damping": 0.02}
+    deck = make_deck({"motion": sets[kind] | {"floor": floor}, "analysis": {"kind": "motion", "count": 2}}, suite)
+    result = run_analyses(Context(deck))[0]
+    r = result.results
+    assert "target" not in result.arrays and "line" not in result.arrays and r.shortest_s is None and r.expected_pga_g is None
+    assert "motions of a floor" in result.answer and any("not compared" in text for text in result.warnings)
+
+
 def test_a_changed_file_changes_the_selection(suite: Path) -> None:
     """The flatfile, the target, and the second and vertical components count, not the first component alone."""
     keys = {"flatfile": "flat.csv", "limits": {"magnitude": [6.0, 7.0]}}

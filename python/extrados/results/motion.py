@@ -26,6 +26,19 @@ class WaveletPulse(ResultModel):
     fails: list[str] = fact("conditions of Baker that are not satisfied, in words")
 
 
+class DirectedPulse(ResultModel):
+    """A velocity pulse in its own direction (Shahi and Baker 2014)."""
+
+    indicator: float = fact("pulse indicator: above 0 pulse-like", source="Shahi and Baker 2014")
+    period_s: float = fact("period of the pulse", "s")
+    angle_deg: float = fact("from the first component to the direction of the pulse, as `angle` of a record", "deg")
+    pgv_m_s: float = fact("peak velocity of the motion in that direction", "m/s")
+    pgv_ratio: float = fact("peak velocity of the motion less the pulse, over that of the motion")
+    energy_ratio: float = fact("energy of the motion less the pulse, over that of the motion")
+    energy_before: float = fact("share of the energy of the motion before the pulse begins; from 0.17 on the pulse is late")
+    pulse_like: bool = fact("whether the indicator is above 0 and the pulse is not late")
+
+
 class OneMotion(KindResults):
     """motion: one ground motion in depth."""
 
@@ -51,6 +64,10 @@ class OneMotion(KindResults):
     primary_impulse: Impulse | None = fact("the single sine that explains most of the motion", source="thesis 5.3.2")
     impulses: list[Impulse] = fact("the strongest impulses")
     wavelet_pulse: WaveletPulse = fact("the strongest velocity pulse", source="Baker 2007")
+    directed_pulses: list[DirectedPulse] = maybe(
+        "of a record with both horizontal components: up to five candidates over all directions, strongest first",
+        source="Shahi and Baker 2014",
+    )
     vertical_pga_g: float = maybe("greatest vertical acceleration", "g")
     rotd50_pga_g: float | None = maybe("median, over all directions, of the peak acceleration", "g", source="Boore 2010")
     rotd100_pga_g: float | None = maybe("greatest over all directions", "g", source="Boore 2010")

@@ -12,6 +12,8 @@ RockingOutcome = Literal["no-hinging", "recovery", "collapse"]
 WholeOutcome = Literal["no-hinging", "slid", "recovery", "collapse"]
 #: Numbers of the outcomes in stored arrays, as the core counts them
 NO_HINGING, RECOVERY, COLLAPSE = range(len(get_args(RockingOutcome)))
+#: Number in maps of blocks that only slide, by rigid contacts; collapse of a second mode takes the one before
+SLID = COLLAPSE + 2
 Pulse = Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"]
 
 
@@ -70,7 +72,7 @@ class RuleOutcome(ResultModel):
         "coefficient of restitution (angular velocity after / before impact), limited to 0 to 1; for a mechanism, at the "
         "impact that starts rocking towards +x"
     )
-    outcome: RockingOutcome = fact("outcome: no rocking, rocking and recovery, or collapse")
+    outcome: WholeOutcome = fact("outcome: no rocking, sliding alone, rocking and recovery, or collapse")
 
 
 class RestraintForces(ResultModel):

@@ -20,7 +20,7 @@ from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.measures import BANDWIDTH, HOUSNER_BAND, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
 from extrados.motions.processing import drift
-from extrados.motions.wavelet_pulse import classify
+from extrados.motions.wavelet_pulse import classify, classify_directions
 from extrados.results import motion as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -126,7 +126,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     rotd: dict[str, np.ndarray] = {}
     if motion.horizontal is not None:
         rotd = _all_directions(context, options, periods, result)
-        r |= {**rotd_peaks(motion), "rotd_damping": _damping(options)}
+        r |= {**rotd_peaks(motion), "rotd_damping": _damping(options), "directed_pulses": _directed(motion)}
     result.tables = {
         "motion": TableData(
             {"time": time, "acceleration": a, "velocity": velocity, "displacement": displacement},
@@ -186,6 +186,24 @@ def _all_directions(context: Context, options: MotionStudy, periods: np.ndarray,
     return found
 
 
+def _directed(motion: Motion) -> list[out.DirectedPulse]:
+    """Candidates of pulses over all directions of a record with both horizontal components."""
+    assert motion.horizontal is not None
+    return [
+        out.DirectedPulse(
+            indicator=one.indicator,
+            period_s=one.period,
+            angle_deg=float(np.degrees(one.angle)),
+            pgv_m_s=one.pgv,
+            pgv_ratio=one.pgv_ratio,
+            energy_ratio=one.energy_ratio,
+            energy_before=one.before,
+            pulse_like=one.pulse_like,
+        )
+        for one in classify_directions(motion.horizontal, motion.ground.step)
+    ]
+
+
 def describe(name: str, r: out.OneMotion) -> str:
     """The numbers of one motion in words."""
     said = ", ".join(part for part in (r.title, r.station) if part)
@@ -203,6 +221,14 @@ def describe(name: str, r: out.OneMotion) -> str:
         text += (
             f"The primary impulse has {abs(first.amplitude_g):.3g} g and a period of {first.period_s:.3g} s, and starts at "
             f"{first.start_s:.2f} s (it explains {100 * first.goodness_of_fit:.0f} % of the motion over its duration). "
+        )
+    if r.directed_pulses is not None:
+        like = [one for one in r.directed_pulses if one.pulse_like]
+        text += (
+            f"Over all directions it is pulse-like: period {like[0].period_s:.2f} s at {like[0].angle_deg:.0f} degrees from the first component "
+            "(Shahi and Baker 2014). "
+            if like
+            else "Over all directions it is not pulse-like (Shahi and Baker 2014). "
         )
     pulse = r.wavelet_pulse
     if pulse.pulse_like:
@@ -263,6 +289,7 @@ def _members(context: Context, options: MotionStudy, warnings: list[str]) -> tup
 
 def _run_set(context: Context, options: MotionStudy) -> Result:
     model, folder = context.deck.motion, context.deck.folder
+    assert model is not None  # is_set
     suite = isinstance(model, models.Suite)
     damping = model.damping if isinstance(model, models.Compatible) else _damping(options)
     warnings: list[str] = []
@@ -307,7 +334,14 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         result.arrays["fourier"] = Array(
             np.sqrt(np.mean(spectra["fourier"] ** 2, axis=0)), ("frequency",), "m/s", "root mean square Fourier amplitude"
         )
-    if isinstance(model, models.Generated):
+    if model.floor is not None:  # targets and intensities are those of the ground
+        result.answer = (
+            f"{count} motions of a floor: median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s, "
+            f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
+        )
+        if not isinstance(model, models.Suite) or model.selection is not None:
+            result.warnings.append("The target of the set is that of the ground. The motions of the floor are not compared with it.")
+    elif isinstance(model, models.Generated):
         r |= _compare_with_intensity(result, r, model, context)
     elif isinstance(model, models.Compatible):
         known = periods <= (model.longest if model.code == "table" else np.inf)

@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados.analyses.chaos import NUDGE, growth, over_critical, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
-from extrados.analyses.rocking.hand_over import Contacts, decide
+from extrados.analyses.rocking.hand_over import Contacts, decide, word_of
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, arch_body, ensemble, history
 from extrados.results.rocking import HandOver, RuleOutcome
@@ -172,9 +172,9 @@ def doubts_on_contacts(context: Context, rocker: Rocker, contacts: Contacts, res
     for rule, (c_v, body) in rivals.items():
         rival = replace(contacts, leaving=replace(contacts.leaving, body=rocker.held(body)))
         one = np.zeros(1, dtype=int)
-        place = decide(context, f"contacts-{rule}", rival, [context.motion.ground], one, one + 1.0, one + end_time)[0]
+        place = int(decide(context, f"contacts-{rule}", rival, [context.motion.ground], one, one + 1.0, one + end_time)["outcome"][0])
         if place >= 0:
-            rules.append(RuleOutcome(rule=rule, restitution=c_v, outcome=OUTCOMES[place]))
+            rules.append(RuleOutcome(rule=rule, restitution=c_v, outcome=word_of(place)))
     violated = list(run.violated)
     if len({one.outcome == "collapse" for one in rules}) > 1:
         told = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.outcome}' for one in rules)

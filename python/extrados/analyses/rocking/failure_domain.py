@@ -25,7 +25,7 @@ from extrados.motions.motion import Motion
 from extrados.results import rocking as out
 from extrados.results.fields import Keys, given
 from extrados.results.model import Array, Result, TableData
-from extrados.results.rocking import COLLAPSE, RECOVERY
+from extrados.results.rocking import COLLAPSE, RECOVERY, SLID
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.rocker import Rocker
@@ -67,6 +67,7 @@ class Curves:
 
     codes (durations, amplitudes): 0 no hinging, 1 recovery, 2 Mode I, 3 Mode II; rows (durations, amplitudes): see Mapper.rows.
     handed (durations, amplitudes): cells that rigid contacts decided; a curve next to one is known to a cell of the map only.
+    slid (durations, amplitudes): those of them in which blocks only slide, which count as recovery in `codes`.
     """
 
     durations: np.ndarray
@@ -77,6 +78,7 @@ class Curves:
     pocket: np.ndarray
     rows: dict[str, np.ndarray]
     handed: np.ndarray
+    slid: np.ndarray
 
 
 def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
@@ -146,12 +148,13 @@ def failure_curves(
     rows = {name: values.reshape(nd, na) for name, values in rows.items()}
     codes = rows["code"]
     grid = np.broadcast_to(amplitudes, codes.shape)
-    handed = np.zeros(codes.shape, dtype=bool)
+    handed, slid = np.zeros((2, *codes.shape), dtype=bool)
     if decided is not None:
         handed = (rows["slips"] > 0) | (rows["strays"] > 0)
         place, _ = np.nonzero(handed)
         found = decided(place, grid[handed])
         known = found >= 0
+        slid[handed], found = found == SLID, np.where(found == SLID, RECOVERY, found)
         # contacts have no half cycles: a collapse keeps the mode of fixed hinges, and is of Mode I where these stand
         codes[handed] = np.where(known, np.where(found == COLLAPSE, np.maximum(codes[handed], MODE_I), found), codes[handed])
         handed[handed] = known
@@ -163,7 +166,7 @@ def failure_curves(
     def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
 
-    return Curves(durations, amplitudes, codes, mode_i, mode_ii, _refine(safe, risen, grid, MODE_I, within), rows, handed)
+    return Curves(durations, amplitudes, codes, mode_i, mode_ii, _refine(safe, risen, grid, MODE_I, within), rows, handed, slid)
 
 
 @dataclass(frozen=True)
@@ -364,7 +367,12 @@ def run(context: Context, options: FailureDomain) -> Result:
     result.arrays = {
         "duration": Array(durations, ("duration",), "s", "duration t_p of step and rectangular pulses, period T_p of other pulses"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
-        "outcome": Array(curves.codes, ("duration", "amplitude"), "", "outcome: 0 no rocking, 1 recovery, 2 Mode I, 3 Mode II"),
+        "outcome": Array(
+            np.where(curves.slid, SLID, curves.codes),
+            ("duration", "amplitude"),
+            "",
+            f"outcome: 0 no rocking, 1 recovery, 2 Mode I, 3 Mode II, {SLID} sliding alone",
+        ),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude that causes collapse, with or without an impact"),
         "pocket": Array(curves.pocket / GRAVITY, ("duration",), "g", "lowest amplitude of the first safe region above the curve"),
         "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude that causes collapse in the first half cycle"),
@@ -400,7 +408,9 @@ def _by_contacts(
     def decided(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         ends = np.array([m.end for m in mapper.motions]) + mapper.settle
         grounds = [m.ground for m in mapper.motions]
-        return decide_cells(context, model, options.hand_over_cells, options.form == "linear", grounds, index, amplitude, ends[index])
+        return decide_cells(context, model, options.hand_over_cells, options.form == "linear", grounds, index, amplitude, ends[index])[
+            "outcome"
+        ]
 
     return decided
 

@@ -398,7 +398,7 @@ def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJo
     """Share of the runs that collapse by each impact rule, at each level where there are any, where their c_v differ by more than
     DIFFER and the runs are few enough."""
     rivals = base.rivals(DIFFER)
-    if not rivals or options.uncertain or options.hand_over:
+    if not rivals or options.uncertain:
         return {}
     each = ", ".join(f'"{rule}" {c_v:.3f}' for rule, (c_v, _) in rivals.items())
     if count > MOST_BY_RULE:
@@ -410,8 +410,11 @@ def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJo
     found = {}
     levels = 1 if job.levels is None else len(job.levels)
     for rule, (_, body) in rivals.items():
-        rival = replace(job, bodies=[base.held(body)], handed=None)
-        swept = sweep(context, "fragility", rival, count, f"fragility by the rule {rule}").whole()
+        held = base.held(body)
+        rival = replace(job, bodies=[held], handed=job.handed and job.handed.by(held))
+        swept = sweep(
+            context, "fragility", rival, count, f"fragility by the rule {rule}", slow=options.hand_over, parallel=options.hand_over
+        ).whole()
         good = swept["outcome"] != FAILED
         at = swept.members % levels
         hits, runs = (np.bincount(at, weight, levels) for weight in (swept["outcome"] == COLLAPSE, good))

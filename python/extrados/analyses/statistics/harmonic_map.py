@@ -14,7 +14,7 @@ from extrados.motions import pulses
 from extrados.results import statistics as out
 from extrados.results.fields import given
 from extrados.results.model import Array, Result, TableData
-from extrados.results.rocking import COLLAPSE
+from extrados.results.rocking import COLLAPSE, SLID
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.rocker import Rocker
@@ -56,17 +56,16 @@ def run(context: Context, options: HarmonicMap) -> Result:
         at = np.flatnonzero(fails)
         linear = options.form == "linear"
         found = decide_cells(context, model, options.hand_over_cells, linear, grounds, motion[at], job.scale[at], job.end[at])
-        known = found >= 0
-        outcome[at[known]], handed = found[known], int(known.sum())
+        known = found["outcome"] >= 0
+        outcome[at[known]], handed = found["outcome"][known], int(known.sum())
+        swept["peak_ratio"][at[known]] = found["ratio"][known]
         if handed == len(at):
             conditions = conditions.model_copy(update={"violated": []})
         if handed:
             result.warnings.append(
                 f"{handed} of {outcome.size} motions of the map were decided with rigid contacts: joints slide in "
-                f"{conditions.sliding}, and hinges form at other joints in {conditions.hinges_elsewhere}. Their greatest "
-                "rotations are not given."
+                f"{conditions.sliding}, and hinges form at other joints in {conditions.hinges_elsewhere}."
             )
-            swept["peak_ratio"][at[known]] = np.nan
     outcome = outcome.reshape(shape)
     over = outcome == COLLAPSE
     ratio = np.where(over, np.nan, swept["peak_ratio"].reshape(shape))
@@ -113,7 +112,7 @@ def store_map(
     result.arrays = {
         "frequency": Array(frequency, ("frequency",), "Hz"),
         "amplitude": Array(amplitude / GRAVITY, ("amplitude",), "g"),
-        "outcome": Array(outcome, ("frequency", "amplitude"), "", "outcome: 0 at rest, 1 recovery, 2 collapse"),
+        "outcome": Array(outcome, ("frequency", "amplitude"), "", f"outcome: 0 at rest, 1 recovery, 2 collapse, {SLID} sliding alone"),
         "peak_ratio": Array(ratio, ("frequency", "amplitude"), "", "ratio of the greatest rotation to the critical rotation"),
         "lowest": Array(lowest, ("frequency",), "g", "lowest overturning amplitude"),
     }
