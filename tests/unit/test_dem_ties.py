@@ -176,7 +176,7 @@ def test_a_state_with_ties_goes_on_with_the_same_bits(rigid: bool) -> None:
         again = other.run(motions, state=states[len(states) // 2])
     assert np.array_equal(again.tension, whole.tension) and np.array_equal(again.place, whole.place)
     bare = replace(shaken, ties=None)
-    with dem.Model(bare, options) as third, as_motion_set([STILL]) as motions, pytest.raises(ValueError, match="of a run of another model"):
+    with dem.Model(bare, options) as third, as_motion_set([STILL]) as motions, pytest.raises(ValueError, match="to a run of another model"):
         third.run(motions, state=states[0])
 
 

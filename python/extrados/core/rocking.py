@@ -126,7 +126,7 @@ def watched_body(
     """
     steps, joints = values[0].shape[0] - 1, values[0].shape[1]
     if values[1].shape != values[0].shape or values[0].shape[2:] != (3, 3) or steps < 4:
-        raise ValueError(f"values have shapes {values[0].shape} and {values[1].shape}")
+        raise ValueError(f"the two arrays of values have different shapes, {values[0].shape} and {values[1].shape}")
     most = np.finfo(float).max
     numbers = [
         [bare.kind, len(bare.parameters)],
@@ -144,7 +144,7 @@ class BodyList(Owner):
 
     def __init__(self, bodies: Sequence[Body]):
         if not bodies:
-            raise ValueError("a list of rocking structures needs one")
+            raise ValueError("a list of rocking structures must contain at least one")
         handle, status = _core.api_rocking.create(len(bodies))
         check(status, self.what)
         super().__init__(handle)
@@ -224,7 +224,7 @@ class Response(Course):
 def check_run(end_time: float, output_step: float, tolerance: float, scale: float) -> None:
     """ValueError where a run has no end, no outputs, no tolerance or no scale."""
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
-        raise ValueError("end time, output step and tolerance must be positive, the scale a number")
+        raise ValueError("end time, output step and tolerance must be positive, and the scale must be a number")
 
 
 def events_of(kinds: np.ndarray, event: np.ndarray, found: int) -> list[tuple[str, float, float]]:
@@ -258,9 +258,9 @@ def history(
     """
     check_run(end_time, output_step, tolerance, scale)
     if start_side not in (1, -1) or not start_rotation >= 0.0:
-        raise ValueError(f"start is {start_rotation} rad to side {start_side}, expected 0 or more to side 1 or -1")
+        raise ValueError(f"start rotation is {start_rotation} rad to side {start_side}: expected 0 or above, to side 1 or -1")
     if not 0 <= room <= 10**7:
-        raise ValueError(f"number of events kept is {room}, expected 0 to 10,000,000 events")
+        raise ValueError(f"number of saved events is {room}, expected 0 to 10,000,000")
     times = output_times(end_time, output_step, 8)
     with MotionSet([ground]) as motions, BodyList([body]) as bodies:
         counts, measures, state, kept, kinds, event, status = long_call(

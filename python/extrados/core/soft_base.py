@@ -64,7 +64,7 @@ def soft_base_body(base: SoftBase, critical: tuple[float, float]) -> Body:
     A member starts at its rotation, free to sink. A half cycle begins where the edge away from which it leans lifts, unless
     the last one was to the same side."""
     if not (np.isfinite(critical).all() and min(critical) > 0.0):
-        raise ValueError(f"critical rotations are {critical}, expected two above zero")
+        raise ValueError(f"critical rotations are {critical}, expected two values above zero")
     return Body(KIND, np.append(base.numbers, critical))
 
 

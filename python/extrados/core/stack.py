@@ -49,7 +49,7 @@ def stack_body(stack: Stack, critical: tuple[float, float], friction: tuple[floa
     cycle begins with each uplift from rest and with each instant of impact; `joints` numbers the ground 0, the joint between 1.
     """
     if not (np.isfinite(critical).all() and min(critical) > 0.0):
-        raise ValueError(f"critical rotations are {critical}, expected two above zero")
+        raise ValueError(f"critical rotations are {critical}, expected two values above zero")
     return Body(KIND, np.concatenate([stack.numbers, critical, np.minimum(friction, np.finfo(float).max)]))
 
 

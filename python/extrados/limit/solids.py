@@ -280,7 +280,7 @@ class SolidLimit:
             if np.isfinite(total) and abs(total - bound) <= LOOSE * max(1.0, bound):
                 return np.maximum(forces, 0.0) * self.scale
             if "DualInfeasible" in status:
-                raise NoEquilibrium("no forces of these ties suffice")
+                raise NoEquilibrium("no forces of these ties are sufficient")
         raise NoAnswer(f"the conic solver found no least forces: {status}")
 
     def contact_points(self, direction: float) -> ContactPoints:
@@ -353,10 +353,10 @@ class SolidLimit:
         if "DualInfeasible" in status:
             return self._proven(x, dead)
         if "PrimalInfeasible" in status:
-            raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks from all sides")
+            raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks on all sides")
         power = float(live @ x)
         if not np.isfinite(x).all() or power <= 0.0:
-            raise NoAnswer(f"the conic solver gave up: {status}")
+            raise NoAnswer(f"the conic solver found no solution: {status}")
         motion = x / power
         z = np.array(solution.z)
         gamma = -float(z[0])
@@ -383,8 +383,8 @@ class SolidLimit:
         )
         if max(found.equilibrium, found.cone, found.overlap) > LOOSE or found.gap > LOOSE * max(1.0, abs(gamma)):
             raise NoAnswer(
-                f"the conic solver gave up ({status}): forces are balanced to {found.equilibrium:.1e} of the weight, the bounds differ "
-                f"by {found.gap:.1e} g"
+                f"the conic solver stopped without a solution ({status}): the unbalanced forces are {found.equilibrium:.1e} of "
+                f"the weight, and the bounds differ by {found.gap:.1e} g"
             )
         return found
 
@@ -531,7 +531,9 @@ class SolidLimit:
         overlap, spent = self._hindered(motion, rigid)
         power = (float(dead @ motion) - spent) / falling
         if power < POWERLESS or overlap > PROOF:
-            raise NoAnswer(f"no forces were found, but no motion proves that there are none (power {power:.1e}, overlap {overlap:.1e})")
+            raise NoAnswer(
+                f"no equilibrium forces were found, and no mechanism proves that none exist (power {power:.1e}, overlap {overlap:.1e})"
+            )
         return Falls(self._rates(motion), power, overlap)
 
     def pyramids(self, direction: float, sides: int) -> tuple[float, float]:
@@ -612,4 +614,4 @@ def _most(matrix: sparse.csc_array, right: np.ndarray, low: np.ndarray, high: np
         return -np.inf
     if status in (highspy.HighsModelStatus.kUnbounded, highspy.HighsModelStatus.kUnboundedOrInfeasible):
         return np.inf
-    raise NoAnswer(f"the linear solver gave up: {solver.modelStatusToString(status)}")
+    raise NoAnswer(f"the linear solver found no solution: {solver.modelStatusToString(status)}")

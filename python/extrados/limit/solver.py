@@ -149,7 +149,7 @@ def _pass_model(
         np.zeros(len(cost), dtype=np.int32),
     )
     if passed == highspy.HighsStatus.kError:
-        raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
+        raise NoAnswer("the solver rejected the linear programme, because it contains a number that is not finite")
 
 
 def _optimum(solver: highspy.Highs) -> Any:
@@ -158,7 +158,7 @@ def _optimum(solver: highspy.Highs) -> Any:
     if status in _INFEASIBLE:
         raise NoEquilibrium("no admissible thrust line")
     if status != highspy.HighsModelStatus.kOptimal:
-        raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
+        raise NoAnswer(f"the linear programme ended with this status: {solver.modelStatusToString(status)}")
     return solver.getSolution()
 
 

@@ -13,8 +13,8 @@ class OpenContact(ResultModel):
 
     joint: int = fact("number of the contact")
     name: str = fact("its name")
-    opening: float = fact("rate at which its fastest corner opens, over the fastest point of the mechanism")
-    sliding: float = fact("rate at which its fastest corner slides, over the same")
+    opening: float = fact("rate at which the corner that opens fastest opens, divided by the rate of the fastest point of the mechanism")
+    sliding: float = fact("rate at which the corner that slides fastest slides, divided by the rate of the fastest point of the mechanism")
     x_m: float = fact("x of its middle", "m")
     y_m: float = fact("y of its middle", "m")
     z_m: float = fact("z of its middle, upward", "m")
@@ -24,17 +24,21 @@ class Pyramids(ResultModel):
     """Bounds by friction pyramids, from a linear programme."""
 
     sides: int = fact("sides of the pyramids")
-    lower_g: float | None = fact("with pyramids within the cones: lower bound; null if it cannot stand so", "g")
-    upper_g: float | None = fact("with pyramids around the cones: a bound from above; null without a collapse mechanism", "g")
+    lower_g: float | None = fact(
+        "lower bound, with pyramids inscribed in the friction cones; null if the structure cannot stand with them", "g"
+    )
+    upper_g: float | None = fact(
+        "upper bound, with pyramids circumscribed about the friction cones; null without a collapse mechanism", "g"
+    )
 
 
 class BlockSize(ResultModel):
     """The capacity of the same structure in blocks of another size or bond."""
 
-    change: str = fact("key of the structure that is changed, with its value")
-    blocks: int | None = fact("number of blocks of that partition; null without one")
-    collapse_acceleration_g: float | None = fact("upper bound along the direction; null without one", "g")
-    relative_change: float | None = fact("over that of the blocks of the deck, less one")
+    change: str = fact("key of the structure that is changed, with the new value")
+    blocks: int | None = fact("number of blocks after this change; null if the change is not possible")
+    collapse_acceleration_g: float | None = fact("upper bound of the collapse acceleration along the direction; null without a result", "g")
+    relative_change: float | None = fact("relative change of the upper bound from that of the blocks in the deck")
     reason: str | None = fact("why there is no value")
 
 
@@ -44,73 +48,86 @@ class SolidNonDilatant(ResultModel):
     A certificate proves that collapse is possible at its load, not that less is safe.
     """
 
-    direction_deg: float = fact("direction in plan of the push", "deg")
-    associated_g: float | None = fact("upper bound: sliding that dilates; null without a collapse mechanism", "g")
-    load_path_g: float | None = fact("design value: least of the certified load paths; null without one", "g")
-    load_paths: list[LoadPath] = fact("load paths of elastic joints, one a ratio of stiffness")
-    least_g: float | None = fact("least certified state found, from any state of stress at rest (a warning); null without one", "g")
-    starts_g: list[float] = fact("loads of the certified states to which the starts led; the least counts", "g")
+    direction_deg: float = fact("direction of the load in plan", "deg")
+    associated_g: float | None = fact("upper bound, with dilatant sliding; null without a collapse mechanism", "g")
+    load_path_g: float | None = fact("design value: the least of the certified load paths; null without one", "g")
+    load_paths: list[LoadPath] = fact("load paths of elastic joints, one for each stiffness ratio")
+    least_g: float | None = fact(
+        "least certified state found from any initial state of stress (serves as a warning); null without one", "g"
+    )
+    starts_g: list[float] = fact("loads of the certified states found from each starting point; the least is used", "g")
     spread_g: float | None = fact("greatest less least of them", "g")
     zero_gap_g: float | None = fact(
-        "|gamma - (work of friction - work of the weight)| per unit of work of the load, of the least state", "g"
+        "for the least state: |gamma - (work of friction - work of the weight)| per unit of work of the load", "g"
     )
     equilibrium_residual: float | None = fact(
-        "greatest force, or moment over the size, left over at a block, over the weight, of the least state"
+        "for the least state: greatest unbalanced force (or moment divided by the size) on a block, divided by the weight"
     )
-    friction_residual: float | None = fact("greatest excess of shear over friction, or tension, over the weight")
-    overlap_residual: float | None = fact("greatest overlap of the motion, over the fastest contact")
+    friction_residual: float | None = fact("greatest excess of shear over friction, or greatest tension, divided by the weight")
+    overlap_residual: float | None = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
 
 
 class SolidTilt(KindResults):
     """tilt of solids: the constant horizontal acceleration, in a direction in plan, at which they become a mechanism."""
 
     collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant) along the direction", "g")
-    collapse_acceleration_opposite_g: float = fact("collapse acceleration in the opposite direction", "g")
-    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg", source="thesis Eq. 3.1")
-    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
-    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
-    least_acceleration_g: float = fact("least of the capacities in all directions sought", "g")
+    collapse_acceleration_opposite_g: float = fact("collapse acceleration opposite to the load direction (horizontal, constant)", "g")
+    tilt_angle_deg: float = fact(
+        "tilt of the ground with the same effect as the collapse acceleration along the load direction", "deg", source="thesis Eq. 3.1"
+    )
+    tilt_angle_opposite_deg: float = fact(
+        "tilt of the ground with the same effect as the collapse acceleration in the opposite direction", "deg"
+    )
+    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
+    least_acceleration_g: float = fact("least collapse acceleration in all directions that were searched", "g")
     least_direction_deg: float = fact("direction of that", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    moving_blocks: int = fact("blocks that move in the mechanism, faster than a thousandth of the fastest")
-    fastest_block: str = fact("the stone with the fastest centroid")
-    opening_contacts: list[OpenContact] = fact("contacts that open or slide most, at most 20 of them")
-    weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
-    upper_bound_g: float = fact("bound from above by the virtual work of the mechanism", "g")
-    duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
-    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")
-    friction_residual: float = fact("greatest excess of shear over friction, or of tension, at a corner, over the weight")
-    overlap_residual: float = fact("greatest rate of overlap of the mechanism, over the fastest contact")
+    moving_blocks: int = fact("blocks that move in the mechanism: faster than 1/1000 of the fastest block")
+    fastest_block: str = fact("block whose centroid moves fastest")
+    opening_contacts: list[OpenContact] = fact("contacts that open or slide most; at most 20 are listed")
+    weight_N: float = fact("weight of the structure, including the weights that rest on it", "N")
+    upper_bound_g: float = fact("upper bound of the collapse acceleration, by the virtual work of the mechanism", "g")
+    duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
+    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the weight")
+    friction_residual: float = fact("greatest excess of shear over friction, or greatest tension, at a corner, divided by the weight")
+    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
     dilating_contacts: int = fact(
-        "contacts that press and slide in the mechanisms along the direction, back, and of the least capacity; with any the "
-        "capacity is an upper bound (dilatant friction)"
+        "contacts in compression that slide in the mechanisms (along the direction, opposite, and of the least "
+        "capacity). If there are any, the capacity is an upper bound (dilatant friction)"
     )
     collapse_acceleration_load_path_g: float = maybe(
-        "design value where contacts slide: least of the load paths of elastic joints along the direction", "g"
+        ("design value of the collapse acceleration along the direction if contacts slide: the least of the load paths of elastic joints"),
+        "g",
     )
-    collapse_acceleration_load_path_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
+    collapse_acceleration_load_path_opposite_g: float = maybe(
+        "design value of the collapse acceleration in the opposite direction if contacts slide", "g"
+    )
     collapse_acceleration_non_associated_g: float = maybe(
-        "sliding without dilatancy along the direction: the least certified state found", "g"
+        "collapse acceleration along the direction for sliding without dilatancy: the least certified state found", "g"
     )
-    collapse_acceleration_non_associated_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
+    collapse_acceleration_non_associated_opposite_g: float = maybe(
+        "collapse acceleration in the opposite direction for sliding without dilatancy", "g"
+    )
     non_dilatant: list[SolidNonDilatant] = maybe(
-        "sliding without dilatancy, direction by direction: along, opposite, the least of the rose; all with "
+        "sliding without dilatancy, for each direction: along, opposite, and that of least capacity; all directions with "
         'friction_rule = "non-associated"'
     )
-    non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
+    non_associated_reason: str = maybe("reason why no state without dilatancy is given in addition to the upper bound")
     collapse_acceleration_face_law_g: float = maybe(
-        "upper bound of the direction with the friction of whole faces under an even pressure (torsion); the corner law, which is "
-        "collapse_acceleration_g, lets the pressure concentrate",
+        (
+            "upper bound along the direction by the face law: friction of whole faces under uniform pressure (torsion). The "
+            "corner law, which gives collapse_acceleration_g, allows the pressure to concentrate"
+        ),
         "g",
         source="after Orduna and Lourenco 2005",
     )
-    collapse_acceleration_face_law_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
-    face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
-    face_law_reason: str = maybe("why the face law gives no value")
-    ties: list[TieForce] = maybe("ties, chains and hoops at the collapse acceleration; of bonded ones each segment")
-    block_sizes: list[BlockSize] = maybe("upper bounds with blocks half as long in each direction, and with the other bond")
-    pyramids: Pyramids = maybe("bounds by another method and another solver")
+    collapse_acceleration_face_law_opposite_g: float = maybe("upper bound in the opposite direction by the face law", "g")
+    face_law_spread_g: float = maybe("greatest range of the last iterations of the face law (a fixed-point iteration)", "g")
+    face_law_reason: str = maybe("reason why the face law gives no value")
+    ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
+    block_sizes: list[BlockSize] = maybe("upper bounds for blocks of half the length in each direction, and for the other bond")
+    pyramids: Pyramids = maybe("bounds of the collapse acceleration by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:
         """The least capacity of all directions sought against the peak ground acceleration of the motion [g]; where contacts slide

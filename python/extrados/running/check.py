@@ -1,4 +1,4 @@
-"""What `extrados check` looks at beyond the words of a deck: whether the building can be made, and how well it fits."""
+"""The checks of `extrados check` beyond the text of a deck: whether the building can be made, and how its blocks fit."""
 
 import csv
 import io
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Place:
-    """One row of the list: what is amiss where, how deep [m], and the key with the value that would mend it."""
+    """One row of the list: kind and place of a gap or overlap, its depth [m], and the key with the value that would repair it."""
 
     what: str
     status: str
@@ -82,7 +82,7 @@ def check_building(deck: Deck) -> Checked:
 
 
 def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":
-    """What of a sound deck's building stands in space, as one of its analyses looks at it."""
+    """The solids and the shell mesh of a valid deck, as its analyses use them."""
     solids, plan = None, None
     for options, building in zip(deck.analyses, deck.buildings, strict=True):
         if options.view == "shell" or as_shell(building, options):
@@ -98,7 +98,7 @@ def _places(inspection: "Inspection") -> list[Place]:
     for status in ("overlap", "open", "closed"):
         for flaw in inspection.of(status):
             mends = inspection.mends(flaw)
-            cure = "draw anew" if mends is None else f'contact_tolerance = "{1e3 * mends:.3g} mm"'
+            cure = "draw this part again" if mends is None else f'contact_tolerance = "{1e3 * mends:.3g} mm"'
             rows.append(Place(flaw.kind, status, inspection.between(flaw), flaw.depth, flaw.place, cure))
         if status == "open":
             for place, gap in inspection.drawing.loose:
@@ -106,7 +106,7 @@ def _places(inspection: "Inspection") -> list[Place]:
                 rows.append(Place("loose end", "loose end", "line and the next line", gap, place, cure))
             for block, level in inspection.levels:
                 x = float(inspection.outlines[block][:, 0].mean())
-                name = f"'{inspection.names[block]}' and nothing below"
+                name = f"'{inspection.names[block]}' and no block below"
                 rows.append(Place("sole", "sole", name, None, (x, level), "foundation_levels"))
     return rows
 

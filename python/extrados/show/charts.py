@@ -1,5 +1,4 @@
-"""What the page shows of stored runs: words, charts and bodies that move, by the entry of the kind, from the arrays that are
-there."""
+"""Charts of stored runs for the page, by the entry of the kind, from the available arrays."""
 
 from typing import Any
 
@@ -51,7 +50,7 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     if name is None:
         return words, {}
     if name not in run.arrays:
-        raise StoreError(f"the run has no analysis {name[:60]!r} with arrays")
+        raise StoreError(f"the run has no analysis {name[:60]!r} with stored arrays")
     kind = run.analysis(name)["kind"]
     arrays = {key: array.numbers for key, array in run.arrays[name].items()}
     made = Shown(run, name, arrays)
@@ -59,7 +58,7 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     try:
         draw(made)
     except KeyError as error:
-        raise StoreError(f"the results of {name} lack the array {error}") from None
+        raise StoreError(f"the results of {name} do not contain the array {error}") from None
     results = run.analysis(name)["results"]
     numbers = [[k, v] for k, v in results.items() if isinstance(v, SINGLE)]
     words |= {
@@ -88,7 +87,7 @@ def _rows(name: str, value: Any) -> dict[str, Any] | None:
 
 
 class Shown:
-    """Collects what the page is sent of one analysis."""
+    """Collects the data of one analysis for the page."""
 
     def __init__(self, run: Stored, name: str, arrays: Arrays):
         self.run, self.name, self.arrays = run, name, arrays
@@ -127,7 +126,7 @@ class Shown:
         share = np.linspace(0.0, 1.0, MOST_STATES)
         step = 0.1 * size / max(float(np.hypot(velocity[:, 0], velocity[:, 1]).max()), 1e-300)
         pose = np.concatenate([centroid, np.zeros((len(centroid), 1))], axis=1) + step * share[:, None, None] * velocity
-        self._moving(share, pose, "", "share of the motion shown")
+        self._moving(share, pose, "", "displayed part of the motion")
 
     def _moving(self, time: np.ndarray, pose: np.ndarray, unit: str, label: str, **lines: np.ndarray) -> None:
         """A body of stones that moves along `time`."""
@@ -159,13 +158,13 @@ class Shown:
     # Kinds
 
     def _solids(self) -> None:
-        """Blocks in space that move along a mechanism, and what they bear over the direction."""
+        """Blocks in space that move along a mechanism, and their capacity over the direction."""
         share, pose = np.linspace(0.0, 1.0, 24), self.arrays["mechanism_pose"]
         self._blocks(share, pose, unit="", label="mechanism", swings=True, push=self._results.load_direction_deg)
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
             self._draw(
-                "Capacity over the direction of the push",
+                "Capacity over the direction of the acceleration",
                 _axis("rose_direction", "direction in plan", "deg"),
                 _axis("", "collapse acceleration", "g"),
                 [_series("rose_capacity", "capacity", sort="both")],
@@ -237,7 +236,7 @@ class Shown:
             self.out["joint"] = np.arange(len(self.arrays["collapse_friction"]))
             self.send("collapse_friction", "collapse_normal")
             self._draw(
-                "Friction needed at collapse",
+                "Required friction at collapse",
                 _axis("joint", "joint", ""),
                 _axis("", "coefficient of friction", ""),
                 [_series("collapse_friction", "needed", sort="points")],
@@ -415,7 +414,7 @@ class Shown:
             self.send("bin_count")
             self._draw(
                 "Greatest rotations",
-                _axis("bin_middle", "greatest rotation over the critical one", ""),
+                _axis("bin_middle", "greatest rotation / critical rotation", ""),
                 _axis("", "runs", ""),
                 [_series("bin_count", "runs", sort="bars")],
                 least=0.0,
@@ -484,7 +483,7 @@ class Shown:
         self.send("place", "capacity")
         self._draw(
             "Collapse load",
-            _axis("place", "place of the first axle", "m"),
+            _axis("place", "position of the first axle", "m"),
             _axis("", "load", "kN"),
             [_series("capacity", "capacity", factor=1e-3)],
         )
@@ -499,7 +498,7 @@ class Shown:
         self.out["impulse_amplitude"] = np.abs(self.arrays["impulse_amplitude"]) / GRAVITY
         known = [
             _series("failing_amplitude", "fails (Eq. 5.8)"),
-            _series("failing_amplitude_own", "fails, its own fit", dashed=True),
+            _series("failing_amplitude_own", "collapse, fitted to this structure", dashed=True),
             _series("computed_amplitude", "fails, computed", x="computed_period"),
             _series("impulse_amplitude", "impulses of the motion", x="impulse_period", sort="points"),
         ]
@@ -517,7 +516,7 @@ class Shown:
             self.out["impulse_period"] = np.array([i.period_s for i in r.impulses])
             self.out["impulse_amplitude"] = np.array([abs(i.amplitude_g) for i in r.impulses])
             rows.append(_series("impulse_amplitude", "impulses of motions", x="impulse_period", sort="points"))
-        self._pulses(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)
+        self._pulses(f"Lowest amplitude that causes collapse, {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)
 
     def local_mechanism(self) -> None:
         """The capacity curve of the mechanism."""
@@ -525,7 +524,7 @@ class Shown:
             return
         self.send("displacement", "acceleration")
         self._draw(
-            "Capacity of the mechanism as it moves",
+            "Capacity of the mechanism over its displacement",
             _axis("displacement", "displacement", "m"),
             _axis("", "acceleration", "g"),
             [_series("acceleration", "capacity")],
@@ -538,7 +537,7 @@ class Shown:
         order = np.argsort(np.where(np.isfinite(gamma), gamma, np.inf), kind="stable")
         self.out |= {"rank": np.arange(1, len(order) + 1), "capacity": gamma[order]}
         self._draw(
-            "Capacity of the sections, the weakest first",
+            "Capacity of the sections, in ascending order",
             _axis("rank", "rank", ""),
             _axis("", "collapse acceleration", "g"),
             [_series("capacity", "capacity", sort="points")],
@@ -555,7 +554,7 @@ class Shown:
         )
 
     def others(self) -> None:
-        """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""
+        """Any other kind: arrays over their axis, if it has numbers of its own."""
         found = self.run.arrays[self.name]
         axes = {n: a for n, a in found.items() if a.dims == (n,) and np.size(a.numbers) > 1 and np.asarray(a.numbers).dtype.kind in "fiu"}
         for axis, about in axes.items():

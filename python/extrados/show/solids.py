@@ -78,13 +78,12 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
         axes[0].set_title(f"{r.blocks} stones, {r.contacts} contacts; {x:.3g} x {y:.3g} x {z:.3g} m")
         axes[1].set_title(_title(r))
         bar = fig.colorbar(ScalarMappable(Normalize(0.0, 1.0), SPEED), ax=axes[1], shrink=0.6, pad=0.01)
-        bar.set_label("speed of a stone over the fastest")
+        bar.set_label("speed of the stone / greatest speed")
         found = [
             (
                 style.save(fig, folder, f"{name}-mechanism"),
-                f"The stones, and the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, "
-                f"carried on; {r.moving_blocks} of {r.blocks} stones move."
-                + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
+                f"Left: the stones. Right: the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, continued to a visible displacement; "
+                f"{r.moving_blocks} of {r.blocks} stones move." + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
             )
         ]
     found.append(_draw_forces(run, name, folder, r, stones))
@@ -128,13 +127,13 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the longest is {size.max() / 1e3:.3g} kN")
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
-        "Forces between the stones and from the ground at collapse, through the stones: each at the centre of its compression, "
-        f"with length in proportion to it; the longest is {size.max() / 1e3:.3g} kN."
+        "Forces between the stones, and on the ground, at collapse. Each acts at the centre "
+        f"of compression of its contact; its length is in proportion. The longest is {size.max() / 1e3:.3g} kN."
     )
 
 
 def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray) -> None:
-    """The mechanism as a film, where the deck asks for one: out and back, so that it goes on without a jump."""
+    """The mechanism as a film, if the deck requests one: forward and backward, so that it repeats without a jump."""
     kind, speed = film.asked(run, name)
     if kind == "none":
         return
@@ -158,7 +157,7 @@ def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float
 
 
 def speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:
-    """How far the fastest vertex of each stone goes, over that of all."""
+    """Displacement of the fastest vertex of each block, relative to the greatest of all."""
     gone = np.linalg.norm(moved.vertices - stones.vertices, axis=1)
     found = np.zeros(count)
     for face, block in zip(stones.faces, stones.block, strict=True):
@@ -186,9 +185,10 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
         ax.tick_params(axis="y", labelsize=7)
         ax.set_xlabel("capacity [g]; 0 deg is +x, 90 deg is +y")
         ax.set_title(
-            "Capacity over the direction of the push\n"
+            "Capacity over the direction of the acceleration\n"
             f"least {r.least_acceleration_g:.4f} g along {r.least_direction_deg % 360.0:g} deg (red)"
         )
         return style.save(fig, folder, f"{name}-rose"), (
-            "Capacity over the direction in plan of the push." + (" The line is the upper bound by dilatant friction." if rows else "")
+            "Capacity over the direction of the acceleration in plan."
+            + (" The line is an upper bound (dilatant friction)." if rows else "")
         )

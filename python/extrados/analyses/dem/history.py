@@ -69,11 +69,12 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         result.warnings.append(f"joints slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if who := numbers["off_footing"]:
         result.warnings.append(
-            f"{', '.join(who[:6])} slides off its footing: in `dem`, floor = {measures.ground_level(model):.4g} names a floor to slide on"
+            f"{', '.join(who[:6])} slides off its footing. To let detached blocks slide on a floor, give `dem` the key floor "
+            f"= {measures.ground_level(model):.4g}"
         )
     result.warnings += doubts_of_run(found, chaos["violated"], numbers["still_moving"])
     if trial.idle:
-        result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
+        result.warnings.append("no motion acts on the structure: add [motion], [[initial.movements]] or [initial] rotation_ratio")
     if result.status == "ok":
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)
@@ -119,9 +120,11 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             measures.block_places(model, found.place), ("time", "block", "component"), "m, m, rad", "centroid and rotation of the blocks"
         ),
         "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
-        "rotation": Array(seen.rotation, ("time", "block"), "rad", "from the settled state, positive to +x"),
+        "rotation": Array(
+            seen.rotation, ("time", "block"), "rad", "displacements from the position at rest under self-weight; positive towards +x"
+        ),
         "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
-        "hinge": Array(seen.state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
+        "hinge": Array(seen.state, ("time", "joint"), "", "0 closed, -1 hinge at the first end, 1 hinge at the second end, 2 open"),
         "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints"),
         "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends"),
         "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
@@ -142,7 +145,7 @@ def _further(context: Context, options: Dem, trial: Trial, result: Result, numbe
             numbers["friction_threshold"] = friction_threshold(context, trial, options.slip)
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
-        result.reason = f"the variations or the friction search stopped: {error}. The main run is complete"
+        result.reason = f"the variations, or the search of the least friction, stopped: {error}. The main run is complete"
     except Refused as error:
         numbers["friction_threshold"] = None
         result.warnings.append(f"the least friction was not found: {error}")

@@ -58,8 +58,10 @@ def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
     most = SHARE * room.total() / (8.0 * values)
     if options.end_time / options.output_step > most:
         raise Refused(
-            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store; "
-            f"the least output_step that fits is {options.end_time / most:.2g} s",
+            (
+                f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: give an "
+                f"output_step of at least {options.end_time / most:.2g} s"
+            ),
             ("analysis", "output_step"),
         )
 
@@ -72,9 +74,9 @@ def _rigid(options: tables.DemTable) -> bool:
 def _refuse_bars(building: Building) -> None:
     key = ("analysis", "merge")
     if not isinstance(building.blocks(), ArchAssembly):
-        raise Refused('merge = "three-bars" needs an arch', key)
+        raise Refused('merge = "three-bars" requires an arch', key)
     if building.initial.rotation_ratio:
-        raise Refused('[initial] rotation_ratio: glued voussoirs do not start rotated; merge = "none" does', key)
+        raise Refused('voussoirs that are merged cannot start with a rotation: with [initial] rotation_ratio, give merge = "none"', key)
 
 
 def _refuse_springs(building: Building) -> None:
@@ -86,7 +88,7 @@ def _refuse_springs(building: Building) -> None:
 
 def _refuse_restitution(building: Building) -> None:
     if not isinstance(building.blocks(), BlockAssembly):
-        raise Refused('"restitution" is of a single block; say damping = "edge" and vary it', ("joints", "damping"))
+        raise Refused('"restitution" applies only to a single block: give damping = "edge", and vary it', ("joints", "damping"))
 
 
 def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: SolidAssembly) -> Iterator[Need]:
@@ -113,4 +115,4 @@ def refuse_untracked(names: list[str], options: tables.Dem) -> None:
     """Refused where a block that is to be followed is not there."""
     for k, name in enumerate(options.track):
         if name not in names:
-            raise Refused(f"names no block '{name}'; there are {', '.join(names[:8])}", ("analysis", "track", k))
+            raise Refused(f"no block has the name '{name}'; the first names are {', '.join(names[:8])}", ("analysis", "track", k))

@@ -146,5 +146,5 @@ def doubts_of_run(found: dem_run.FoundRun, violated: list[str], still_moving: bo
         doubts.append(f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged")
     doubts += [*dem_model.unconverged(found.effort), *violated]
     if still_moving:
-        doubts.append("the structure still moves at the end of the run: a longer end_time may give another outcome")
+        doubts.append("the structure still moves at the end of the run: a later end_time may change the outcome")
     return doubts

@@ -69,7 +69,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     _store(options, seen, ground, result)
     if across is not None:
         result.arrays["ground_across"] = Array(
-            Motion("", across).sample(found.time), ("time",), "m/s^2", "acceleration of the ground at 90 degrees to the direction"
+            Motion("", across).sample(found.time), ("time",), "m/s^2", "acceleration of the ground perpendicular to the direction"
         )
     if seen.slides:
         result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding.peak:.3g} mm")
@@ -106,13 +106,13 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
             solid_measures.poses(model, run),
             ("time", "block", "pose"),
             "m, m, m, rad, rad, rad",
-            "shifts of the centroids and rotation vectors, from where the stones were drawn",
+            "displacements of the centroids and rotation vectors, from the drawn position of the blocks",
         ),
         "rate": Array(
             run.rate[:, : model.count],
             ("time", "block", "motion"),
             "m/s, m/s, m/s, rad/s, rad/s, rad/s",
-            "velocities of the centroids and spins",
+            "velocities of the centroids, and angular velocities",
         ),
         "snapshot_time": Array(shown, ("snapshot",), "s"),
     }
@@ -121,9 +121,9 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
 def contact_arrays(opening: np.ndarray, slip: np.ndarray, state: np.ndarray) -> dict[str, Array]:
     """What the contacts do over time; see SolidsSeen."""
     return {
-        "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 apart"),
-        "opening": Array(opening, ("time", "contact"), "m", "gap at the corner of each contact that gapes most"),
-        "slip": Array(slip, ("time", "contact"), "m", "slip at its most closed corner"),
+        "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 fully open"),
+        "opening": Array(opening, ("time", "contact"), "m", "greatest gap of each contact, over its corners"),
+        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact at its most closed corner"),
     }
 
 
@@ -142,8 +142,10 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
     result.tables["dem"] = TableData(columns | energies | forces, units | dict.fromkeys(energies, "J") | dict.fromkeys(forces, "N"))
     result.arrays = {
         **run_arrays(model, found, measures.snapshot_times(options, found)),
-        "shift": Array(shift, ("time", "block", "axis3"), "m", "of the centroids, from the settled state"),
-        "turn": Array(seen.turn, ("time", "block", "axis3"), "rad", "rotation vectors from the settled state"),
+        "shift": Array(
+            shift, ("time", "block", "axis3"), "m", "displacements of the centroids, from the position at rest under self-weight"
+        ),
+        "turn": Array(seen.turn, ("time", "block", "axis3"), "rad", "rotation vectors, from the position at rest under self-weight"),
         "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
         **contact_arrays(seen.opening, seen.slip, seen.state),
         **{name: Array(values, ("time",), "J") for name, values in energies.items()},

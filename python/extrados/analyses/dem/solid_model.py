@@ -136,10 +136,10 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
     if not options.rigid or (isinstance(options, DemDomain) and options.cross_check):  # something asks how springs are
         asked += [
-            ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
+            ('stiffness_rule = "thesis" belongs to plane sections', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
         ]
-    return [(f"dem of solids cannot take {what} into account: leave it out", key) for what, there, key in asked if there]
+    return [(f"dem of solids cannot include {what}: remove it", key) for what, there, key in asked if there]
 
 
 def refuse_mortar(building: Building, assembly: SolidAssembly | None = None) -> None:
@@ -154,8 +154,10 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
     for part, owner in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         if (most := max(map(len, part.faces))) > dem3.MOST_CORNERS:
             raise Refused(
-                f"{assembly.block_names[owner]} has a face of {most} corners: dem of solids takes up to {dem3.MOST_CORNERS}; cut it, or "
-                "draw it with fewer",
+                (
+                    f"{assembly.block_names[owner]} has a face with {most} corners, and dem of solids allows up to "
+                    f"{dem3.MOST_CORNERS}: divide the face, or draw it with fewer corners"
+                ),
                 ("structure",),
             )
     if rigid:
@@ -163,7 +165,7 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
         if assembly.keys is not None:
             raise Refused(f"{RIGID} have no dowels", ("structure", "dowels"))
     if len(assembly.fill):
-        raise Refused("fill: `dem` of solids does not consider weights that rest on the blocks; remove the fill", ("structure", "fill"))
+        raise Refused("fill: `dem` of solids does not include weights that rest on the blocks; remove the fill", ("structure", "fill"))
 
 
 def solid_values(building: Building, assembly: SolidAssembly) -> ContactValues:

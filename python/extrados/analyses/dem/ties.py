@@ -32,7 +32,7 @@ def refuse_rigid_ties(building: Building) -> None:
     for k, tie in enumerate(building.ties):
         if tie.stiffness is None:
             raise Refused(
-                f"{tie.name}: discrete elements need the stiffness EA/L of a tie (force per change of length)", ("ties", k, "stiffness")
+                f"{tie.name}: discrete elements require the stiffness EA/L of a tie (force per change of length)", ("ties", k, "stiffness")
             )
 
 
@@ -107,6 +107,6 @@ def section_arrays(ties: ElementTies) -> dict[str, Array]:
     block = np.array([[blocks[0] for blocks in strand.blocks] for strand in ties.strands])
     point = np.array([strand.point[:, :2] for strand in ties.strands])
     return {
-        "tie_block": Array(block, ("tie", "tie_end"), "", "blocks at both ends, -1 the ground"),
+        "tie_block": Array(block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends; -1 is the ground"),
         "tie_point": Array(point, ("tie", "tie_end", "axis"), "m", "both ends as drawn"),
     }

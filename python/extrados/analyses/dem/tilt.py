@@ -52,7 +52,7 @@ NOT_IN_TILT = (
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The constant acceleration that brings the structure down: brought in slowly, held, bisected, in both senses."""
     if without := unused(context, options):
-        context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
+        context.warnings.append(f"these have no effect in a tilt test: {', '.join(without)}")
     settlement = farthest_settlement(model, rigid=options.rigid)
     base = replace(core_options(context, options, model), **held(options, model), settlement=settlement)
     bodies = [model.bodies()]
@@ -85,7 +85,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         "time": Array(last.time, ("time",), "s"),
         "place": Array(measures.block_places(model, last.place), ("time", "block", "component"), "m, m, rad"),
         "rate": Array(measures.block_rates(model, last), ("time", "block", "component"), "m/s, m/s, rad/s"),
-        "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
+        "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinge at the first end, 1 hinge at the second end, 2 open"),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
         **section_arrays(model.ties),
         **measures.support_arrays(model),
@@ -172,7 +172,10 @@ def capacities(context: Context, options: Dem, job: Callable[[list[float]], Any]
     for sense, run in zip(SENSES, last, strict=True):
         if run is None:
             raise Refused(
-                f"is stable at {options.tilt_limit / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit",
+                (
+                    f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {'+x' if sense > 0 else '-x'}: increase "
+                    "tilt_limit"
+                ),
                 ("analysis", "tilt_limit"),
             )
     while True:

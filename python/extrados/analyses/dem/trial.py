@@ -86,7 +86,7 @@ def start(context: Context, model: Model) -> np.ndarray | None:
         mechanism = MechanismModel(block)
         pose = mechanism.pose([ratio * mechanism.critical[side]])[0]
     except NoView as error:
-        raise Refused(f"it needs a collapse mechanism: {error}", ("initial", "rotation_ratio")) from None
+        raise Refused(f"this requires a collapse mechanism: {error}", ("initial", "rotation_ratio")) from None
     shift = np.zeros((len(model.rigid.mass), 3))  # the supports stay
     shift[: len(pose)] = pose
     shift[: len(pose), :2] -= block.centroid

@@ -36,14 +36,14 @@ def _is_whole(model: Table | tuple[Table, ...], table: str, path: str) -> bool:
     for part in path.split("."):
         if isinstance(held, list):
             if not part.isdecimal() or int(part) >= len(held):
-                raise Refused(f"vary: '{path}': expected a number from 0 to {len(held) - 1} in place of '{part}'", VARY)
+                raise Refused(f"vary: '{path}': expected a number from 0 to {len(held) - 1} instead of '{part}'", VARY)
             held = held[int(part)]
             place = type(held)
             continue
         known = getattr(place, "model_fields", {})
         if part not in known:
             kind = f" of kind '{model.kind}'" if isinstance(model, Structure) else ""
-            raise Refused(f"vary: [{table}]{kind} has no key '{path}'; it has {', '.join(known)}", VARY)
+            raise Refused(f"vary: [{table}]{kind} has no key '{path}'; its keys are {', '.join(known)}", VARY)
         annotation = known[part].annotation
         inner = [a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")]
         place, held = inner[0] if inner else annotation, getattr(held, part, None)
@@ -70,7 +70,7 @@ def number_of(value: float | str | None, unit: str, at: Key) -> float:
     if not isinstance(value, str):
         return float(value or 0.0)
     if not unit:
-        raise Refused(f"'{value}': the key that varies has no unit, give a number", at)
+        raise Refused(f"'{value}': the key to vary has no unit, so give a number", at)
     try:
         return parse(value, "m/s^2" if unit == "g" else unit) / (GRAVITY if unit == "g" else 1.0)
     except ValueError as error:
@@ -102,8 +102,10 @@ def sections_of(context: Context, options: Survey) -> tuple[list[str], list[list
     for name in header:
         if structure is not None and name != "name" and name.split(".")[0] not in type(structure).model_fields:
             raise Refused(
-                f"{options.file}:1: [structure] of kind '{structure.kind}' has no key '{name}'; "
-                f"it has {', '.join(k for k in type(structure).model_fields if k != 'kind')}, and 'name'",
+                (
+                    f"{options.file}:1: [structure] of kind '{structure.kind}' has no key '{name}'; its keys are "
+                    f"{', '.join(k for k in type(structure).model_fields if k != 'kind')}and 'name'"
+                ),
                 key,
             )
     return header, rows
@@ -120,16 +122,16 @@ def _rows(file: File, key: Key) -> tuple[list[str], list[list[str]]]:
             if not any(cell.strip() for cell in row):
                 continue
             if len(row) != len(header):
-                raise Refused(f"{path.name}:{reader.line_num}: {len(row)} cells, the header has {len(header)}", key)
+                raise Refused(f"{path.name}:{reader.line_num}: this row has {len(row)} cells, but the header has {len(header)}", key)
             rows.append([cell.strip() for cell in row])
             if len(rows) > MOST_ROWS:
                 raise Refused(f"{path.name}: more than {MOST_ROWS} sections", key)
     except (BadFile, csv.Error) as error:
-        raise Refused(f"{path.name}: is not a CSV table in UTF-8: {error}", key) from None
+        raise Refused(f"{path.name}: this file is not a CSV table in UTF-8: {error}", key) from None
     if not header or not rows:
         raise Refused(f"{path.name}: expected a header of [structure] keys and at least one row", key)
     if len(set(header)) < len(header):
-        raise Refused(f"{path.name}:1: a column name stands twice", key)
+        raise Refused(f"{path.name}:1: a column name occurs twice", key)
     return header, rows
 
 
@@ -139,12 +141,14 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     if deviation is None:
         deviation = getattr(building.structure, "contact_tolerance", None)
     if deviation is None:
-        raise Refused("give the deviation of a survey; only `blocks` have a contact_tolerance that gives it", ("analysis",))
+        raise Refused("give the deviation of a survey. Only `blocks` have a default for it, their contact_tolerance", ("analysis",))
     shortest = float(assembly.length.min())
     if 4.0 * deviation > shortest:
         raise Refused(
-            f"a deviation of {1e3 * deviation:.3g} mm is more than a quarter of the shortest joint, "
-            f"'{assembly.joint_names[int(assembly.length.argmin())]}' ({1e3 * shortest:.3g} mm)",
+            (
+                f"a deviation of {1e3 * deviation:.3g} mm is more than 1/4 of the shortest joint, "
+                f"'{assembly.joint_names[int(assembly.length.argmin())]}' ({1e3 * shortest:.3g} mm)"
+            ),
             ("analysis", "deviation"),
         )
     return float(deviation)
@@ -155,7 +159,7 @@ def refuse_still(building: Building, options: MovingSupports) -> None:
     if building.initial.movements:
         movements_of(building)
     elif options.spread == 0.0 and options.settle == 0.0:
-        raise Refused("with spread = 0 and settle = 0 nothing moves", ("analysis",))
+        raise Refused("with spread = 0 and settle = 0 no support moves", ("analysis",))
 
 
 def movements_of(building: Building) -> np.ndarray:
@@ -182,6 +186,9 @@ def refuse_unruled(building: Building) -> None:
     """Refused where no rule makes the blocks."""
     if not partitions_of(building):
         raise Refused(
-            "block_size: the blocks of this structure have no key of their size; divide them in the file, and compare both capacities",
+            (
+                "block_size: the blocks of this structure have no key for their size. Divide the blocks in the file, and compare "
+                "both capacities"
+            ),
             ("analysis", "block_size"),
         )

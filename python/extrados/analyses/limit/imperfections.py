@@ -78,7 +78,7 @@ def run(context: Context, options: Imperfections) -> Result:
     stand = np.isfinite(lesser)
     fallen = int((answered & ~stand).sum())
     if not answered.any():
-        raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm has a result", WHOLE)
+        raise Refused(f"none of the {options.count} surveys within {1e3 * deviation:.3g} mm has a result", WHOLE)
     # A survey that cannot stand carries nothing: it belongs to the lower end of the band.
     borne = np.where(stand, lesser, 0.0)[answered]
     low, median, high = np.percentile(borne, [BAND[0], 50.0, BAND[1]]).tolist()
@@ -99,7 +99,7 @@ def run(context: Context, options: Imperfections) -> Result:
     result.results = r
     result.arrays = {
         **geometry_arrays(assembly),
-        "gamma": Array(gamma, ("survey", "sense"), "g", "capacity to +x and to -x; NaN where a survey cannot stand"),
+        "gamma": Array(gamma, ("survey", "sense"), "g", "capacity towards +x and towards -x; NaN if a survey cannot stand"),
     }
     result.tables = {
         "imperfections": TableData(
@@ -108,13 +108,14 @@ def run(context: Context, options: Imperfections) -> Result:
         )
     }
     result.answer = (
-        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the given one, nine in ten have {low:.4f} to "
-        f"{high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g); the given one has {given:.4f} g."
+        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the given survey, 90 % have a capacity of "
+        f"{low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The given survey has {given:.4f} "
+        "g."
     )
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
-        result.answer += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
+        result.answer += f" In {r.upper_bounds} surveys joints slide: {out.DILATANT}."
     if r.without_answer:
-        result.warnings.append(f"{r.without_answer} surveys are not counted: their programmes gave no result")
+        result.warnings.append(f"{r.without_answer} surveys are not counted, because their linear programmes gave no result")
     return result

@@ -69,7 +69,7 @@ def _refuse_of_sections(building: Building, options: BuildingAnalysis) -> None:
     }
     for what, (there, key) in asked.items():
         if there:
-            raise Refused(f"tilt of solids cannot take {what} into account: remove it, or analyse a plane section", key)
+            raise Refused(f"tilt of solids cannot include {what}: remove it, or analyse a plane section", key)
 
 
 def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
@@ -79,12 +79,12 @@ def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
 
 
 def _refuse_height(number: int) -> None:
-    raise Refused("z: belongs to blocks in space; y is the height in a plane section", ("analysis", "load", number, "z"))
+    raise Refused("z belongs to blocks in space; in a plane section the height is y", ("analysis", "load", number, "z"))
 
 
 def _refuse_alone(building: Building) -> None:
     if not building.blocks().buttresses:
-        raise Refused("needs a buttress on the ground: a vault or an aisled vault", ("analysis", "buttress_alone"))
+        raise Refused("this requires a buttress on the ground: a vault or an aisled vault", ("analysis", "buttress_alone"))
 
 
 def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> None:
@@ -92,13 +92,15 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
     key = ("analysis", "fracture")
     assembly = building.blocks()
     if not assembly.buttresses:
-        raise Refused("fracture needs a buttress on the ground: a vault or an aisled vault", key)
+        raise Refused("fracture requires a buttress on the ground: a vault or an aisled vault", key)
     if building.material.compressive_strength is not None or options.friction_rule != "associated":
-        raise Refused("fracture is computed without crushing and with associated friction", key)
+        raise Refused("fracture is calculated without crushing and with associated friction", key)
     leeward = assembly.buttresses[-1]
     if building.ties and (building.anchored().block == leeward).any():
         raise Refused(
-            f"a tie is anchored in {assembly.block_names[leeward]}, and the analysis does not decide whether the crack separates "
-            "the anchor from the rest of this buttress; remove fracture or anchor the tie elsewhere",
+            (
+                f"a tie is anchored in {assembly.block_names[leeward]}. The analysis does not decide whether the crack separates "
+                "the anchor from the rest of this buttress. Remove fracture, or anchor the tie at another block"
+            ),
             key,
         )

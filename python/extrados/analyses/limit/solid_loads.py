@@ -50,6 +50,6 @@ def strand_arrays(limit: SolidLimit, tension: np.ndarray) -> dict[str, Array]:
     ends = [s.point[[k, n]] for s in limit.strands for k, n in s.segments]
     of = [i for i, s in enumerate(limit.strands) for _ in s.segments]
     return {
-        "strand_segment": Array(np.array(ends), ("segment", "tie_end", "axis3"), "m", "both ends of the segments of ties and chains"),
+        "strand_segment": Array(np.array(ends), ("segment", "tie_end", "axis3"), "m", "both ends of each segment of ties and chains"),
         "strand_tension": Array(tension[of], ("segment",), "N", "tension in them at collapse"),
     }

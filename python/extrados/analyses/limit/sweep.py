@@ -84,8 +84,8 @@ def run(context: Context, options: Sweep) -> Result:
     outcomes = outcomes_of(swept.whole())
     if not any(o.gamma for o in outcomes):
         if all(o.status == "cannot-stand" for o in outcomes):
-            raise CannotStand(f"no value of {options.vary} gives a structure that stands; at the last {outcomes[-1].reason}")
-        raise Refused(f"no value of {options.vary} gives a structure with a capacity: {outcomes[-1].reason}", ("analysis", "vary"))
+            raise CannotStand(f"the structure cannot stand at any value of {options.vary}. Reason at the last value: {outcomes[-1].reason}")
+        raise Refused(f"the structure has no capacity at any value of {options.vary}. Reason: {outcomes[-1].reason}", ("analysis", "vary"))
     changes = _changes(context, ask, values, outcomes) if options.locate and not whole else []
     numbers: dict[Signature, int] = {}
     for _, signature in sorted(
@@ -149,9 +149,11 @@ def _store(
     }
     result.arrays = {
         "value": Array(values, ("value",), "", f"values of {options.vary}"),
-        "gamma": Array(gamma, ("value",), "g", "collapse acceleration to +x; 0 for a structure that cannot stand, NaN without a result"),
-        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0: none"),
-        "change": Array(np.array([c.value for c in r.changes]), ("change",), "", "values at which the mechanism changes"),
+        "gamma": Array(
+            gamma, ("value",), "g", "collapse acceleration towards +x; 0 for a structure that cannot stand, NaN without a result"
+        ),
+        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 without a mechanism"),
+        "change": Array(np.array([c.value for c in r.changes]), ("change",), "", "values of the key at which the mechanism changes"),
     }
     if options.fracture:
         result.arrays["fractured"] = Array(fractured, ("value",), "g", "with the leeward buttress cracked")
@@ -293,8 +295,8 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
             moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
     of = [number for number, count in blocks.items() for _ in range(count)]
     return {
-        "example_mechanism": Array(np.array(of, dtype=int), ("example_path",), "", "number of the mechanism of each block"),
-        **packed("example", outlines, "m", "blocks of one section of each mechanism (number/block)"),
+        "example_mechanism": Array(np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each block illustrates"),
+        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number/block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
 
@@ -310,24 +312,24 @@ def _words(options: Sweep, r: out.Sweep) -> str:
     elif len(level) > 1:
         where = f"greatest from {level[0]:.4g} to {level[-1]:.4g}{unit}"
     else:
-        where = f"an optimum at {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
+        where = f"greatest at an optimum of {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: {where}, with "
-        f"{most:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
-        f"{len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, "
+        f"{most:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} "
+        f"mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if locked:
-        text += f" At {locked} it locks: beyond that no load of this kind causes collapse."
+        text += f" At {locked} the structure locks: beyond this value no load of this kind causes collapse."
     if r.stable_limits:
-        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
+        text += f" The range in which the structure stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
     counts = {status: sum(gap.status == status for gap in r.gaps) for status in ("cannot-stand", "no-answer")}
     if counts["cannot-stand"]:
         text += f" At {counts['cannot-stand']} of {len(r.values)} values the structure cannot stand (capacity 0)."
     if counts["no-answer"]:
-        text += f" At {counts['no-answer']} of {len(r.values)} values have no result."
+        text += f" {counts['no-answer']} of {len(r.values)} values have no result."
     if r.upper_bound_values:
         text += f" At {len(r.upper_bound_values)} of {len(r.values)} values joints slide: {out.DILATANT}."
     return text

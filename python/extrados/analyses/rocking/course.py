@@ -54,8 +54,10 @@ def refuse_long_history(end_time: float, output_step: float, width: int) -> None
     if end_time / output_step * width > LARGEST:
         least = end_time * width / LARGEST
         raise Refused(
-            f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store; "
-            f"the least output_step that fits is {least:.2g} s",
+            (
+                f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store: give an output_step of at least "
+                f"{least:.2g} s"
+            ),
             ("analysis", "output_step"),
         )
 
@@ -81,9 +83,9 @@ def build_result(context: Context, r: rocking.Course, course: Course, **further:
     result = Result("rocking", status="interrupted" if r.interrupted else "ok")
     result.reason = f"interrupted at {r.stop_time:.3f} s" if r.interrupted else ""
     if r.events_found > len(r.events):
-        result.warnings.append(f"only the first {len(r.events)} of {r.events_found} events are kept")
+        result.warnings.append(f"only the first {len(r.events)} of {r.events_found} events are saved")
     if not course.settled and not r.interrupted:
-        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time")
+        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s, so the outcome is open: give a later end_time")
     results = {
         "rotation_of": course.of,
         "outcome": r.outcome,

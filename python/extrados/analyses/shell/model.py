@@ -73,8 +73,8 @@ class ShellModel(EventModel):
         """The refusal of a node that nothing holds."""
         x, y, z = self.mesh.xyz[error.node]
         return Refused(
-            f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
-            f"{error.direction}; the structure there is not supported",
+            f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m can move freely in "
+            f"{error.direction}, because the structure is not supported there",
             ("structure",),
         )
 
@@ -151,8 +151,10 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     groups += spring_groups(mesh.springs)
     if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
-            'joints that slide keep forces that only "continue" and "load-unload" can follow: give them friction = "no-sliding", or leave '
-            "without_equilibrium out",
+            (
+                'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = "no-sliding", or '
+                "remove without_equilibrium"
+            ),
             ("analysis", "without_equilibrium"),
         )
     mass = mesh.mass()
@@ -168,7 +170,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     reference = np.zeros_like(constant)
     weight, acceleration = float(GRAVITY * mass.sum()), None
     if not weight > 0.0:
-        raise BadGeometry("a building without weight: give the material a density")
+        raise BadGeometry("the building has no weight: give the material a density")
     behaviour = core.Behaviour(
         options.cracking, options.shear_retention, options.closes, MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes
     )
@@ -222,7 +224,7 @@ def mass_push(model: ShellModel, options: Pushover, direction: float) -> tuple[n
 
 def _level_of(mesh: ShellMesh, storey: int, what: str) -> float:
     if storey >= len(mesh.levels):
-        raise BadGeometry(f"{what}: there is no storey {storey}, there are {len(mesh.levels) - 1}")
+        raise BadGeometry(f"{what}: storey {storey} does not exist; the number of storeys is {len(mesh.levels) - 1}")
     return float(mesh.levels[storey])
 
 
@@ -236,7 +238,7 @@ def _place(mesh: ShellMesh, drive: Drive, what: str) -> np.ndarray:
     names = [wall.name for wall in mesh.walls]
     if drive.wall not in names:
         there = f"there are {', '.join(names)}" if names else "it has none"
-        raise BadGeometry(f"{what}: there is no wall '{drive.wall}'; {there}")
+        raise BadGeometry(f"{what}: wall '{drive.wall}' does not exist; {there}")
     nodes = nodes_on(mesh, names.index(drive.wall), _level_of(mesh, drive.storey, what))
     if not len(nodes):
         raise BadGeometry(f"{what}: wall '{drive.wall}' does not reach the top of storey {drive.storey}")
@@ -253,9 +255,9 @@ def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> li
         for node in _place(mesh, drive, f"drives[{k}]").tolist():
             share = drive.ratio * float(along[axis])
             if tie.setdefault(node, share) != share:
-                raise BadGeometry(f"drives[{k}]: a node of wall '{drive.wall}' is driven with another ratio already")
+                raise BadGeometry(f"drives[{k}]: a node of wall '{drive.wall}' already has a different ratio")
     if clash := [n for n in tie if (n, axis) in held]:
-        raise BadGeometry(f"drives: node {clash[0] + 1} is held")
+        raise BadGeometry(f"drives: node {clash[0] + 1} is restrained")
     return [(n, axis, share) for n, share in sorted(tie.items())]
 
 
@@ -274,7 +276,7 @@ def _feet_of(mesh: ShellMesh, settlement: Settlement, what: str) -> list[int]:
         return list(range(len(names)))
     if settlement.place not in names:
         word = "wall" if settlement.foot is None else "foot"
-        raise BadGeometry(f"{what}: there is no {word} '{settlement.place}'; there are {', '.join(names)}")
+        raise BadGeometry(f"{what}: {word} '{settlement.place}' does not exist; expected one of {', '.join(names)}")
     return [names.index(settlement.place)]
 
 
@@ -308,7 +310,8 @@ def _grounds(mesh: ShellMesh, options: Pushover, held: set) -> tuple[list[list[t
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(
-                f"{what}: no support of {word} '{support.name}' lies there that restrains it {'upright' if ground.way == 'down' else 'across'}"
+                f"{what}: no support of {word} '{support.name}' at this place restrains it "
+                f"{'upright' if ground.way == 'down' else 'across'}"
             )
         held -= {(n, d) for n, d, _ in free}
         grounds[ground] = len(ties)

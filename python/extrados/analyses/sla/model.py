@@ -161,7 +161,7 @@ class SlaModel(EventModel):
         """The refusal of a node that nothing holds."""
         x, y = self.mesh.xy[error.node]
         return Refused(
-            f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
+            f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m can move freely in "
             f"{error.direction}; {_coincident(self.mesh) or 'add supports'}",
             ("supports", "held"),
         )
@@ -177,8 +177,8 @@ def _coincident(mesh: Mesh) -> str:
     one, two = pairs[np.lexsort(pairs.T[::-1])[0]]
     x, y = mesh.xy[one]
     return (
-        f"nodes {one + 1} and {two + 1} lie at the same place, x {x:g} m, y {y:g} m ({len(pairs)} such pairs), and the "
-        "mesh is in pieces there: merge them"
+        f"nodes {one + 1} and {two + 1} have the same position, x {x:g} m, y {y:g} m ({len(pairs)} such pairs), so the "
+        "mesh is not connected there: merge these nodes"
     )
 
 
@@ -236,20 +236,22 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         for part in moved.parts:
             common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in common):
-            raise BadGeometry("displacement: every ratio is 0, nothing would move")
+            raise BadGeometry("displacement: every ratio is 0, so nothing moves")
         if len({n for n, _, _ in common}) < len(common):
-            raise BadGeometry("the parts of the displacement share nodes")
+            raise BadGeometry("two parts of the displacement have a node in common")
         ties.append(common)
     tied = {(n, d) for tie in ties for n, d, _ in tie}
     if clash := held & tied:
         node, direction = min(clash)
-        raise BadGeometry(f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is held and tied in {'xy'[direction]}")
+        raise BadGeometry(
+            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is both restrained and tied in {'xy'[direction]}"
+        )
     try:
         freedoms = core.Freedoms.make(len(mesh.xy), sorted(held), ties)
     except ValueError as error:
         raise BadGeometry(str(error)) from None
     if not (freedoms.equation >= 0).any():
-        raise BadGeometry("every node is held: nothing can move")
+        raise BadGeometry("every node is restrained, so nothing can move")
     return freedoms, common
 
 
@@ -261,13 +263,13 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
         rotates = options.cracking == "rotating"
         closure = mesh.has_joints or (rotates and several)
     if mesh.has_joints and not closure:
-        raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
+        raise BadGeometry("joints between blocks always open and close: crack_closure = false is only for walls without blocks")
     floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
     if ratio > MOST_OF_FLOOR / floor:
         raise BadGeometry(
-            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, "
-            f"which would carry the load; at most {MOST_OF_FLOOR / floor:g}"
+            f"mechanism_ratio {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would carry the load. "
+            f"Give at most {MOST_OF_FLOOR / floor:g}"
         )
     most = MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes
     return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor), ratio
@@ -276,7 +278,7 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
 def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     held, springs = _held(mesh)
     if mesh.has_joints and options.cracking == "isotropic":
-        raise BadGeometry("joints open along their own direction: isotropic cracking is for walls without stones")
+        raise BadGeometry("joints open along their own direction, so isotropic cracking is only for walls without blocks")
     constant_loads, reference_loads = loads_of(mesh, options)
     moved = next((load for load in reference_loads if load.kind == "displacement"), None)
     freedoms, common = _freedoms(mesh, held, moved)
@@ -302,7 +304,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     groups += spring_groups(springs)
     for i, x in enumerate(options.section_x):
         if not mesh.low[0] <= x <= mesh.high[0]:
-            raise BadGeometry(f"section_x[{i}] is {x:g} m, the wall reaches from {mesh.low[0]:g} to {mesh.high[0]:g} m")
+            raise BadGeometry(f"section_x[{i}] is {x:g} m, but the wall extends from {mesh.low[0]:g} to {mesh.high[0]:g} m")
     constant = nodal_forces(mesh, constant_loads, "constant")
     reference = nodal_forces(mesh, reference_loads, "reference")
     if moved is not None:
@@ -312,7 +314,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     else:
         unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
     if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
-        raise BadGeometry("the reference load acts on held nodes only")
+        raise BadGeometry("the reference load acts only on nodes that are restrained")
     behaviour, ratio = _behaviour(mesh, options, bool(constant_loads or options.stages))
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant
@@ -418,7 +420,7 @@ def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOp
     if not any(criterion is not None for criterion in found):
         return None
     if options.cracking == "isotropic":
-        raise BadGeometry("compressive_strength_parallel needs cracks with a direction: isotropic cracking has none")
+        raise BadGeometry("compressive_strength_parallel requires cracks with a direction, and isotropic cracking has none")
     return found
 
 
@@ -459,7 +461,7 @@ def laws_of(
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
-        raise BadGeometry("tensile_strength_parallel needs cracks with a direction: isotropic cracking has none")
+        raise BadGeometry("tensile_strength_parallel requires cracks with a direction, and isotropic cracking has none")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
     widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):
@@ -468,8 +470,8 @@ def laws_of(
                 limit = core.largest_band(rows[k], materials[k].young)
                 if widths[k] >= limit:
                     raise BadGeometry(
-                        f"{energy} is too small for the elements: a crack band of {widths[k]:.4g} m snaps back, the "
-                        f"largest is {limit:.4g} m; use smaller elements"
+                        f"{energy} is too small for the size of the elements: with a crack band of {widths[k]:.4g} m the softening law "
+                        f"snaps back. The greatest possible band is {limit:.4g} m: use smaller elements"
                     )
     return tension, crushing, beds
 
@@ -544,8 +546,8 @@ def teeth_of_joints(law: JointLaw, factors: np.ndarray, options: CrackOptions) -
         for row, k in zip(rows or [], stiffness.tolist(), strict=False):
             if row is not None and core.largest_band(row, k) <= 1.0:
                 raise BadGeometry(
-                    f"joints.{name} is too small for joints of {k:.4g} Pa/m, which would snap back: it must be above "
-                    f"{row.energy / core.largest_band(row, k):.4g} N/m"
+                    f"joints.{name} is too small for a joint stiffness of {k:.4g} Pa/m, with which the softening law snaps back: give "
+                    f"more than {row.energy / core.largest_band(row, k):.4g} N/m"
                 )
     return tension, crushing, cohesion
 
@@ -586,7 +588,7 @@ def nodal_forces(mesh: Mesh, loads: Sequence[Load], word: str) -> np.ndarray:
                 per_area = (density * group.thickness)[:, None] * [load.ax, load.ay]
                 force += core.body_force(group.kind, group.gauss, mesh.xy, group.connect, per_area)
             if not heavy:
-                raise BadGeometry(f"{what}: gravity without weight: give the material a density")
+                raise BadGeometry(f"{what}: gravity requires weight: give the material a density")
         elif load.kind == "point":
             nodes, share = mesh.shares_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
             force[nodes] += share[:, None] * [load.fx, load.fy]
@@ -605,13 +607,13 @@ def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
         asked, slack = getattr(load, letter), 1e-6 * float(np.max(mesh.high - mesh.low))
         if asked is not None and (asked[0] < mesh.low[axis] - slack or asked[1] > mesh.high[axis] + slack):
             raise BadGeometry(
-                f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m reaches out of the wall, "
-                f"{mesh.low[axis]:g} to {mesh.high[axis]:g} m: a part of the load would be lost"
+                f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m extends beyond the wall ({mesh.low[axis]:g} to "
+                f"{mesh.high[axis]:g} m), so a part of the load would be lost"
             )
     mine = end > begin
     if not mine.any():
         raise BadGeometry(
-            f"{what}: no side of an element on the boundary lies within {words_of_place(load.edge, load.x, load.y)}; a mesh line is missing"
+            f"{what}: no side of a boundary element lies within {words_of_place(load.edge, load.x, load.y)}. Add a mesh line there"
         )
     edges, thickness, begin, end = edges[mine], thickness[mine], begin[mine], end[mine]
     along = mesh.xy[edges[:, 1]] - mesh.xy[edges[:, 0]]

@@ -47,7 +47,7 @@ def named_stone(names: Sequence[str], name: str, what: str, key: Key, end: str) 
     """The block of a name; BadGeometry, see `stone_at`, where there is none."""
     if name not in names:
         more = ", ..." if len(names) > 8 else ""
-        raise BadGeometry(f"{what}: there is no block '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
+        raise BadGeometry(f"{what}: block '{name}' does not exist; the blocks are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
     return names.index(name)
 
 
@@ -58,12 +58,12 @@ def only_stone(names: Sequence[str], centroid: np.ndarray, found: Sequence[int],
     if not found:
         near = names[int(np.linalg.norm(centroid - point, axis=1).argmin())]
         raise BadGeometry(
-            f"{what}: no block is at {place}; name the block by {end}_stone if this end is anchored outside of it, '{near}' is near",
+            f"{what}: no block is at {place}. If this end is anchored outside its block, give the name of the block by {end}_stone; '{near}' is the nearest",
             (*key, end),
         )
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
-        raise BadGeometry(f"{what}: {place} lies between {said}; name the one in which this end is anchored", (*key, end))
+        raise BadGeometry(f"{what}: {place} lies between {said}; give the name of the block in which this end is anchored", (*key, end))
     return found[0]
 
 
@@ -75,7 +75,7 @@ def moved_joints(assembly: Assembly, names: Sequence[str]) -> list[int]:
         key = ("initial", "movements", k, "joint")
         if name not in assembly.joint_names:
             there = [n for n, on in zip(assembly.joint_names, grounded, strict=True) if on]
-            raise BadGeometry(f"names no joint '{name}'; on the ground there are {', '.join(there[:8])}", key)
+            raise BadGeometry(f"joint '{name}' does not exist; the joints on the ground are {', '.join(there[:8])}", key)
         found.append(assembly.joint_names.index(name))
         if not grounded[found[-1]]:
             raise BadGeometry(f"joint '{name}' is not on the ground", key)

@@ -1,4 +1,4 @@
-"""Figures of thrust lines at a given acceleration: lines, force polygons, friction needed."""
+"""Figures of thrust lines at a given acceleration: lines, force polygons, required friction."""
 
 from pathlib import Path
 from typing import Any
@@ -44,7 +44,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             forces.set_title(f"Force polygons of the {r['chain']}")
         caption = "Thrust lines of least, greatest and most central thrust, and their force polygons."
         if not arched:
-            caption = "The most central state: the thrust line through every stone, as wide as it presses."
+            caption = "The most central state: thrust line through every stone; its width shows the zone in compression."
         found = [(style.save(fig, folder, f"{name}-lines"), caption)]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
@@ -52,7 +52,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_ylim(bottom=0.0)
         style.numbers(ax.xaxis)
         ax.set_xlabel("joint")
-        ax.set_ylabel("friction needed")
+        ax.set_ylabel("required friction")
         ax.legend()
-        found.append((style.save(fig, folder, f"{name}-friction"), "Coefficient of friction needed at each joint."))
+        found.append((style.save(fig, folder, f"{name}-friction"), "Coefficient of friction required at each joint."))
     return found

@@ -21,7 +21,7 @@ def strands_of(building: "Building") -> tuple[Strand, ...]:
     for k, tie in enumerate(building.ties):
         what, key = tie.name or "", ("ties", k)
         if len(tie.start) != 3:
-            raise BadGeometry(f"{what}: blocks in space need [x, y, z] of each point of a tie", (*key, "start"))
+            raise BadGeometry(f"{what}: for blocks in space, each point of a tie requires [x, y, z]", (*key, "start"))
         points, blocks = hoop_at(assembly, tie.start[2], what, (*key, "start")) if tie.hoop else _run(assembly, tie, what, key)
         whole = Strand(k, points, blocks, tie.hoop, tie.least, tie.most)
         found += (
@@ -50,5 +50,5 @@ def _run(assembly: SolidAssembly, tie: Tie, what: str, key: Key) -> tuple[np.nda
     blocks += [solid_at(assembly, point, None, f"{what}, via", key, "via") for point in points[1:-1]]
     blocks.append(GROUND if tie.ground is not None else solid_at(assembly, points[-1], tie.end_stone, f"{what}, end", key, "end"))
     if len(set(blocks)) == 1:
-        raise BadGeometry(f"{what}: both of its ends are in the block '{assembly.block_names[blocks[0]]}'", key)
+        raise BadGeometry(f"{what}: both ends are in block '{assembly.block_names[blocks[0]]}'", key)
     return points, tuple((block,) for block in blocks)

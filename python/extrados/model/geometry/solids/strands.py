@@ -103,7 +103,7 @@ def hoop_at(assembly: SolidAssembly, height: float, what: str, key: Key) -> tupl
                     points.append((part.vertices[i] + share * (part.vertices[j] - part.vertices[i]))[:2])
                     owner.append(block)
     if not points:
-        raise BadGeometry(f"{what}: no block is cut at z = {height:.4g} m; a hoop lies between two bed joints", key)
+        raise BadGeometry(f"{what}: no block exists at z = {height:.4g} m; a hoop must lie between two bed joints", key)
     plan, whose = np.array(points), np.array(owner)
     corners = plan[ConvexHull(plan).vertices]
     back, forth = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
