@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from extrados.kinds import ANALYSES, STRUCTURES, load, table
+from extrados.kinds import ANALYSES, load
 from extrados.results.store import Stored, StoreError
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
-from extrados.schema.keys import unit_along
 
 MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
 MOST_ROWS, MOST_COLUMNS = 200, 10
@@ -149,9 +148,7 @@ class Shown:
 
     def _solids(self) -> None:
         """Blocks in space that move along a mechanism, and what they bear over the direction."""
-        for name, source in SOLIDS.items():
-            self.out[name] = self.arrays[source]
-        self.out |= {"body_time": np.linspace(0.0, 1.0, 24), "pose": self.arrays["mechanism_pose"]}
+        self._send_solids(self.arrays["mechanism_pose"])
         self.body = {"sort": "space", "unit": "", "label": "mechanism", "swings": True, "push": self._results.load_direction_deg}
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
@@ -162,6 +159,12 @@ class Shown:
                 [_series("rose_capacity", "capacity", sort="both")],
                 least=0.0,
             )
+
+    def _send_solids(self, pose: np.ndarray) -> None:
+        """Blocks in space, and the pose (blocks, 6) to which they move."""
+        for name, source in SOLIDS.items():
+            self.out[name] = self.arrays[source]
+        self.out |= {"body_time": np.linspace(0.0, 1.0, 24), "pose": pose}
 
     def pushover(self) -> None:
         """Base shear over displacement of every sense or stage, and the building as it cracks under the first of them."""
@@ -238,7 +241,17 @@ class Shown:
             )
 
     def thrust(self) -> None:
-        """The lines of least and greatest thrust."""
+        """The lines of least and greatest thrust; of solids the blocks and the thrusts of their sections."""
+        if "solid_vertex" in self.arrays:
+            self._send_solids(np.zeros((len(self.arrays["solid_centroid"]), 6)))
+            self.body = {"sort": "space", "unit": "", "label": "", "swings": True, "push": self._results.load_direction_deg}
+            columns = ["section", "direction", "least [kN]", "central [kN]", "greatest [kN]"]
+            rows = [
+                [one.name, one.direction, *(None if n is None else 1e-3 * n for n in (one.least_N, one.central_N, one.greatest_N))]
+                for one in self._results.sections
+            ]
+            self.tables.append({"title": "thrust", "columns": columns, "rows": rows, "left_out": 0})
+            return
         self._stones()
         self.body = {"sort": "stones", "unit": "", "label": "", "lines": self._lines("least", "most", "central")}
 
@@ -461,10 +474,8 @@ class Shown:
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
         key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
-        kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
-        unit = unit_along(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
         about = key.replace("_", " ")
-        self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
+        self._draw("Capacity", _axis("value", about, self._results.unit), _axis("", "collapse acceleration", "g"), rows)
 
     def strengthen(self) -> None:
         """The value over the size of each alternative, and the building with the mechanism of the cheapest one."""

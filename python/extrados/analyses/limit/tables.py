@@ -51,12 +51,10 @@ class LimitAnalysisTable(BuildingAnalysis):
     load: list[AppliedLoad] = key([], "loads at rest beside weight and fill, of which some may sway", max_length=1000)
 
 
-class Tilt(LimitAnalysisTable, Animated):
-    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+class SpatialLimit(LimitAnalysisTable):
+    """Questions of limit analysis that are also asked of blocks in space."""
 
-    kind: Literal["tilt"]
     solid: ClassVar = True
-    fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     direction: Angle | None = key(
         None,
         "direction in plan of the horizontal load, from +x to +y, which is across a section; with it, and for structures "
@@ -64,6 +62,13 @@ class Tilt(LimitAnalysisTable, Animated):
         ge=-360,
         le=360,
     )
+
+
+class Tilt(SpatialLimit, Animated):
+    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+
+    kind: Literal["tilt"]
+    fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     rose: int | None = key(
         None,
         "of solids: directions all around at which the capacity is sought; default 16 up to 300 blocks, beyond the direction alone",
@@ -81,22 +86,53 @@ class Tilt(LimitAnalysisTable, Animated):
     )
 
 
-class Thrust(LimitAnalysisTable):
+class Section(Table):
+    """A section of blocks in space whose thrust is sought: a plane cut, or named contacts."""
+
+    name: str = key(about="its name", max_length=80)
+    x: Length | None = key(None, "cut across x: contacts between blocks whose centroids lie on both sides")
+    y: Length | None = key(None, "cut across y")
+    z: Length | None = key(None, "level cut at this height")
+    joints: list[str] | None = key(
+        None, 'names of contacts in place of a cut, or of a group of them; "ground" means all supports', min_length=1, max_length=10000
+    )
+    toward: Angle | None = key(
+        None,
+        "direction in plan of the thrust, from +x to +y, on the blocks at greater x or y, or on the blocks or ground below; default across "
+        "a vertical cut, else outward from the middle of the structure",
+        ge=-360,
+        le=360,
+    )
+
+    @model_validator(mode="after")
+    def _one_cut(self) -> "Section":
+        if sum(one is not None for one in (self.x, self.y, self.z, self.joints)) != 1:
+            raise ValueError("expected one of x, y, z and joints")
+        return self
+
+
+class Thrust(SpatialLimit):
     """Thrust lines at a given horizontal acceleration: least, greatest and most central thrust, safety, reactions."""
 
     kind: Literal["thrust"]
-    gamma: Gravities = key(0.0, "horizontal acceleration to +x at which the lines are drawn", ge=-5, le=5)
+    gamma: Gravities = key(0.0, "horizontal acceleration, to +x or along the direction, at which the lines are drawn", ge=-5, le=5)
     chain: str | None = key(None, "whose thrust is least and greatest; default the first: arch, vault or nave")
+    section: list[Section] = key(
+        [],
+        "of solids: sections whose thrust is least and greatest, [[analysis.section]]; default cuts across x and y through the middle, and "
+        "the ground",
+        max_length=50,
+    )
 
 
-class Sweep(LimitAnalysisTable):
+class Sweep(SpatialLimit):
     """One deck key of the structure varied: capacity, mechanism and its changes, the optimum (Figs 3-4, 3-6a, 3-7b)."""
 
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
         about="key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise, or of another table, for "
-        "instance joints.friction, material.compressive_strength or ties.0.yield_force"
+        "instance joints.friction, material.compressive_strength or ties.0.yield_force; or direction, that of the load on solids"
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
     stop: float | str | None = key(None, "last value")
@@ -104,7 +140,9 @@ class Sweep(LimitAnalysisTable):
     values: list[float | str] | None = key(None, "the values, in place of start and stop", min_length=2, max_length=2000)
     fracture: bool = key(False, "also with the leeward buttress cracked")
     buttress_alone: bool = key(False, "also the leeward buttress by itself", source="thesis Fig. 3-4b")
-    locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
+    locate: bool | None = key(
+        None, "find changes of mechanism, the optimum and the ends of the stable range closely; default true in a plane section"
+    )
 
     @model_validator(mode="after")
     def _range(self) -> "Sweep":
@@ -113,16 +151,16 @@ class Sweep(LimitAnalysisTable):
         return self
 
 
-class Survey(LimitAnalysisTable):
+class Survey(SpatialLimit):
     """Many sections from a CSV table, one line of results each."""
 
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
-    file: str = key(about="CSV beside the deck; a header of [structure] keys (lengths in m), one section a row")
+    file: str = key(about="CSV beside the deck; a header of [structure] keys (lengths in m), one section, or one file of solids, a row")
     fracture: bool = key(False, "also with the leeward buttress cracked")
 
 
-class Imperfections(LimitAnalysisTable):
+class Imperfections(SpatialLimit):
     """Random surveys of the same stones, each point within the deviation of the survey: a band on the capacity."""
 
     kind: Literal["imperfections"]
