@@ -57,13 +57,15 @@ class Convergence(ResultModel):
 
 
 class TieRun(ResultModel):
-    """What a run asked of a tie."""
+    """What a run asked of a tie or a damper."""
 
     name: str = fact("its name")
     peak_force_N: float = fact("force of the greatest magnitude in any step, tension positive", "N")
     end_force_N: float = fact("force at the end", "N")
     plastic_elongation_m: float = fact("plastic elongation at the end, of shortening negative", "m")
-    state: Literal["slack", "elastic", "yielded"] = fact("without force all along, below its yield force, or at it once")
+    state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
+        "without force all along, below its yield or slip force, at it once; or a viscous damper"
+    )
 
 
 class DemRun(KindResults):
