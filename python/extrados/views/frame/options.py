@@ -36,6 +36,20 @@ class FrameOptions(Table):
     spandrels: Literal["all", "lintels", "none"] = key(
         "all", "spandrels that couple piers: all, those whose openings have lintels, or none"
     )
+    spandrel_drift_tied: float = key(
+        0.02,
+        "chord rotation at which the flexural strength of a spandrel with a tie or ring beam drops",
+        gt=0,
+        le=0.1,
+        source="Circ. 7/2019, C8.7.1.3.1.1",
+    )
+    horizontal_strength: Stress | None = key(
+        None,
+        "compressive strength of masonry along the wall, f_h, of the strut in spandrels with a tie or ring beam; default half of "
+        "compressive_strength, a default of this program",
+        gt=0,
+        source="NTC 2018, 7.8.2.2.4",
+    )
     interlocking: float = key(1.0, "phi of spandrels: unit height over overlap", gt=0, le=5, source="Circ. 7/2019, C8.7.1.17")
     spandrel_drift_flexure: float = key(
         0.015, "chord rotation of a spandrel at which its flexural strength drops", gt=0, le=0.1, source="Circ. 7/2019, C8.7.1.3.1.1"
@@ -46,6 +60,12 @@ class FrameOptions(Table):
     )
     flange_strength: Stress | None = key(
         None, "shear strength of the vertical section between walls that meet at corners; default the cohesion, unlimited without one", gt=0
+    )
+    flanges: Literal["effective", "whole", "none"] = key(
+        "effective",
+        "flanges at corners: effective lifts at most the weight on the effective width of the other wall; whole: its whole pier; none: "
+        "corners transfer no vertical force",
+        source="after EN 1996-1-1, 5.5.3",
     )
     softening: float = key(0.5, "beta of the law damage: exponent of its resistance beyond the peak", gt=0, lt=2)
     damage_compliance: float = key(3.0, "c_t G of the law damage: inelastic over elastic shear compliance", gt=0, le=100)
