@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from extrados.core.frame import Frame, Link, MacroElement
 from extrados.decks.reader import make_deck
 from extrados.schema.constants import GRAVITY
 from extrados.views.frame.flanges import side_width
@@ -176,3 +177,17 @@ def test_pressure_beside_a_spandrel_enters_through_interlocking():
         flexure = 0.5 * 0.6 * 2.0 * (0.02e6 + 0.4 * pressure / phi)
         shear = 0.5 * 0.6 * 0.02e6 * 0.2
         assert spandrel.moment == pytest.approx(min(flexure, shear))
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_lifted_weight_returns_and_a_sheared_joint_does_not(returns):
+    """A mass on a link of 10 N, led to and fro by a stiff spring: at the start again the link carries nothing, or 10 N back."""
+    pier = MacroElement((-1, -1, -1, 0, -1, -1), 3.0, 1.0, 0.3, 1.0, 1.0, second_order=False)
+    driver, mass, steps = 1e6, 1e-3, 400
+    link = Link((0,), (1.0,), 1e4, (10.0, 10.0), returns=returns)
+    frame = Frame([pier], [link], np.array([[driver]]), np.array([0.0]), np.array([[mass]]))
+    t = np.arange(steps + 1) / steps
+    path = frame.move(np.array([1.0]), -0.01 * np.sin(np.pi * t) * driver / mass, 1.0 / steps, (0.0, 0.0))
+    force = path.shear - driver * path.displacement[:, 0]
+    assert force[steps // 2] == pytest.approx(10.0, rel=1e-2)
+    assert force[-1] == pytest.approx(0.0 if returns else -10.0, abs=0.3)

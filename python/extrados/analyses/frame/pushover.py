@@ -135,6 +135,20 @@ def run(context: Context, options: FramePushover) -> Result:
     return result
 
 
+def push_once(frame: EquivalentFrame, options: FramePushover, direction: float) -> tuple[dict[str, Any], Path]:
+    """One pushover by the masses along a direction on the plan [deg], without eccentricity: its row of results and its path."""
+    level = options.control_level or max(one.level for one in frame.masses)
+    update = {"directions": [direction], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]}
+    with frame.core() as core:
+        rest = rest_of(frame, core)
+        (push,) = pushes_of(frame, options.model_copy(update=update), modes_of(frame, rest.tangent, MODES), level)
+        height = float(frame.plan.levels[level])
+        path = core.push(push.forces, push.control, options.target_drift * height, options.steps, options.drop)
+    if path.stop == "no equilibrium under the weight":
+        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+    return row_of(frame, push, path), path
+
+
 def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -> None:
     loose = [s.name for s, f in zip(frame.strips, force, strict=True) if s.kind == "pier" and f[0] <= 0.0]
     if loose:

@@ -651,11 +651,12 @@ class _Maker:
                 strength = f / o.confidence_factor * thin * tall if f else UNLIMITED
                 if bond is not None:
                     strength *= bond.strength
-                strengths = (strength, strength)
+                strengths, returns = (strength, strength), False
                 if o.flanges == "effective" and abs(float(one.direction @ two.direction)) < PARALLEL:
                     lifted = self._flange(b, a, level), self._flange(a, b, level)  # of one by two, of two by one
-                    strengths = min(strength, lifted[0]), min(strength, lifted[1])
-                links.append(Link((*p.freedoms, *q.freedoms), (1.0, s - p.s, -1.0, q.s - t), shear * tall, strengths))
+                    strengths, returns = (min(strength, lifted[0]), min(strength, lifted[1])), min(lifted) < strength
+                parts = (1.0, s - p.s, -1.0, q.s - t)
+                links.append(Link((*p.freedoms, *q.freedoms), parts, shear * tall, strengths, returns=returns))
         return links
 
     def _flange(self, web: int, wall: int, level: int) -> float:
