@@ -3,7 +3,7 @@ import { h, number, quantity, s, set, shapes } from "./dom.js";
 import { pinch } from "./gestures.js";
 import { tr } from "./words.js";
 
-const NEAR = 14, TAP = 6, SHOWN = 4000; // px, px, ms of a pushover on the page
+const NEAR = 14, TAP = 6, SHOWN = 4000, CARD = 140; // px, px, ms of a pushover on the page, px of its curve
 const TOOLS = { select: tr`Select`, wall: tr`Wall`, opening: tr`Opening` };
 const HINTS = {
   select: tr`Tap a wall or an opening; drag it, or its ends. Delete removes it.`, wall: tr`Drag from corner to corner. Walls meet at ends and along each other.`,
@@ -21,7 +21,7 @@ const line = (points, close = "Z") => `M${points.map((p) => p.map((v) => v.toFix
 export function planPanel(app, frame, box) {
   const it = { walls: [], storeys: 1, floors: true, tool: "wall", chosen: null, hole: null, push: null };
   const sizes = { thickness: 0.3, sill: 0.9, head: 2.2 }, view = { k: 60, cx: 0, cy: 0, w: 0, h: 0 };
-  let on = false, fresh = false, given = 0, storey = 1, step = 0.25, from = null, pointer = null, dragged = null, past = [], future = [], sent = 0, cursor = [0, 0], playing = null;
+  let on = false, fitted = true, fresh = false, given = 0, storey = 1, step = 0.25, from = null, pointer = null, dragged = null, past = [], future = [], sent = 0, cursor = [0, 0], playing = null;
 
   const grid = s("path", { class: "grid" }), masonry = s("g"), states = s("g", { class: "plan-states" }), draft = s("g"), curve = s("g", { class: "plan-curve" });
   const words = s("text", { class: "sheet-words", x: 12, y: 20 });
@@ -62,21 +62,23 @@ export function planPanel(app, frame, box) {
   new ResizeObserver(() => {
     const { clientWidth: w, clientHeight: hgt } = box;
     if (!on || !w || !hgt) return;
-    const first = !view.w;
     view.w = w; view.h = hgt;
     set(svg, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt });
-    if (first) fit(); else draw();
+    if (fitted) fit(); else draw();
   }).observe(box);
   function fit() {
+    fitted = true;
+    const low = it.push ? CARD + 20 : 0; // room for the curve
     const points = it.walls.flatMap((w) => [w.start, w.end]), all = points.length ? points : [[-1, -1], [9, 6]];
     const xs = all.map((p) => p[0]), ys = all.map((p) => p[1]), [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    view.k = Math.min((view.w - 90) / Math.max(x1 - x0, 1), (view.h - 110) / Math.max(y1 - y0, 1));
+    view.k = Math.min((view.w - 90) / Math.max(x1 - x0, 1), (view.h - 110 - low) / Math.max(y1 - y0, 1));
     view.cx = view.w / 2 - (view.k * (x0 + x1)) / 2;
-    view.cy = view.h / 2 + (view.k * (y0 + y1)) / 2;
+    view.cy = (view.h - low) / 2 + 12 + (view.k * (y0 + y1)) / 2;
     draw();
   }
   function zoom(by, x = view.w / 2, y = view.h / 2, dx = 0, dy = 0) {
     if (by === null) { fit(); return; }
+    fitted = false;
     view.k *= by;
     view.cx = x + by * (view.cx + dx - x); view.cy = y + by * (view.cy + dy - y);
     draw();
@@ -221,11 +223,12 @@ export function planPanel(app, frame, box) {
       if (!reply.pushed) return;
       app.say("");
       it.push = { ...reply.pushed, arrays, at: 0 };
+      if (fitted) fit();
       const last = arrays.control.length - 1;
       if (matchMedia("(prefers-reduced-motion: reduce)").matches) { it.push.at = last; draw(); return; }
       const begin = performance.now();
       const next = (now) => {
-        it.push.at = Math.min(last, Math.floor((last * (now - begin)) / SHOWN));
+        it.push.at = Math.min(last, Math.max(0, Math.floor((last * (now - begin)) / SHOWN)));
         draw();
         playing = it.push.at < last ? requestAnimationFrame(next) : null;
       };
@@ -243,9 +246,12 @@ export function planPanel(app, frame, box) {
       out.push({ tag: "path", class: "plan-state", fill: COLOURS[state], "data-state": state, d: line(part(w, arrays.element_part[4 * e], arrays.element_part[4 * e + 1], arrays.element_pier[e] === 1 ? 1 : 0.4).map(X)), title: STATES[state] });
     }
     shapes(states, out);
-    const { control, shear } = arrays, wide = Math.min(260, view.w - 24), high = 120, x0 = view.w - wide - 12, y0 = view.h - 34, most = control[control.length - 1] || 1;
+    const found = STATES.map((text, k) => [text, COLOURS[k], k]).filter(([, , k]) => arrays.state.includes(k)), keys = [];
+    let x = 12;
+    for (const [text, fill] of found) { keys.push({ tag: "rect", class: "plan-key", x, y: 30, width: 11, height: 11, fill }, { tag: "text", x: x + 16, y: 40, text }); x += 30 + 6.4 * text.length; }
+    const { control, shear } = arrays, wide = Math.min(260, view.w - 24), high = CARD - 26, x0 = view.w - wide - 12, y0 = view.h - 34, most = control[control.length - 1] || 1;
     const P = (k) => [x0 + 44 + ((wide - 56) * control[k]) / most, y0 - ((high - 26) * Math.max(shear[k], 0)) / (peak || 1)], points = Array.from({ length: now + 1 }, (_, k) => P(k));
-    shapes(curve, [{ tag: "rect", class: "plan-card", x: x0, y: y0 - high, width: wide, height: high + 26, rx: 6 }, { tag: "path", class: "plan-axes", d: `M${x0 + 44} ${y0 - high + 16}V${y0}H${x0 + wide - 8}` },
+    shapes(curve, [...keys, { tag: "rect", class: "plan-card", x: x0, y: y0 - high, width: wide, height: high + 26, rx: 6 }, { tag: "path", class: "plan-axes", d: `M${x0 + 44} ${y0 - high + 16}V${y0}H${x0 + wide - 8}` },
       { tag: "path", class: "plan-line", d: line(points, "") }, { tag: "circle", class: "sheet-point", cx: points.at(-1)[0], cy: points.at(-1)[1], r: 4 },
       { tag: "text", x: x0 + 8, y: y0 - high + 14, text: tr`Base shear ${quantity(shear[now], "N", 3)}` }, { tag: "text", x: x0 + 44, y: y0 + 17, text: tr`displacement ${number(1e3 * control[now], 3)} mm` }]);
   }
