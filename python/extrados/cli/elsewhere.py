@@ -88,8 +88,8 @@ def export(
 
 
 def import_plan(
-    drawing: Annotated[Path, typer.Argument(help="the drawing, DXF")],
-    walls: Annotated[list[str], typer.Option("--walls", help="layer of the walls; may be given again", show_default=False)],
+    drawing: Annotated[Path, typer.Argument(help="the drawing, DXF; or a model, IFC")],
+    walls: Annotated[list[str] | None, typer.Option("--walls", help="layer of the walls of a drawing; may be given again")] = None,
     openings: Annotated[list[str] | None, typer.Option("--openings", help="layer of the openings; default: gaps in the walls")] = None,
     thickness: Annotated[
         float | None, typer.Option("--thickness", help="of walls drawn by their axes [m]; default: lines are faces")
@@ -97,9 +97,17 @@ def import_plan(
     storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys, from the ground")] = "3.0",
     unit: Annotated[str | None, typer.Option("--unit", help="unit of a drawing that states none: m, cm, mm, in, ft")] = None,
 ) -> None:
-    """Print a deck of a building from the plan of a drawing: walls by their faces or axes, doors and windows by gaps or a layer."""
+    """Print a deck of a building from the plan of a drawing: walls by their faces or axes, doors and windows by gaps or a layer. Or from
+    an IFC model: walls, openings and storeys."""
     from extrados.bridges.plan_drawing import deck_of_file
+    from extrados.bridges.plan_ifc import deck_of_ifc
 
+    if drawing.suffix.lower() == ".ifc":
+        with errors():
+            print(deck_of_ifc(drawing), end="")
+        return
+    if not walls:
+        raise typer.BadParameter("expected the layer of the walls", param_hint="--walls")
     try:
         heights = [float(part) for part in storeys.split(",")]
     except ValueError:
