@@ -161,6 +161,9 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         source="thesis 4.3.1",
     )
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
+    budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
+        None, "processor time of each curve or stage, in s, after which it ends with the results so far; default none"
+    )
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
     stop_fraction: float = key(0.0, "stop when the load drops below this part of its peak", ge=0, lt=1)
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "stop where the compliance has grown by this factor")
