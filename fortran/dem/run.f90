@@ -11,6 +11,7 @@ module dem_run
    use dem_loading, only : movement_end
    use dem_rigid, only : forget_effort
    use dem_simulation, only : any_step, simulation
+   use dem_ties, only : tie_forces
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -314,7 +315,7 @@ contains
          record%points = record%points + 1
          record%time(record%points) = model%t - model%drift
          record%energy(:, record%points) = energy_row(energy, record%start)
-         record%tension(:, record%points) = model%ties%item%tension
+         record%tension(:, record%points) = tie_forces(model%ties)
       end associate
       call run%record_state()
    end subroutine record_point

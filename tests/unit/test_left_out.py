@@ -116,7 +116,11 @@ DECKS = {
     "pushover": (HOUSE, None, {"mesh": {"size": 0.9, "layers": 3}, "events": 25}),
     "modes": (ARCH, None, {}),
     "frame-modes": (HOUSE, None, {}),
-    "frame-pushover": (HOUSE, None, {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]}),
+    "frame-pushover": (
+        HOUSE,
+        None,
+        {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0], "frame": {"flanges": "whole"}},
+    ),
     "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
     "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),

@@ -76,14 +76,23 @@ def as_shell(building: Building, options: Analysis) -> bool:
 
 def stones_of(building: Building, options: Analysis) -> "Assembly | SolidAssembly":
     """What an analysis sees of the stones: solids where it asks for them, or there is no plane section."""
-    if options.solid and any(getattr(options, key, None) is not None for key in SPATIAL):
+    asks = any(getattr(options, key, None) is not None for key in SPATIAL) or getattr(options, "vary", None) == "direction"
+    if options.solid and asks:
         return building.solids()
     try:
         return building.blocks()
-    except NoView:
+    except NoView as plane:
         if not options.solid:
             raise
-        return building.solids()
+        try:
+            return building.solids()
+        except NoView:
+            raise plane from None
+
+
+def in_space(building: Building, options: Analysis) -> bool:
+    """Whether an analysis takes the stones as solids."""
+    return not isinstance(stones_of(building, options), Assembly)
 
 
 def _bound(building: Building, options: Analysis) -> None:

@@ -104,10 +104,11 @@ class Effort:
 class Ties:
     """Ties, chains and hoops (ties): one tension each along a line of points that the bodies carry (fortran/dem/ties.f90).
 
-    stiffness: force per change of length [N/m]; prestress, least and greatest tension [N]: least below 0 for compression,
+    stiffness: force per change of length [N/m], 0 of a dashpot alone; prestress, least and greatest tension [N]: least below 0 for compression,
     a bound of 0 is slackness, at another one it yields, infinite never. first: its first point; closed: the last
     point is joined to the first. Anchors (anchors): point, body, -1 for the ground, place (anchors, 2 or 3) as drawn [m];
-    anchors of one point share its force in equal parts.
+    anchors of one point share its force in equal parts. damping: c of a dashpot beside each, of a power of the rate of its
+    length [N (s/m)^power].
     """
 
     stiffness: np.ndarray
@@ -119,6 +120,8 @@ class Ties:
     body: np.ndarray
     point: np.ndarray
     place: np.ndarray
+    damping: np.ndarray | None = None
+    power: np.ndarray | None = None
 
     def lengths(self) -> np.ndarray:
         """Length of each as drawn (ties) [m]."""
@@ -202,17 +205,20 @@ class BodyModel(Owner, ABC, Generic[Found]):
         own[on, : local.shape[1]] = local
         most = np.finfo(float).max
         values = [ties.stiffness, ties.lengths(), ties.prestress, np.maximum(ties.least, -most), np.minimum(ties.most, most)]
+        values += [np.zeros(n) if ties.damping is None else ties.damping, np.ones(n) if ties.power is None else ties.power]
         status = _core.api_dem_run.ties(
             self.handle,
             self.count,
-            real("ties", np.array(values), (5, n)),
+            real("ties", np.array(values), (7, n)),
             integers("points", np.append(ties.first, ties.point.max() + 1) + 1),
             integers("closed", np.asarray(ties.closed, dtype=np.int32), n),
             bodies,
             integers("points", ties.point + 1, anchors),
             real("places of ties", own.T, (3, anchors)),
         )
-        check(status, "ties: the stiffness must be above 0, and the prestress must lie between the least and the greatest tension")
+        check(
+            status, "ties: the stiffness or damping must be above 0, and the prestress must lie between the least and the greatest tension"
+        )
         self._ties = n
 
     def _put_laws(self, laws: Sequence[Law]) -> None:

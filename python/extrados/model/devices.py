@@ -2,7 +2,8 @@
 
 from pydantic import model_validator
 
-from extrados.model.ties import Point
+from extrados.model.errors import BadGeometry
+from extrados.model.ties import Place
 from extrados.schema.quantities import AxialStiffness, Damping, Force, Moment, TurningDamping
 from extrados.schema.table import Table, key
 
@@ -15,9 +16,9 @@ class Damper(Table):
     """
 
     name: str | None = key(None, "name in the results; default: damper 1, damper 2 and so on", max_length=80)
-    start: Point = key(about="[x, y] of the anchorage in a block")
-    end: Point | None = key(None, "[x, y] of the anchorage in another block; or give `ground`")
-    ground: Point | None = key(None, "[x, y] of the anchorage in the ground, which moves with the supports")
+    start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block")
+    end: Place | None = key(None, "position of the anchorage in another block; or give `ground`")
+    ground: Place | None = key(None, "position of the anchorage in the ground, which moves with the supports")
     start_stone: str | None = key(None, "name of the block at `start`; required if this point lies between two blocks", max_length=80)
     end_stone: str | None = key(None, "name of the block at `end`; required if this point lies between two blocks", max_length=80)
     damping: Damping | None = key(None, "c of a viscous damper: force per n-th power of the rate, in N (s/m)^n", gt=0)
@@ -31,6 +32,8 @@ class Damper(Table):
             raise ValueError("expected either end (in another block) or ground")
         if self.start == self.far:
             raise ValueError("start: both ends have the same position")
+        if len(self.start) != len(self.far):
+            raise ValueError("start: expected as many coordinates at both ends")
         if (self.damping is None) == (self.slip_force is None):
             raise ValueError("expected either damping (viscous damper), or slip_force with stiffness (friction damper)")
         if (self.slip_force is None) != (self.stiffness is None):
@@ -41,6 +44,17 @@ class Damper(Table):
     def far(self) -> list[float]:
         """The point at its other end, in a stone or in the ground [m]."""
         return (self.end if self.ground is None else self.ground) or []
+
+    def flat(self) -> list[list[float]]:
+        """Both ends in a plane section [m]; BadGeometry of a damper in space."""
+        if len(self.start) != 2:
+            raise BadGeometry(f"{self.name}: this analysis takes a plane section, where the points of a damper are [x, y]")
+        return [self.start, self.far]
+
+    @property
+    def most(self) -> float:
+        """Force at which a friction damper slides [N], in both senses; 0 of a viscous one, which has no spring."""
+        return self.slip_force or 0.0
 
 
 class AddedHinge(Table):

@@ -57,14 +57,14 @@ class Convergence(ResultModel):
 
 
 class TieRun(ResultModel):
-    """What a run asked of a tie."""
+    """What a run asked of a tie or a damper."""
 
     name: str = fact("its name")
     peak_force_N: float = fact("force of greatest magnitude in any time step; tension is positive", "N")
     end_force_N: float = fact("force at the end", "N")
     plastic_elongation_m: float = fact("plastic elongation at the end; shortening is negative", "m")
-    state: Literal["slack", "elastic", "yielded"] = fact(
-        "state of the tie over the run: never loaded, below its yield force, or yielded at least once"
+    state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
+        "state of the tie over the run: never loaded, below its yield or slip force, yielded or slipped at least once, or a viscous damper"
     )
 
 

@@ -656,5 +656,7 @@ class Imperfections(KindResults):
     upper_bounds: int = fact("surveys in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The 5th percentile of the capacities against the peak ground acceleration of the motion [g]."""
-        return (judge_dilatant if self.upper_bounds else judge_acceleration)(self.low_collapse_acceleration_g, demand)
+        """The 5th percentile of the capacities, or the given capacity if that is less, against the peak ground acceleration of the
+        motion [g]."""
+        least = min(self.low_collapse_acceleration_g, self.given_collapse_acceleration_g)
+        return (judge_dilatant if self.upper_bounds else judge_acceleration)(least, demand)

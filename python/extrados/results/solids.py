@@ -4,8 +4,9 @@ from math import inf
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import LoadPath, TieForce, judge_design, judge_dilatant
+from extrados.results.limit import Thrust as PlaneThrust
 from extrados.results.limit import Tilt as SectionTilt
-from extrados.results.verdict import Demand, KindResults, Verdict, judge_acceleration
+from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
 
 
 class OpenContact(ResultModel):
@@ -145,5 +146,53 @@ class SolidTilt(KindResults):
         return judge_design(min(designs), found, most, demand)
 
 
-#: What `tilt` gives: of a plane section, or of solids
+class SectionThrust(ResultModel):
+    """Horizontal thrust of a section of blocks in space."""
+
+    name: str = fact("its name")
+    direction: str = fact("direction of the thrust: in plan, or outward from the middle of the structure")
+    contacts: int = fact("contacts of the section")
+    least_N: float | None = fact("least thrust; null where it has no least value", "N")
+    central_N: float | None = fact("thrust of the most central state; null without one", "N")
+    greatest_N: float | None = fact("greatest thrust; null where it has no greatest value, as between rigid supports", "N")
+
+
+class SolidThrust(KindResults):
+    """thrust of solids: admissible states of stress at a given horizontal acceleration."""
+
+    gamma_g: float = fact("horizontal acceleration along the direction", "g")
+    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
+    admissible_interval_g: list[float] = fact("accelerations along the direction between which a state is admissible", "g")
+    sections: list[SectionThrust] = fact("thrust of each section")
+    geometric_safety_factor: float | None = fact(
+        "one over the least part of the contacts, about their middles, that holds a state in equilibrium; null where that part is below "
+        "1 % (no horizontal demand), or if not found"
+    )
+    least_part_of_joints: float | None = fact("the part of the contacts, about their middles, that the most central state needs")
+    required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
+    required_friction_contact: str | None = fact("the contact that needs it")
+    blocks: int = fact("stones")
+    contacts: int = fact("polygons along which they touch")
+    weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
+    dilating: bool = fact(
+        "whether contacts slide in the mechanisms at the ends of the admissible interval: these are upper bounds (dilatant friction), "
+        "and a state within friction does not prove that sliding without dilatancy is excluded"
+    )
+    ties: list[TieForce] = maybe("ties, chains and hoops in the most central state")
+    duality_gap: float = fact("greatest difference between the bounds of the thrusts, over the weight")
+    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")
+    friction_residual: float = fact("greatest excess of shear over friction, or of tension, at a corner, over the weight")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The part of the contacts that the most central state needs against the whole; the ratio is the safety factor."""
+        part = self.least_part_of_joints
+        if part is None:
+            return judge("The most central state was not found.", None, None)
+        if self.geometric_safety_factor is None:
+            return judge(f"At {self.gamma_g:g} g a state runs through the middles of all contacts, within 1 % of them.", 0.0, 1.0)
+        return judge(f"At {self.gamma_g:g} g a state of stress stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0)
+
+
+#: What `tilt` and `thrust` give: of a plane section, or of solids
 Tilt = SectionTilt | SolidTilt
+Thrust = PlaneThrust | SolidThrust

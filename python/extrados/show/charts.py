@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from extrados.kinds import ANALYSES, STRUCTURES, load, table
+from extrados.kinds import ANALYSES, load
 from extrados.results.store import Stored, StoreError
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
-from extrados.schema.keys import unit_along
 
 MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
 MOST_ROWS, MOST_COLUMNS = 200, 10
@@ -243,7 +242,17 @@ class Shown:
             )
 
     def thrust(self) -> None:
-        """The lines of least and greatest thrust."""
+        """The lines of least and greatest thrust; of solids the blocks and the thrusts of their sections."""
+        if "solid_vertex" in self.arrays:
+            rest = np.zeros((len(self.arrays["solid_centroid"]), 6))
+            self._blocks(np.linspace(0.0, 1.0, 24), rest, unit="", label="", swings=True, push=self._results.load_direction_deg)
+            columns = ["section", "direction", "least [kN]", "central [kN]", "greatest [kN]"]
+            rows = [
+                [one.name, one.direction, *(None if n is None else 1e-3 * n for n in (one.least_N, one.central_N, one.greatest_N))]
+                for one in self._results.sections
+            ]
+            self.tables.append({"title": "thrust", "columns": columns, "rows": rows, "left_out": 0})
+            return
         self._stones()
         self.body = {"sort": "stones", "unit": "", "label": "", "lines": self._lines("least", "most", "central")}
 
@@ -459,10 +468,8 @@ class Shown:
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
         key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
-        kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
-        unit = unit_along(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
         about = key.replace("_", " ")
-        self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
+        self._draw("Capacity", _axis("value", about, self._results.unit), _axis("", "collapse acceleration", "g"), rows)
 
     def strengthen(self) -> None:
         """The value over the size of each alternative, and the building with the mechanism of the cheapest one."""

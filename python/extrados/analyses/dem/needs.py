@@ -7,7 +7,7 @@ from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
-from extrados.analyses.dem.ties import refuse_rigid_ties
+from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
@@ -15,6 +15,7 @@ from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.structures.arch import ArchAssembly
 from extrados.model.structures.block import BlockAssembly
 from extrados.views.building import Building
+from extrados.views.solids.strands import damper_strands
 
 #: Numbers that a history holds of a block and of a joint at each time, its copies for tables included
 VALUES_OF_BLOCK, VALUES_OF_JOINT = 20, 12
@@ -37,7 +38,7 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     if _rigid(options):
         yield lambda: _refuse_springs(building)
     yield lambda: refuse_rigid_ties(building)
-    yield building.anchored
+    yield lambda: section_strands(building)
     if building.joints.damping == "restitution" and building.joints.beta is None:
         yield lambda: _refuse_restitution(building)
     if building.initial.movements:
@@ -102,6 +103,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     yield lambda: refuse_stones(building, stones, _rigid(options))
     yield lambda: refuse_rigid_ties(building)
     yield building.strands
+    yield lambda: damper_strands(building)
     if not isinstance(options, tables.Dem):
         return
     yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))

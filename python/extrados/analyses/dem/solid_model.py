@@ -15,6 +15,7 @@ from extrados.model.errors import Key
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.views.building import Building
+from extrados.views.solids.strands import damper_strands
 from extrados.views.solids.supports import Supports, supports_of
 
 #: What is refused of them, in words
@@ -111,7 +112,7 @@ def _law(values: ContactValues, stiffness: float, shear: float, friction: float,
 def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     """The model of a building's blocks in space."""
     assembly = building.solids()
-    ties = element_ties(building, building.strands(), np.arange(len(assembly.mass)))
+    ties = element_ties(building, (*building.strands(), *damper_strands(building)), np.arange(len(assembly.mass)))
     return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties)
 
 

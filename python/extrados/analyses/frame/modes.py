@@ -90,7 +90,7 @@ def run(context: Context, options: FrameModes) -> Result:
         for m in modes
     ]
     result.results = out.FrameModes(
-        modes=rows, moving_mass_kg=total, weight_N=frame.total_weight, piers=frame.piers, spandrels=len(frame.elements) - frame.piers
+        modes=rows, moving_mass_kg=total, weight_N=frame.total_weight, piers=frame.piers, spandrels=frame.spandrels
     )
     shapes = np.array([[one.rows @ (m.shape / np.abs(m.shape).max()) for one in frame.masses] for m in modes])
     result.arrays["place"] = Array(np.array([one.place for one in frame.masses]), ("mass", "xyz"), "m", "places of the masses")

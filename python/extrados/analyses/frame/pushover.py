@@ -10,6 +10,7 @@ import numpy as np
 
 from extrados.analyses.codes.verification import confidence_factor
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.frame.drawn import drawn_arrays
 from extrados.analyses.frame.modes import Mode, modes_of, rest_of, way_of
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.frame.verified import verify_frame
@@ -114,7 +115,8 @@ def run(context: Context, options: FramePushover) -> Result:
         governing=runs[least]["name"],
         failed=runs[least]["failed"],
         piers=frame.piers,
-        spandrels=len(frame.elements) - frame.piers,
+        spandrels=frame.spandrels,
+        **_ring_beams(frame, paths),
         walls=[wall.name for wall in frame.plan.walls],
         remarks=frame.remarks,
     )
@@ -131,6 +133,20 @@ def run(context: Context, options: FramePushover) -> Result:
         lost = walls is not None and walls.outcome in ("collapses", "cannot-stand")
         result.answer = f"{verified.judged('').statement.strip()} {f'Out of plane: {walls.statement} ' if lost else ''}{result.answer}"
     return result
+
+
+def push_once(frame: EquivalentFrame, options: FramePushover, direction: float) -> tuple[dict[str, Any], Path]:
+    """One pushover by the masses along a direction on the plan [deg], without eccentricity: its row of results and its path."""
+    level = options.control_level or max(one.level for one in frame.masses)
+    update = {"directions": [direction], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]}
+    with frame.core() as core:
+        rest = rest_of(frame, core)
+        (push,) = pushes_of(frame, options.model_copy(update=update), modes_of(frame, rest.tangent, MODES), level)
+        height = float(frame.plan.levels[level])
+        path = core.push(push.forces, push.control, options.target_drift * height, options.steps, options.drop)
+    if path.stop == "no equilibrium under the weight":
+        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+    return row_of(frame, push, path), path
 
 
 def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -> None:
@@ -225,29 +241,17 @@ def _failed(frame: EquivalentFrame, path: Path) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: row["control_displacement_m"])
 
 
+def _ring_beams(frame: EquivalentFrame, paths: Sequence[Path]) -> dict[str, float]:
+    """Greatest moment of the elastic ring beams up to the peaks of all runs; nothing without any."""
+    own = [k for k, s in enumerate(frame.strips) if s.kind == "ring beam"]
+    if not own:
+        return {}
+    return {"ring_beam_moment_N_m": max(float(np.abs(p.force[: int(p.multiple.argmax()) + 1, own, 1:]).max()) for p in paths)}
+
+
 def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> None:
     """What figures need: walls and elements once; of each run the states of its elements."""
-    plan = frame.plan
-    result.arrays["element_part"] = Array(
-        np.array([s.part for s in frame.strips]),
-        ("element", "box"),
-        "m",
-        "deformable parts of the elements: start and end along the wall, lower and upper height",
-    )
-    result.arrays["element_wall"] = Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0")
-    result.arrays["element_pier"] = Array(np.array([int(e.pier) for e in frame.elements]), ("element",), "", "1: pier, 0: spandrel")
-    result.arrays["wall_length"] = Array(np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls")
-    result.arrays["wall_height"] = Array(
-        np.array([plan.levels[plan.reach(w)[1]] for w in plan.walls]), ("wall",), "m", "heights of the walls"
-    )
-    holes = [
-        (w, *o.x, plan.levels[o.storey - 1] + o.z[0], plan.levels[o.storey - 1] + o.z[1])
-        for w, wall in enumerate(plan.walls)
-        for o in wall.openings
-    ]
-    result.arrays["opening"] = Array(
-        np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "number of the wall, start and end along the wall, lower and upper height"
-    )
+    result.arrays.update(drawn_arrays(frame))
     for k, path in enumerate(paths):
         result.arrays[f"state_{k + 1}"] = Array(
             path.state.astype(np.int8),

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from extrados import kinds
 from extrados.analyses.codes.tables import Verification
 from extrados.analyses.table import BuildingAnalysis
+from extrados.model.structures.plan import Plan
 from extrados.schema.quantities import Angle, Time
 from extrados.schema.table import key
 from extrados.views.frame.options import FrameOptions
@@ -38,6 +39,15 @@ class FrameAnalysis(BuildingAnalysis):
         found = super().rests_on(building)
         if self.frame.cohesion is not None:
             found.pop("joints.cohesion", None)
+        return found
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Also the strength of tie rods and ring beams, where [material] gives none that this analysis neglects."""
+        found = super().reckons_with(building)
+        plan = building.structure
+        tied = isinstance(plan, Plan) and (plan.rods or plan.ring_beams)
+        if tied and "joints.cohesion" in self.uses and building.material.tensile_strength is None:
+            found |= {"material.tensile_strength", "material.fracture_energy"}
         return found
 
 

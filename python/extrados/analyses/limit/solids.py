@@ -47,10 +47,10 @@ def run(context: Context, options: Tilt) -> Result:
     asked = np.unique(np.round(np.concatenate([[first, opposite], angles]), 9))
     pushed = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
     found_at = dict(zip(asked.tolist(), pushed, strict=True))
-    there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, opposite))
-    _refuse_falling(there, back, first)
+    there, back = (standing(found_at[round(d, 9)], assembly) for d in (first, opposite))
+    refuse_falling(there, back, first)
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
-    capacity = np.array([np.inf if one is None else _stands(one, assembly).gamma for one in rose])
+    capacity = np.array([np.inf if one is None else standing(one, assembly).gamma for one in rose])
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
     slides = max(dilating_contacts(limit, one) for one in (there, back, rose[least] if rose else there) if isinstance(one, Programme))
@@ -113,7 +113,7 @@ def run(context: Context, options: Tilt) -> Result:
     return result
 
 
-def _refuse_falling(there: Programme, back: Programme, first: float) -> None:
+def refuse_falling(there: Programme, back: Programme, first: float) -> None:
     """CannotStand if the structure requires a horizontal load; first: direction [deg]."""
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
@@ -228,7 +228,8 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
     }
 
 
-def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
+def standing(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
+    """The programme of blocks that stand; CannotStand with the certificate, Immovable where no load causes collapse."""
     if found is None:
         raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks on all sides")
     if isinstance(found, Falls):

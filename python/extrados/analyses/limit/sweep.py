@@ -2,7 +2,7 @@
 
 import itertools
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,13 @@ from extrados.analyses.limit.asked import values_of
 from extrados.analyses.limit.common import packed
 from extrados.analyses.limit.tables import Sweep
 from extrados.analyses.limit.variation import LOCKED, Outcome, Signature, evaluate, outcomes_of, spoken
+from extrados.analyses.needs import in_space
 from extrados.limit.errors import CannotStand
 from extrados.limit.finite_motion import finite_motion
+from extrados.limit.programme import Mechanism
 from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 from extrados.views.building import Building
@@ -26,6 +30,7 @@ LEVEL = 1e-6
 # Of the range: how closely changes of mechanism and the optimum are found.
 CLOSE = 1e-7
 MOST_CHANGES = 40
+MOST_PICTURED = 4  # mechanisms of solids that are stored
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
@@ -44,6 +49,8 @@ class Range:
     def at(self, value: float, *, beside: bool = False, explain: bool = False) -> Outcome:
         """The outcome at a value of the key, in SI; beside: also what stands beside the capacity; explain: with the
         reason of a refusal."""
+        if self.table == "analysis":  # the direction of the load
+            return evaluate(self.building, self.options.model_copy(update={self.path: float(value)}))
         data = changed(self.data, self.path, round(value) if self.whole else float(value))
         try:
             own = getattr(self.building, self.table)
@@ -76,6 +83,8 @@ class Values:
 def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
     table, path, unit, whole, values = values_of(context.building, options)
+    spatial = in_space(context.building, options)
+    locate = not whole and (options.locate if options.locate is not None else not spatial)
     data = context.deck.data.get(table, {})
     if isinstance(data, dict):
         data = {**data, **(options.model_dump(exclude_none=True).get(table) or {})}
@@ -86,7 +95,7 @@ def run(context: Context, options: Sweep) -> Result:
         if all(o.status == "cannot-stand" for o in outcomes):
             raise CannotStand(f"the structure cannot stand at any value of {options.vary}. Reason at the last value: {outcomes[-1].reason}")
         raise Refused(f"the structure has no capacity at any value of {options.vary}. Reason: {outcomes[-1].reason}", ("analysis", "vary"))
-    changes = _changes(context, ask, values, outcomes) if options.locate and not whole else []
+    changes = _changes(context, ask, values, outcomes) if locate else []
     numbers: dict[Signature, int] = {}
     for _, signature in sorted(
         [(v, o.signature) for v, o in zip(values, outcomes, strict=True)] + [(c["value"], c["after"]) for c in changes],
@@ -94,7 +103,7 @@ def run(context: Context, options: Sweep) -> Result:
     ):
         if signature and signature != LOCKED:
             numbers.setdefault(signature, len(numbers) + 1)
-    best, best_gamma = _optimum(context, ask, values, outcomes, options.locate and not whole)
+    best, best_gamma = _optimum(context, ask, values, outcomes, locate)
     result = Result("sweep")
     stable = [c for c in changes if not c["before"] or not c["after"]]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
@@ -127,7 +136,7 @@ def run(context: Context, options: Sweep) -> Result:
     )
     result.results = r
     _store(options, r, values, outcomes, numbers, result)
-    result.arrays.update(_examples(ask, values, outcomes, numbers))
+    result.arrays.update((_solid_examples if spatial else _examples)(ask, values, outcomes, numbers))
     result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
     result.answer = _words(options, r)
     return result
@@ -286,7 +295,7 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
         if not same:
             continue
         one = ask.at(same[len(same) // 2])
-        assert one.assembly is not None and one.mechanism is not None  # sections of one mechanism have one
+        assert isinstance(one.assembly, Assembly) and isinstance(one.mechanism, Mechanism)  # sections of one mechanism have one
         pose = finite_motion(one.assembly, one.mechanism)
         blocks[number] = len(pose)
         for i, (outline, c, p) in enumerate(zip(one.assembly.outlines, one.assembly.centroid, pose, strict=True)):
@@ -299,6 +308,29 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
         **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number/block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
+
+
+def _solid_examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[str, Array]:
+    """The same of solids, of the first mechanisms: solids and poses by the numbers of the mechanisms."""
+    from extrados.analyses.limit.solids import pose_of, scene_arrays  # with a solver that takes a while to load
+
+    found: dict[str, Array] = {}
+    shown = []
+    for signature, number in list(numbers.items())[:MOST_PICTURED]:
+        same = [v for v, o in zip(values, outcomes, strict=True) if o.signature == signature]
+        if not same:
+            continue
+        one = ask.at(same[len(same) // 2])
+        assert isinstance(one.assembly, SolidAssembly) and one.mechanism is not None and not isinstance(one.mechanism, Mechanism)
+        shown.append(number)
+        found |= {
+            f"{name}_{number}": replace(array, dims=(f"{array.dims[0]}_{number}", *array.dims[1:]))
+            for name, array in scene_arrays(one.assembly).items()
+            if name.startswith("solid_")
+        }
+        pose = pose_of(one.assembly, one.mechanism.motion)
+        found[f"solid_pose_{number}"] = Array(pose, (f"block_{number}", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on")
+    return found | {"example_mechanism": Array(np.array(shown, dtype=int), ("example",), "", "numbers of the mechanisms that are drawn")}
 
 
 def _words(options: Sweep, r: out.Sweep) -> str:

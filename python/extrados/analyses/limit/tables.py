@@ -60,10 +60,9 @@ class LimitAnalysisTable(BuildingAnalysis):
     )
 
 
-class Tilt(LimitAnalysisTable, Animated):
-    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+class SpatialLimit(LimitAnalysisTable):
+    """Questions of limit analysis that are also asked of blocks in space."""
 
-    kind: Literal["tilt"]
     solid: ClassVar = True
     fracture: bool = key(
         False, "also consider a crack in the leeward buttress, and show the monolithic and the fractured structure side by side"
@@ -77,6 +76,13 @@ class Tilt(LimitAnalysisTable, Animated):
         ge=-360,
         le=360,
     )
+
+
+class Tilt(SpatialLimit, Animated):
+    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+
+    kind: Literal["tilt"]
+    fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     rose: int | None = key(
         None,
         (
@@ -108,23 +114,57 @@ class Tilt(LimitAnalysisTable, Animated):
     )
 
 
-class Thrust(LimitAnalysisTable):
+class Section(Table):
+    """A section of blocks in space whose thrust is sought: a plane cut, or named contacts."""
+
+    name: str = key(about="its name", max_length=80)
+    x: Length | None = key(None, "cut across x: contacts between blocks whose centroids lie on both sides")
+    y: Length | None = key(None, "cut across y")
+    z: Length | None = key(None, "level cut at this height")
+    joints: list[str] | None = key(
+        None, 'names of contacts in place of a cut, or of a group of them; "ground" means all supports', min_length=1, max_length=10000
+    )
+    toward: Angle | None = key(
+        None,
+        "direction in plan of the thrust, from +x to +y, on the blocks at greater x or y, or on the blocks or ground below; default across "
+        "a vertical cut, else outward from the middle of the structure",
+        ge=-360,
+        le=360,
+    )
+
+    @model_validator(mode="after")
+    def _one_cut(self) -> "Section":
+        if sum(one is not None for one in (self.x, self.y, self.z, self.joints)) != 1:
+            raise ValueError("expected one of x, y, z and joints")
+        return self
+
+
+class Thrust(SpatialLimit):
     """Thrust lines at a given horizontal acceleration: least, greatest and most central thrust, safety, reactions."""
 
     kind: Literal["thrust"]
-    gamma: Gravities = key(0.0, "horizontal acceleration towards +x for which the thrust lines are drawn", ge=-5, le=5)
+    gamma: Gravities = key(
+        0.0, "horizontal acceleration towards +x, or along the direction, for which the thrust lines are drawn", ge=-5, le=5
+    )
     chain: str | None = key(None, "arch or stack whose least and greatest thrust are calculated; default: the first arch, vault or nave")
+    section: list[Section] = key(
+        [],
+        "of solids: sections whose least and greatest thrust are calculated, [[analysis.section]]; default: cuts across x and y through "
+        "the middle, and the ground",
+        max_length=50,
+    )
 
 
-class Sweep(LimitAnalysisTable):
+class Sweep(SpatialLimit):
     """One deck key of the structure varied: capacity, mechanism and its changes, the optimum (Figs 3-4, 3-6a, 3-7b)."""
 
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
         about=(
-            "key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise; or of another "
-            "table, for instance joints.friction, material.compressive_strength or ties.0.yield_force"
+            "key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise; of another "
+            "table, for instance joints.friction, material.compressive_strength or ties.0.yield_force; or `direction`, that "
+            "of the load on solids"
         )
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
@@ -133,7 +173,10 @@ class Sweep(LimitAnalysisTable):
     values: list[float | str] | None = key(None, "list of values, instead of start and stop", min_length=2, max_length=2000)
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
     buttress_alone: bool = key(False, "also calculate the leeward buttress alone", source="thesis Fig. 3-4b")
-    locate: bool = key(True, "also locate the changes of mechanism, the optimum and the ends of the stable range precisely")
+    locate: bool | None = key(
+        None,
+        "also locate the changes of mechanism, the optimum and the ends of the stable range precisely; default: true in a plane section",
+    )
 
     @model_validator(mode="after")
     def _range(self) -> "Sweep":
@@ -142,16 +185,18 @@ class Sweep(LimitAnalysisTable):
         return self
 
 
-class Survey(LimitAnalysisTable):
+class Survey(SpatialLimit):
     """Many sections from a CSV table, one line of results each."""
 
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
-    file: str = key(about="CSV file in the folder of the deck: a header of [structure] keys (lengths in m), and one section in each row")
+    file: str = key(
+        about="CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or one file of solids"
+    )
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
 
 
-class Imperfections(LimitAnalysisTable):
+class Imperfections(SpatialLimit):
     """Random surveys of the same stones, each point within the deviation of the survey: a band on the capacity."""
 
     kind: Literal["imperfections"]

@@ -16,6 +16,7 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )
 from extrados.analyses.limit.tables import Thrust
+from extrados.analyses.needs import in_space
 from extrados.limit.answer import Answer, assess, safety_factor
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
@@ -27,7 +28,11 @@ from extrados.results.model import Result, TableData
 
 
 def run(context: Context, options: Thrust) -> Result:
-    """Least, greatest and most central thrust line, each with its force polygon."""
+    """Least, greatest and most central thrust line, each with its force polygon; of solids the states of stress."""
+    if in_space(context.building, options):
+        from extrados.analyses.limit import solid_thrust  # with a solver of its own, which takes a while to load
+
+        return solid_thrust.run(context, options)
     assembly: Assembly = context.building.blocks()
     limit = limit_of(context.building, options, forces_only=True)
     chain = chain_of(assembly, options.chain)

@@ -23,7 +23,7 @@ from extrados.analyses.limit.common import (
 )
 from extrados.analyses.limit.paths import doubt, follow_paths
 from extrados.analyses.limit.tables import Tilt
-from extrados.analyses.needs import SPATIAL
+from extrados.analyses.needs import in_space
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import Certificate, certify
 from extrados.limit.finite_motion import finite_motion
@@ -31,7 +31,6 @@ from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.plane_path import collapse_along_path
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
-from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results import limit as out
 from extrados.results.fields import Keys
@@ -55,25 +54,10 @@ def degrees(gamma: float) -> float:
     return float(np.degrees(np.arctan(gamma)))
 
 
-def looks_at_solids(building: Building, options: Tilt) -> bool:
-    """Whether a deck asks for solids: by a direction or a rose, or since there is no plane section."""
-    if any(getattr(options, name) is not None for name in SPATIAL):
-        return True
-    try:
-        building.blocks()
-    except NoView as error:
-        try:
-            building.solids()
-        except NoView:
-            raise error from None
-        return True
-    return False
-
-
 def run(context: Context, options: Tilt) -> Result:
     """Capacity both ways, hinges, mechanism, thrust line at collapse, least and greatest thrust upright."""
     building = context.building
-    if looks_at_solids(building, options):
+    if in_space(building, options):
         from extrados.analyses.limit import solids  # with a solver of its own, which takes a while to load
 
         return solids.run(context, options)

@@ -185,6 +185,9 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         source="thesis 4.3.1",
     )
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
+    budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
+        None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
+    )
     target_displacement: Length | None = key(None, "stop when the control displacement reaches this value", gt=0)
     stop_fraction: float = key(0.0, "stop when the load drops below this share of its peak", ge=0, lt=1)
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "stop when the compliance has increased by this factor")

@@ -42,6 +42,7 @@ DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
 UNBALANCED = 0.06
 #: How a run ends in which the load can grow for ever, and one that has reached a displacement
 UNBOUNDED, MECHANISM_REACHED, REACHED = (core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement"))
+SPENT = "budget of processor time"
 DRIFTED = f"a drift of {100 * DRIFT:g} %"
 
 
@@ -386,6 +387,7 @@ def run_reference_loads(
     it must be carried.
     """
     begin = time.perf_counter()
+    ends_at = time.process_time() + (options.budget or np.inf)
     stop = replace(stop, refuse_overload=fresh and bool(np.any(model.constant)), far=FAR * model.extent)
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
     way = UnderWay((core_model.damage(), 0))
@@ -470,6 +472,9 @@ def run_reference_loads(
         progress(done, options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
         if part.reason or part.interrupted or not (len(part) or core_model.iterates):
             break
+        if time.process_time() > ends_at:
+            part.reason = SPENT
+            break
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, kept_states = core.Events.join(way.parts), way.states
     events.monitors[:, 0] *= sign  # positive in the sense of the load
@@ -489,6 +494,11 @@ def run_reference_loads(
         curve.most_compliance = floor * float(events.compliance[0])
     if ends_by_drift and events.reason == REACHED:
         events.reason = DRIFTED
+    if events.reason == SPENT and len(events):
+        curve.warnings.append(
+            f"The budget of {options.budget:.4g} s of processor time ended the run at a displacement of {1e3 * events.monitors[-1, 0]:.3g} mm: "
+            "peak and drifts are those up to there. Increase budget, or use larger elements."
+        )
     lost = np.flatnonzero(~events.equilibrium)
     if options.without_equilibrium == "continue" and not (goes_on or model.mesh.has_joints) and len(lost):
         curve.warnings.append(

@@ -218,6 +218,7 @@ class Staged:
         events: int
         target_displacement: float | None
         stop_fraction: float
+        budget: float | None
         without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"]
         continuation: Literal["newton", "implicit-explicit"]
         states: list[int]
@@ -320,6 +321,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
+    budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
+        None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
+    )
     target_displacement: Length | None = key(None, "stop when the control displacement reaches this value", gt=0)
     stop_fraction: float = key(0.0, "stop when the load drops below this share of its peak", ge=0, lt=1)
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] | None = key(

@@ -43,6 +43,20 @@ class FrameOptions(Table):
     spandrels: Literal["all", "lintels", "none"] = key(
         "all", "spandrels that couple piers: all spandrels, only those above openings with lintels, or none"
     )
+    spandrel_drift_tied: float = key(
+        0.02,
+        "chord rotation at which the flexural strength of a spandrel with a tie or ring beam drops",
+        gt=0,
+        le=0.1,
+        source="Circ. 7/2019, C8.7.1.3.1.1",
+    )
+    horizontal_strength: Stress | None = key(
+        None,
+        "compressive strength of masonry along the wall, f_h, of the strut in spandrels with a tie or ring beam; default half of "
+        "compressive_strength, a default of this program",
+        gt=0,
+        source="NTC 2018, 7.8.2.2.4",
+    )
     interlocking: float = key(1.0, "phi of spandrels: unit height divided by overlap", gt=0, le=5, source="Circ. 7/2019, C8.7.1.17")
     spandrel_drift_flexure: float = key(
         0.015,
@@ -61,6 +75,12 @@ class FrameOptions(Table):
         None,
         ("shear strength of the vertical section between walls that meet at corners; default: the cohesion, or unlimited without cohesion"),
         gt=0,
+    )
+    flanges: Literal["effective", "whole", "none"] = key(
+        "effective",
+        "flanges at corners: effective lifts at most the weight on the effective width of the other wall; whole: its whole pier; none: "
+        "corners transfer no vertical force",
+        source="after EN 1996-1-1, 5.5.3",
     )
     softening: float = key(0.5, 'beta of shear = "damage": exponent of the resistance beyond the peak', gt=0, lt=2)
     damage_compliance: float = key(3.0, 'c_t G of shear = "damage": ratio of inelastic to elastic shear compliance', gt=0, le=100)

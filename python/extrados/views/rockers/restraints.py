@@ -211,7 +211,7 @@ def _restraints(stones: Callable[[], Assembly], one: Tie | Damper | AddedHinge, 
             Restraint(f"{what}, {assembly.joint_names[j]}", law, TURN, (int(assembly.a[j]), int(assembly.b[j])), _twice(assembly, j))
             for j in joints_named(assembly, one.joints, what, (*key, "joints"))
         ]
-    points = np.array(one.flat() if isinstance(one, Tie) else [one.start, one.far], dtype=float)
+    points = np.array(one.flat(), dtype=float)
     first = stone_at(assembly, points[0], one.start_stone, f"{what}, start", key, "start")
     last = GROUND if one.end is None else stone_at(assembly, points[1], one.end_stone, f"{what}, end", key, "end")
     if first == last:
