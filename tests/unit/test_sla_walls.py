@@ -161,16 +161,16 @@ def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
     moved["structure"]["width"] = 3.01
     assert "are up to" in run_deck(moved).reason
     for words, change in (
-        ("other stiffness", {"young": 7e9}),
-        ("other tensile laws", {"tensile_strength": 0.25e6}),
-        ("other tensile laws", {"tensile_strength_parallel": 0.4e6}),
-        ("other crushing laws", {"compressive_strength": 3e6, "crushing_energy": 5e3}),
+        ("different stiffness", {"young": 7e9}),
+        ("different tensile laws", {"tensile_strength": 0.25e6}),
+        ("different tensile laws", {"tensile_strength_parallel": 0.4e6}),
+        ("different crushing laws", {"compressive_strength": 3e6, "crushing_energy": 5e3}),
     ):
         other = wall(events=5, resume_from=str(out))
         other["material"] |= change
         found = run_deck(other)
         assert (found.status, words in found.reason) == ("refused", True), found.reason
-    for words, change in {"other tensile laws": {"ripple": 0.1}, "other ways of cracking": {"shear_retention": 0.1}}.items():
+    for words, change in {"different tensile laws": {"ripple": 0.1}, "different ways of cracking": {"shear_retention": 0.1}}.items():
         found = run_deck(
             wall(events=5, resume_from=str(out)) | {"analysis": [wall(events=5, resume_from=str(out))["analysis"][0] | change]}
         )
