@@ -72,9 +72,7 @@ class FrameOptions(Table):
         None, "share of the strength that a spandrel keeps beyond its drift limit; default 0.6 with a lintel, 0.1 without", ge=0, le=1
     )
     flange_strength: Stress | None = key(
-        None,
-        ("shear strength of the vertical section between walls that meet at corners; default: the cohesion, or unlimited without cohesion"),
-        gt=0,
+        None, "shear strength of the vertical section between walls that meet at corners; default: the cohesion", gt=0
     )
     flanges: Literal["effective", "whole", "none"] = key(
         "effective",

@@ -169,6 +169,13 @@ class _Maker:
         for k, corner in enumerate(plan.corners):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
+        o = self.options
+        if o.shear not in ("none", "damage") and not (o.cohesion or o.diagonal_strength or self.building.joints.cohesion):
+            self.remarks.append(
+                f"Neither cohesion nor diagonal_strength is given: piers slide at {o.friction:g} times their compression, spandrels without a "
+                f"tie have no strength, and walls that meet at corners {'are' if o.flange_strength else 'are not'} bonded. Give [joints] "
+                "cohesion, or diagonal_strength in [analysis.frame], for masonry in mortar."
+            )
         if plan.beds:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
         if plan.ring_beams:
@@ -651,7 +658,7 @@ class _Maker:
                 material = self._material(one, max(level, plan.reach(one)[0]))
                 shear = o.stiffness * material.young / (2.0 * (1.0 + material.poisson))
                 f = o.flange_strength or o.cohesion or self.building.joints.cohesion
-                strength = f / o.confidence_factor * thin * tall if f else UNLIMITED
+                strength = f / o.confidence_factor * thin * tall
                 if bond is not None:
                     strength *= bond.strength
                 strengths, returns = (strength, strength), False
