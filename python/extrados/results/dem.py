@@ -197,7 +197,7 @@ class SolidDemRun(KindResults):
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest plastic slip of a dowel, with the slip that occurs before the motion, under self-weight", "m")
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, including the slip under self-weight before the motion", "m")
     dowels_out: int = fact("number of dowels that came out of their holes")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse (not applied to a block that only slides)", "m")
