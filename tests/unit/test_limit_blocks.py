@@ -213,7 +213,7 @@ def test_json(tmp_path: Path) -> None:
         ({"blocks": [{"name": "bad", "points": [[0, 0], [1]]}]}, "'bad': points"),
         ({"blocks": [{"points": [[0, 0], [1, 0], [1, 1]], "density": -5}]}, "density is -5"),
         ({"blocks": [{"points": [[0, 0], [1, 0], [1, 1]], "density": 10**400}]}, f"density is {10**39}..., expected"),
-        ({"blocks": [], "unit": "m" * 400}, f"unit '{'m' * 39}...; expected"),
+        ({"blocks": [], "unit": "m" * 400}, f"unit '{'m' * 39}... is unknown; expected"),
         ({"colour": "red"}, "unknown key 'colour'"),
         ({"ground": [[0, 0, 1]]}, "ground"),
     ):
