@@ -289,7 +289,7 @@ WRONG = {
     ),
     "restitution of many blocks": ("only to a single block", ARCH + PULSE + '[joints]\ndamping = "restitution" # here\n' + DEM),
     "facade without its thickness": (
-        "needs thickness",
+        "requires thickness",
         '[[analysis]] # here\nkind = "local-mechanism"\nmechanism = "facade"\nheight = 6\n',
     ),
     "mechanism of no building": ("requires a [structure]", '[[analysis]]\nkind = "local-mechanism"\nmechanism = "building" # here\n'),
