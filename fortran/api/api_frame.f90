@@ -45,7 +45,7 @@ contains
       integer(c_int), intent(in) :: count
       integer(c_int), intent(in) :: freedom(8, count)
       real(c_double), intent(in) :: part(8, count)
-      real(c_double), intent(in) :: property(4, count)
+      real(c_double), intent(in) :: property(5, count)
       integer(c_int), intent(out) :: status
       type(frame), pointer :: model
       call frame_take(handle, .true., n, .false., model, status)

@@ -125,7 +125,7 @@ contains
       type(frame), intent(inout) :: model
       integer(c_int), intent(in) :: freedom(:, :)   !! (8, links) 1-based; 0 is held
       real(wp), intent(in) :: part(:, :)            !! (8, links) of each displacement in the deformation
-      real(wp), intent(in) :: property(:, :)        !! (4, links) stiffness, strengths against - and +, prestress
+      real(wp), intent(in) :: property(:, :)        !! (5, links) stiffness, strengths against - and +, prestress, 1: returns
       integer(c_int), intent(out) :: status
       type(frame_link), allocatable :: link(:)
       integer :: k, failed
@@ -145,6 +145,7 @@ contains
          model%link(k)%stiffness = property(1, k)
          model%link(k)%strength = property(2:3, k)
          model%link(k)%force = property(4, k)
+         model%link(k)%returns = property(5, k) > 0.5_wp
       end do
       status = status_ok
    end subroutine set_links

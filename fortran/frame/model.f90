@@ -8,13 +8,15 @@ module frame_model
    private
    public :: frame, frame_link, frame_state, frame_state_new, take_over, assemble, equilibrate, commit, solve
 
-   !> An elastic, perfectly plastic link: its deformation is a sum of displacements of a few freedoms
+   !> An elastic, perfectly plastic link: its deformation is a sum of displacements of a few freedoms. One that returns has no
+   !> plastic deformation: beyond its strength it carries a weight that is lifted and set down again.
    type :: frame_link
       integer(c_int) :: freedom(8) = 0            !! 0 is held
       real(wp) :: part(8) = 0.0_wp
       real(wp) :: stiffness = 0.0_wp              !! [N/m]
       real(wp) :: strength(2) = 0.0_wp            !! against negative and positive deformation, both not negative [N]
       real(wp) :: force = 0.0_wp                  !! before it deforms: a prestress [N]
+      logical :: returns = .false.
    end type frame_link
 
    type :: frame
@@ -128,7 +130,7 @@ contains
       do i = 1, 8
          if (link%freedom(i) > 0) deformation = deformation + link%part(i) * now%d(link%freedom(i))
       end do
-      force = link%force + link%stiffness * (deformation - past)
+      force = link%force + link%stiffness * (deformation - merge(0.0_wp, past, link%returns))
       stiffness = link%stiffness
       if (force > link%strength(2) .or. force < -link%strength(1)) then
          stiffness = 1.0e-6_wp * link%stiffness

@@ -44,7 +44,9 @@ CHAPTERS = (
     "meanings",
     "outputs",
     "joins",
+    "frames",
     "ways",
+    "seldom",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
@@ -58,6 +60,7 @@ SLOW = {
     "a-deck-as-text-and-as-objects",
     "a-deck-through-json",
     "a-dome-turned-by-a-lune",
+    "a-load-on-solids-acts-on-their-top",
     "a-plinth-by-codes",
     "a-section-through-files",
     "a-stronger-tie",

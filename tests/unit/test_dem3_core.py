@@ -210,7 +210,7 @@ def test_two_components_are_one_along_their_sum() -> None:
     for run in (along_x, along_y):
         assert run.place == pytest.approx(whole.place, abs=1e-9) and run.residual < 1e-2
     with dem3.Model(block, given) as model, as_motion_set(part[:2]) as motions:
-        with pytest.raises(IndexError, match="motion 5 is not in the set of 2"):
+        with pytest.raises(IndexError, match="motion number 5 does not exist: the set has 2"):
             model.run(motions, across=5)
 
 
@@ -380,7 +380,7 @@ def test_wrong_models_are_refused() -> None:
         dem3.run(solids([prism(np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 1.0)], Law(1e9, 1e9, 0.6)), options)
     with pytest.raises(ValueError, match="stiffnesses"):
         Law(0.0, 1e9, 0.6)
-    with pytest.raises(ValueError, match="law that is not there"):
+    with pytest.raises(ValueError, match="law that does not exist"):
         dem3.run(replace(good, joints={(0, 1): 3}), options)
     with pytest.raises(IndexError, match="joints names 7"):
         dem3.run(replace(good, joints={(0, 7): 0}), options)

@@ -444,7 +444,7 @@ def test_what_fails_at_the_end_of_a_page_is_reported_on_the_log(
     (record,) = caplog.records
     assert record.getMessage() == "a page could not be closed"
     assert record.exc_info is not None
-    assert "only files beside the deck are read here" in str(record.exc_info[1])
+    assert "Only files in the folder of the deck can be read here" in str(record.exc_info[1])
 
 
 def test_the_work_of_a_page_is_closed_before_its_session_and_whatever_fails() -> None:

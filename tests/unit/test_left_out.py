@@ -116,7 +116,11 @@ DECKS = {
     "pushover": (HOUSE, None, {"mesh": {"size": 0.9, "layers": 3}, "events": 25}),
     "modes": (ARCH, None, {}),
     "frame-modes": (HOUSE, None, {}),
-    "frame-pushover": (HOUSE, None, {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]}),
+    "frame-pushover": (
+        HOUSE,
+        None,
+        {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0], "frame": {"flanges": "whole"}},
+    ),
     "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
     "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),
@@ -220,15 +224,15 @@ worn_corners = "1 cm"
 def test_it_is_reported_once_with_file_and_line() -> None:
     remarks = left_out(read_text(TOLD.encode()))
     assert [remark.text.partition(";")[0] for remark in remarks] == [
-        "deck.toml:8: joints.cohesion: tilt, thrust do not use it",
-        "deck.toml:11: joints.types.tension: tilt, thrust do not use it",
-        "deck.toml:13: materials.tuff.young: tilt, thrust do not use it",
-        "deck.toml:19: analysis.joints.worn_corners: thrust does not use it",
+        "deck.toml:8: joints.cohesion: tilt, thrust do not use this key",
+        "deck.toml:11: joints.types.tension: tilt, thrust do not use this key",
+        "deck.toml:13: materials.tuff.young: tilt, thrust do not use this key",
+        "deck.toml:19: analysis.joints.worn_corners: thrust does not use this key",
     ]
     assert "dem" in remarks[0].text.partition(";")[2]
     run = compute(Context(read_text(TOLD.encode())))
-    assert [w for r in run.results for w in r.warnings if "not use it" in w] == [remark.text for remark in remarks]
-    assert [sum("not use it" in w for w in r.warnings) for r in run.results] == [3, 1]
+    assert [w for r in run.results for w in r.warnings if "not use this key" in w] == [remark.text for remark in remarks]
+    assert [sum("not use this key" in w for w in r.warnings) for r in run.results] == [3, 1]
 
 
 def test_check_reports_it_too_and_passes(tmp_path) -> None:
@@ -246,7 +250,7 @@ def test_a_property_that_only_some_analyses_neglect_is_reported_if_it_affects_st
         "analysis": [{"kind": "tilt"}, {"kind": "rocking"}, {"kind": "dem"}],
     }
     remarks = left_out(make_deck(deck))
-    assert [(remark.text, remark.analysis) for remark in remarks] == [("deck: joints.cohesion: dem uses it, tilt, rocking do not", 0)]
+    assert [(remark.text, remark.analysis) for remark in remarks] == [("deck: joints.cohesion: dem uses this key; tilt, rocking do not", 0)]
     deck["analysis"][0]["joints"] = {"cohesion": 0.0}
     deck["analysis"][1]["joints"] = {"cohesion": 0.0}
     assert left_out(make_deck(deck)) == [], "who overrides it for itself knows"
@@ -274,5 +278,5 @@ def test_an_analysis_that_does_not_use_it_is_not_named_among_those_that_can() ->
     deck = {"structure": ARCH, "motion": SINE, "material": {"young": 7e9}, "analysis": [{"kind": "dem", "solver": "nonsmooth"}]}
     (remark,) = left_out(make_deck(deck))
     words, _, others = remark.text.partition(";")
-    assert words == "deck: material.young: dem does not use it"
+    assert words == "deck: material.young: dem does not use this key"
     assert others == " local-mechanism, sla, pushover and others can use it"

@@ -275,7 +275,7 @@ def test_a_frame_of_piers_beside_the_push(tmp_path):
     table = run.tables["frame"].columns
     assert table["load"] == pytest.approx([load, load], rel=0.02)  # of a row of elements
     assert table["height"] == [2.0, 2.0]
-    assert "by the formulas of codes" in run.answer
+    assert "by code formulas" in run.answer
 
 
 @pytest.mark.parametrize("closure", [False, True])

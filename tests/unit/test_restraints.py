@@ -268,7 +268,7 @@ def test_wrong_dampers_and_hinges_are_reported_with_their_line() -> None:
             read_text((text + DECK).encode())
         assert said in str(error.value)
     ((_, reason),) = told("[[hinges]]\njoints = ['sole']\ndamping = 1.0\n" + DECK)
-    assert "hinges.joints: hinge 1: there is no joint 'sole'" in reason
+    assert "hinges.joints: hinge 1: joint 'sole' does not exist" in reason
 
 
 def test_impacts_at_one_corner_after_the_other_end_at_the_wall() -> None:

@@ -70,7 +70,7 @@ def test_an_object_is_what_a_deck_says() -> None:
         (lambda: extrados.StepPulse(amplitude=0.5, duration=0.1), 'write "0.5 g"'),
         (lambda: extrados.Arch(radius=math.nan, thickness=1.0, embrace=90, voussoirs=7), "radius: nan: input should be a finite number$"),
         (lambda: extrados.Joints(frction=0.5), "joints.frction: unknown key; did you mean 'friction'"),
-        (lambda: extrados.deck(ARCH, extrados.Rocking()), r"rocking needs a \[motion\]"),
+        (lambda: extrados.deck(ARCH, extrados.Rocking()), r"rocking requires a \[motion\]"),
         (lambda: extrados.sweep(DECK, over={"structure.thickness": [1.2, -1.0]}), "structure.thickness: -1.0: input should"),
         (lambda: extrados.sweep(DECK, over={"structure.thicknes": [1.2]}), "did you mean 'thickness'"),
         (lambda: extrados.sweep(DECK, over={"structure.thickness": 1.2}), "structure.thickness: expected a list"),

@@ -152,8 +152,13 @@ def _links(frame: EquivalentFrame) -> Iterator[str]:
             tags.append(tag)
         number += 1
         tag = 30000 + number
-        limit = min(link.strengths)
-        yield f"uniaxialMaterial ElasticPP {tag} {link.stiffness:.6g} {min(limit / link.stiffness, 1e6):.6g}"
+        pull, push = (max(min(limit / link.stiffness, 1e6), 1e-12) for limit in (link.strengths[1], link.strengths[0]))
+        if link.returns:
+            forces = [round(link.stiffness * x, 3) for x in (-push, -push, 0.0, pull, pull)]
+            strains = " ".join(f"{x:.6g}" for x in (-push - 1.0, -push, 0.0, pull, pull + 1.0))
+            yield f"uniaxialMaterial ElasticMultiLinear {tag} -strain {strains} -stress {' '.join(f'{x:.8g}' for x in forces)}"
+        else:
+            yield f"uniaxialMaterial ElasticPP {tag} {link.stiffness:.6g} {pull:.6g} {-push:.6g}"
         yield f"element zeroLength {tag} {tags[1]} {tags[0]} -mat {tag} -dir 3"
     # u K u / 2 = sum over pairs of -K_ij (u_i - u_j)^2 / 2 + sum of (row sums of K) u_i^2 / 2
     first: dict[int, int] = {}

@@ -219,41 +219,64 @@ def _opened(wall: DrawnWall, lines: np.ndarray) -> DrawnWall:
 def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name: str, storeys: Sequence[float]) -> str:
     """The deck: openings of a layer are windows, gaps are doors in the first storey and windows above. short: lengths [m] of the
     pieces that are not considered."""
-    title = name.replace('"', "'").replace("\\", "/")
     sills = f"sills and heads of openings: doors {DOOR[0]:g} to {DOOR[1]:g} m, windows {WINDOW[0]:g} to {WINDOW[1]:g} m"
-    said = [
-        f"The walls are those of the drawing {title}, which gives no heights.",
-        f"Assumed {sills}.",
-        "Assumed masonry: density 1800 kg/m^3, modulus 1.5 GPa, Poisson 0.25, compressive strength 3 MPa, cohesion 0.1 MPa, "
-        "diagonal strength 50 kPa.",
-    ]
+    said = [f"Walls are read from the drawing {name}; it gives no heights.", f"Assumed {sills}."]
     if short:
         said.append(
             f"Not considered: {len(short)} pieces whose length exceeds their thickness by at most {LEAST:g} m, such as ends of walls; the longest measures {max(short):.2f} m."
         )
+    made = []
+    for wall in walls:
+        openings = []
+        for storey, height in enumerate(storeys, 1):
+            low, high = WINDOW if windows or storey > 1 else DOOR
+            openings += [(storey, a, b, low, min(high, height - 0.3)) for a, b in wall.openings]
+        made.append(WrittenWall(wall.a, wall.b, 1, [wall.thickness] * len(storeys), openings))
+    return written_deck(made, storeys, name, said)
+
+
+@dataclass
+class WrittenWall:
+    """A wall of a deck: its ends [m], first storey, thickness in each of its storeys [m], openings (storey, s from, to, z from, to)."""
+
+    a: np.ndarray
+    b: np.ndarray
+    first: int
+    thicknesses: list[float]
+    openings: list[tuple[int, float, float, float, float]]
+
+    @property
+    def last(self) -> int:
+        """Its last storey."""
+        return self.first + len(self.thicknesses) - 1
+
+
+def written_deck(walls: Sequence[WrittenWall], storeys: Sequence[float], name: str, said: Sequence[str]) -> str:
+    """The text of a deck of walls with an assumed masonry; said: what else is assumed or neglected."""
+    title = name.replace('"', "'").replace("\\", "/")
+    masonry = (
+        "Assumed masonry: density 1800 kg/m^3, modulus 1.5 GPa, Poisson 0.25, compressive strength 3 MPa, cohesion 0.1 MPa, diagonal "
+        "strength 50 kPa."
+    )
     text = [
         f'title = "Building of {title}"',
         "",
         "[structure]",
         'kind = "building"',
         f"storeys = [{', '.join(f'{h:g}' for h in storeys)}]",
-        f"assumed = [{', '.join(_quoted(one) for one in said)}]",
+        f"assumed = [{', '.join(_quoted(one.replace(chr(34), chr(39)).replace(chr(92), '/')) for one in (*said, masonry))}]",
     ]
     for k, wall in enumerate(walls, 1):
-        text += [
-            "",
-            "[[structure.walls]]",
-            f'name = "wall {k}"',
-            f"start = {_point(wall.a)}",
-            f"end = {_point(wall.b)}",
-            f"thickness = {wall.thickness:.3f}",
-        ]
+        text += ["", "[[structure.walls]]", f'name = "wall {k}"', f"start = {_point(wall.a)}", f"end = {_point(wall.b)}"]
+        if len(set(np.round(wall.thicknesses, 3))) == 1:
+            text.append(f"thickness = {wall.thicknesses[0]:.3f}")
+        else:
+            text.append(f"thicknesses = [{', '.join(f'{t:.3f}' for t in wall.thicknesses)}]")
+        if (wall.first, wall.last) != (1, len(storeys)):
+            text.append(f"storeys = [{wall.first}, {wall.last}]")
         if wall.openings:
             text.append("openings = [")
-            for storey, height in enumerate(storeys, 1):
-                low, high = WINDOW if windows or storey > 1 else DOOR
-                high = min(high, height - 0.3)
-                text += [f"  {{ storey = {storey}, x = [{a:.3f}, {b:.3f}], z = [{low:g}, {high:g}] }}," for a, b in wall.openings]
+            text += [f"  {{ storey = {n}, x = [{a:.3f}, {b:.3f}], z = [{c:.3g}, {d:.3g}] }}," for n, a, b, c, d in wall.openings]
             text.append("]")
     text += [
         "",

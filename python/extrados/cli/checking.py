@@ -1,5 +1,7 @@
 """The command `check`: errors of decks, and the fit of blocks, solids and meshes, without a run."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -81,13 +83,19 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
     )
     if not checked.places and not asked:
         return
-    try:
+    with _said_if_unwritten(folder):
         picture, places = write_check(checked, folder)
+        out_console.say(f"Picture: {picture}")
+        out_console.say(f"List:    {places}")
+
+
+@contextmanager
+def _said_if_unwritten(folder: Path) -> Iterator[None]:
+    """Pictures that cannot be written into the folder are reported, and nothing else stops."""
+    try:
+        yield
     except OSError as error:
         err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
-        return
-    out_console.say(f"Picture: {picture}")
-    out_console.say(f"List:    {places}")
 
 
 def _tell_plan(checked: "Checked", folder: Path) -> None:
@@ -105,10 +113,8 @@ def _tell_plan(checked: "Checked", folder: Path) -> None:
         f"{walls}{mesh.elements()} elements, {len(mesh.xyz)} nodes; {'walls and floors weigh' if mesh.walls else 'weight'} "
         f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
     )
-    try:
+    with _said_if_unwritten(folder):
         out_console.say(f"Picture: {write_plan(mesh, folder)}")
-    except OSError as error:
-        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
 
 
 def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
@@ -123,7 +129,5 @@ def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
     out_console.say(f"{len(solids.mass)} solids, {len(solids.a)} contacts, {int((solids.b < 0).sum())} of them on the ground")
     if not asked:
         return
-    try:
+    with _said_if_unwritten(folder):
         out_console.say(f"Picture: {write_solids(solids, folder)}")
-    except OSError as error:
-        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")

@@ -92,10 +92,10 @@ def export(
 
 
 def import_plan(
-    drawing: Annotated[Path, typer.Argument(help="plan of the building, a DXF file")],
+    drawing: Annotated[Path, typer.Argument(help="plan of the building: a DXF drawing, or an IFC model")],
     walls: Annotated[
-        list[str], typer.Option("--walls", help="layer of the walls; repeat the option for further layers", show_default=False)
-    ],
+        list[str] | None, typer.Option("--walls", help="layer of the walls of a drawing; repeat the option for further layers")
+    ] = None,
     openings: Annotated[
         list[str] | None, typer.Option("--openings", help="layer of the openings; without this layer, gaps in the walls are openings")
     ] = None,
@@ -106,9 +106,17 @@ def import_plan(
     storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys from the ground up, such as 3.0,2.8")] = "3.0",
     unit: Annotated[str | None, typer.Option("--unit", help="length unit, if the drawing states none: m, cm, mm, in, ft")] = None,
 ) -> None:
-    """Print a deck of a building from a plan in DXF. Lines are the faces or axes of walls; openings are gaps, or have a layer."""
+    """Print a deck of a building from a plan in DXF (lines are the faces or axes of walls; openings are gaps, or have a layer), or from
+    an IFC model (walls, openings and storeys)."""
     from extrados.bridges.plan_drawing import deck_of_file
+    from extrados.bridges.plan_ifc import deck_of_ifc
 
+    if drawing.suffix.lower() == ".ifc":
+        with errors():
+            print(deck_of_ifc(drawing), end="")
+        return
+    if not walls:
+        raise typer.BadParameter("expected the layer of the walls", param_hint="--walls")
     try:
         heights = [float(part) for part in storeys.split(",")]
     except ValueError:

@@ -94,13 +94,14 @@ class MacroElement:
 @dataclass(frozen=True)
 class Link:
     """An elastic, perfectly plastic link: freedoms (at most 8, 0-based) and their parts in its deformation; stiffness [N/m],
-    strengths against negative and positive deformation [N], prestress [N]."""
+    strengths against negative and positive deformation [N], prestress [N]; returns: without plastic deformation."""
 
     freedoms: tuple[int, ...]
     parts: tuple[float, ...]
     stiffness: float
     strengths: tuple[float, float] = (UNLIMITED, UNLIMITED)
     prestress: float = 0.0
+    returns: bool = False
 
 
 class Rest(NamedTuple):
@@ -149,7 +150,7 @@ class Frame(Owner):
             for k, link in enumerate(links):
                 where[: len(link.freedoms), k], parts[: len(link.parts), k] = link.freedoms, link.parts
             found = indices("freedoms of links", where + 1, self.n + 1, (8, None)) - np.int32(1)
-            laws = real("links", np.array([[k.stiffness, *k.strengths, k.prestress] for k in links]).T, (4, None))
+            laws = real("links", np.array([[k.stiffness, *k.strengths, k.prestress, float(k.returns)] for k in links]).T, (5, None))
             check(_core.api_frame.links(handle, self.n, found, parts, laws), "links of a frame")
         n = self.n
         own = real("linear", linear, (n, n)), real("weight", weight, (n,)), real("mass", mass, (n, n))

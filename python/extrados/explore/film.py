@@ -7,7 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from extrados.schema.programs import ffmpeg
+from extrados.schema.programs import ffmpeg, film_command
 
 MOST_PICTURES, LARGEST_SIDE = 1200, 2560
 TYPES = {"gif": "image/gif", "mp4": "video/mp4"}
@@ -84,31 +84,7 @@ def _mp4(pictures: list[bytes], rate: int) -> bytes:
     with tempfile.TemporaryDirectory(prefix="extrados-") as folder:
         target = Path(folder) / "film.mp4"
         done = subprocess.run(
-            [
-                program,
-                "-y",
-                "-loglevel",
-                "error",
-                "-f",
-                "image2pipe",
-                "-c:v",
-                "mjpeg",
-                "-framerate",
-                str(rate),
-                "-i",
-                "-",
-                "-vf",
-                "crop=trunc(iw/2)*2:trunc(ih/2)*2",
-                "-c:v",
-                "libx264",
-                "-pix_fmt",
-                "yuv420p",
-                "-crf",
-                "20",
-                "-movflags",
-                "+faststart",
-                str(target),
-            ],
+            film_command(program, ["-f", "image2pipe", "-c:v", "mjpeg"], rate, target, ["-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2"]),
             input=b"".join(pictures),
             capture_output=True,
             timeout=300,

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Generator, Iterator
 
 from extrados.decks.reader import DeckError
-from extrados.explore.answers import changes, decks, motion, needed, results, sheet, standalone, views
+from extrados.explore.answers import changes, decks, motion, needed, plan, results, sheet, standalone, views
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
 from extrados.explore.messages import TOLD, BadMessage, Message
@@ -36,6 +36,9 @@ ANSWERS: dict[str, Callable[[Desk, Message], Iterator[Reply]]] = {
     "needed": needed.needed,
     "sheet": sheet.sheet,
     "draw": sheet.draw,
+    "plan": plan.plan,
+    "draw-plan": plan.draw_plan,
+    "push-plan": plan.push_plan,
 }
 
 

@@ -95,7 +95,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     if building.ties:
         made.arrays["ties"] = building.anchored().point.reshape(-1, 2) - anchor
     if building.dampers:
-        made.arrays["dampers"] = np.array([[d.start, d.far] for d in building.dampers]).reshape(-1, 2) - anchor
+        made.arrays["dampers"] = np.array([d.flat() for d in building.dampers]).reshape(-1, 2) - anchor
     words["abutting_wall"] = building.supports.abutting_wall
     words["head_mass_kg"] = getattr(building.structure, "head_mass", None) or None
     ends = _ends(made, building, options)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.results.rocking import Assessment, FailureDomain, Rocking
+from extrados.results.rocking import SLID, Assessment, FailureDomain, Rocking
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, style
@@ -295,7 +295,7 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
             codes.T if len(d) > 1 else np.repeat(codes.T, 2, axis=1),
             cmap=ListedColormap(style.MODES),
             vmin=0,
-            vmax=3,
+            vmax=SLID,
             shading="nearest",
             rasterized=True,
         )
@@ -309,7 +309,8 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
             if any(value is not None for value in values):
                 ax.plot(d, np.array(values, dtype=float)[order], ".", markersize=3.0, label=text)
         ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linewidth=0.8, linestyle=":")
-        for code, text in enumerate(("no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")):
+        kinds = ["no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)", "blocks only slide"]
+        for code, text in enumerate(kinds if (codes == SLID).any() else kinds[:SLID]):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
         ax.set_xlabel({"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]"))
         ax.set_ylabel("amplitude [g]")

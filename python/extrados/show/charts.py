@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from extrados.kinds import ANALYSES, STRUCTURES, load, table
+from extrados.kinds import ANALYSES, load
 from extrados.results.store import Stored, StoreError
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
-from extrados.schema.keys import unit_along
 
 MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
 MOST_ROWS, MOST_COLUMNS = 200, 10
@@ -134,6 +133,17 @@ class Shown:
         self.out |= {"body_time": time, "body_pose": pose, **{f"body_{k}": v for k, v in lines.items()}}
         self.body = {"sort": "stones", "unit": unit, "label": label, "line": "line" in lines}
 
+    def _mechanism(self, pose: str, label: str) -> None:
+        """A body of stones that moves from rest to the stored pose (blocks, 3)."""
+        rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
+        share = np.linspace(0.0, 1.0, 24)
+        self._moving(share, rest + share[:, None, None] * (self.arrays[pose] - rest), "", label)
+
+    def _blocks(self, time: np.ndarray, pose: np.ndarray, **body: Any) -> None:
+        """Blocks in space that move along `time` by poses (times, blocks, 6)."""
+        self.out |= {name: self.arrays[source] for name, source in SOLIDS.items()} | {"body_time": time, "pose": pose}
+        self.body = {"sort": "space", **body}
+
     def _lines(self, *names: str) -> list[dict[str, str]]:
         """Stored lines of thrust, of states that are named."""
         words = {"collapse": "at collapse, load to +x", "least": "least thrust", "most": "greatest thrust", "central": "most central"}
@@ -148,10 +158,8 @@ class Shown:
 
     def _solids(self) -> None:
         """Blocks in space that move along a mechanism, and their capacity over the direction."""
-        for name, source in SOLIDS.items():
-            self.out[name] = self.arrays[source]
-        self.out |= {"body_time": np.linspace(0.0, 1.0, 24), "pose": self.arrays["mechanism_pose"]}
-        self.body = {"sort": "space", "unit": "", "label": "mechanism", "swings": True, "push": self._results.load_direction_deg}
+        share, pose = np.linspace(0.0, 1.0, 24), self.arrays["mechanism_pose"]
+        self._blocks(share, pose, unit="", label="mechanism", swings=True, push=self._results.load_direction_deg)
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
             self._draw(
@@ -219,12 +227,9 @@ class Shown:
             self._solids()
             return
         self._stones()
-        rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
         lines = self._lines("collapse", "least", "most")
         if "mechanism_pose" in self.arrays:
-            share = np.linspace(0.0, 1.0, 24)[:, None, None]
-            self.out["body_time"] = share[:, 0, 0]
-            self.out["body_pose"] = rest + share * (self.arrays["mechanism_pose"] - rest)
+            self._mechanism("mechanism_pose", "mechanism")
         self.body = {"sort": "stones", "unit": "", "label": "mechanism", "lines": lines, "swings": True}
         if "collapse_friction" in self.arrays:
             self.out["joint"] = np.arange(len(self.arrays["collapse_friction"]))
@@ -237,7 +242,17 @@ class Shown:
             )
 
     def thrust(self) -> None:
-        """The lines of least and greatest thrust."""
+        """The lines of least and greatest thrust; of solids the blocks and the thrusts of their sections."""
+        if "solid_vertex" in self.arrays:
+            rest = np.zeros((len(self.arrays["solid_centroid"]), 6))
+            self._blocks(np.linspace(0.0, 1.0, 24), rest, unit="", label="", swings=True, push=self._results.load_direction_deg)
+            columns = ["section", "direction", "least [kN]", "central [kN]", "greatest [kN]"]
+            rows = [
+                [one.name, one.direction, *(None if n is None else 1e-3 * n for n in (one.least_N, one.central_N, one.greatest_N))]
+                for one in self._results.sections
+            ]
+            self.tables.append({"title": "thrust", "columns": columns, "rows": rows, "left_out": 0})
+            return
         self._stones()
         self.body = {"sort": "stones", "unit": "", "label": "", "lines": self._lines("least", "most", "central")}
 
@@ -278,25 +293,20 @@ class Shown:
             if "support_outline" in self.arrays:
                 self.send("support_outline", "support_start")
         elif "solid_vertex" in self.arrays:
-            for name, source in SOLIDS.items():
-                self.out[name] = self.arrays[source]
-            self.out |= {"body_time": time[keep], "pose": self.arrays["pose"][keep]}
-            self.body = {"sort": "space", "unit": "s", "label": "time", "over_time": True}
+            self._blocks(time[keep], self.arrays["pose"][keep], unit="s", label="time", over_time=True)
         fine = self._over_time(len(time))
         self.out["time"] = time[fine]
         axis = _axis("time", "time", "s")
+        rows = []
         if "turn" in self.arrays:  # of blocks in space: by how much, whatever the axis
-            rows = []
             for i in self.arrays["tracked"][:6].tolist():
                 self.out[f"turn_{i}"] = np.linalg.norm(self.arrays["turn"][fine, i], axis=1)
                 rows.append(_series(f"turn_{i}", f"stone {i + 1}", factor=1e3))
-            self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
-        if "rotation" in self.arrays:
-            tracked = self.arrays["tracked"][:6]
-            rows = []
-            for i, label in zip(tracked.tolist(), self._results.peak_rotation_rad, strict=False):
+        elif "rotation" in self.arrays:
+            for i, label in zip(self.arrays["tracked"][:6].tolist(), self._results.peak_rotation_rad, strict=False):
                 self.out[f"rotation_{i}"] = self.arrays["rotation"][fine, i]
                 rows.append(_series(f"rotation_{i}", label, factor=1e3))
+        if rows:
             self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
         if "ground" in self.arrays:
             self.out["ground"] = self.arrays["ground"][fine]
@@ -322,9 +332,7 @@ class Shown:
             movement, pose = self.arrays[f"{which}_movement"], self.arrays[f"{which}_pose"]
             self._moving(1e3 * movement, pose, "mm", "movement", line=self.arrays[f"{which}_{line}"])
         elif "settled_pose" in self.arrays:
-            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
-            share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement")
+            self._mechanism("settled_pose", "share of the movement")
 
     def sla(self) -> None:
         """The load curve, and the wall as it cracks."""
@@ -460,10 +468,8 @@ class Shown:
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
         key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
-        kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
-        unit = unit_along(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
         about = key.replace("_", " ")
-        self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
+        self._draw("Capacity", _axis("value", about, self._results.unit), _axis("", "collapse acceleration", "g"), rows)
 
     def strengthen(self) -> None:
         """The value over the size of each alternative, and the building with the mechanism of the cheapest one."""
@@ -489,9 +495,7 @@ class Shown:
             [_series("capacity", "capacity", factor=1e-3)],
         )
         if "mechanism_pose" in self.arrays and "outline" in self.arrays:
-            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
-            share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["mechanism_pose"] - rest), "", "mechanism")
+            self._mechanism("mechanism_pose", "mechanism")
 
     def assessment(self) -> None:
         """The motion, and its primary impulses beside the pulses that bring the structure down."""

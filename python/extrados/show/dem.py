@@ -6,9 +6,19 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, DemDomain, DemParameters, DemRun, DemTilt, SolidDemRun, SolidDemTilt
+from extrados.results.dem import (
+    HINGED_FIRST,
+    HINGED_SECOND,
+    BlocksRun,
+    BlocksTilt,
+    DemDomain,
+    DemParameters,
+    DemRun,
+    DemTilt,
+    SolidDemRun,
+    SolidDemTilt,
+)
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, solid_dem, style
@@ -28,7 +38,7 @@ def _stored(run: Stored, name: str) -> DemRun | DemTilt:
 def _balance(run: Stored, name: str) -> float:
     """Error of the energy balance over the energy exchanged, of a run in a plane or in space."""
     found = run[name]
-    assert isinstance(found, DemRun | DemTilt | SolidDemRun | SolidDemTilt)
+    assert isinstance(found, BlocksRun | BlocksTilt)
     return found.energy_residual_ratio
 
 
@@ -266,18 +276,14 @@ def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 
 def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    states = {
+        "hinge, first end\n(of a ring: intrados)": style.HINGE,
+        "closed": "#f4f1ea",
+        "hinge, second end\n(of a ring: extrados)": style.THRUST,
+        "open": "#d9a400",
+    }
     time, hinge = run.array(name, "time"), run.array(name, "hinge")
-    colours = ListedColormap([style.HINGE, "#f4f1ea", style.THRUST, "#d9a400"])
-    with style.figure(8.0, min(7.0, 1.6 + 0.18 * hinge.shape[1])) as (fig, (ax,)):
-        norm = BoundaryNorm([-1.5, -0.5, 0.5, 1.5, 2.5], 4)
-        mesh = ax.pcolormesh(time, np.arange(hinge.shape[1]), hinge.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
-        bar = fig.colorbar(mesh, ax=ax, ticks=[-1, 0, 1, 2])
-        bar.ax.set_yticklabels(["hinge, first end\n(of a ring: intrados)", "closed", "hinge, second end\n(of a ring: extrados)", "open"])
-        style.numbers(ax.yaxis)
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("joint")
-        ax.grid(False)
-        saved = style.save(fig, folder, f"{name}-hinges")
+    saved = solid_dem.draw_states(time, hinge, states, HINGED_FIRST, "joint", folder, f"{name}-hinges")
     return saved, "State of the joints over time: hinges at either end, closed and open joints."
 
 

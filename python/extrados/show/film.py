@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from extrados.results.store import Stored
-from extrados.schema.programs import ffmpeg
+from extrados.schema.programs import ffmpeg, film_command
 from extrados.show import style
 from extrados.show.stones import Stones, window
 
@@ -95,31 +95,7 @@ def _mp4(path: Path, drawn: Iterator[np.ndarray], rate: int) -> None:
     """Write pictures through ffmpeg; OSError with its message on failure."""
     with tempfile.TemporaryFile() as told:
         process = subprocess.Popen(
-            [
-                ffmpeg() or "ffmpeg",
-                "-y",
-                "-loglevel",
-                "error",
-                "-f",
-                "rawvideo",
-                "-pix_fmt",
-                "rgb24",
-                "-s",
-                f"{PIXELS[0]}x{PIXELS[1]}",
-                "-framerate",
-                str(rate),
-                "-i",
-                "-",
-                "-c:v",
-                "libx264",
-                "-pix_fmt",
-                "yuv420p",
-                "-crf",
-                "20",
-                "-movflags",
-                "+faststart",
-                str(path),
-            ],
+            film_command(ffmpeg() or "ffmpeg", ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{PIXELS[0]}x{PIXELS[1]}"], rate, path),
             stdin=subprocess.PIPE,
             stdout=told,
             stderr=told,

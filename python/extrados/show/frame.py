@@ -3,7 +3,9 @@
 from pathlib import Path
 
 import numpy as np
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Polygon, Rectangle
 
 from extrados.results.frame import FrameFragility, FrameModes, FramePushover, Modes
 from extrados.results.store import Stored
@@ -15,6 +17,8 @@ COLOURS = ("#e8e2d4", "#cfe3d6", "#f2c28b", "#e08b5a", "#e0342b", "#5b1136")
 WORDS = ("elastic", "cracked", "flexural strength", "shear strength", "drift limit in flexure", "drift limit in shear")
 #: Drifts beyond it are those of a collapsed frame, without meaning [%]
 LARGEST_DRIFT = 5.0
+#: Storeys whose plans are drawn, at most
+MOST_PLANS = 3
 #: Colours of the patterns
 PATTERNS = {"uniform": style.THRUST, "static": style.HINGE, "modal": style.SAFE}
 
@@ -23,7 +27,7 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     """Base shear over control displacement of all runs; for each direction the walls of its weakest run, at the last state."""
     r = run.results_of(name, FramePushover)
     angles = sorted({row.direction_deg for row in r.runs})
-    made = draw_verification(run, name, folder)
+    made = [_plan(run, name, folder), *draw_verification(run, name, folder)]
     with style.figure(7.2, 3.4, 1, len(angles), sharey=True) as (fig, axes):
         for ax, angle in zip(axes, angles, strict=True):
             seen = set()
@@ -65,6 +69,80 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
         told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"
         made.append(_walls(run, name, folder, state[-1], f"{angle:g}", told))
     return made
+
+
+def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """The plan of each storey: piers between openings, flanges of effective width, floors, rods and ring beams."""
+    line, thickness, flange = (run.array(name, word) for word in ("wall_line", "wall_thickness", "flange"))
+    tops = np.cumsum(run.array(name, "storey_height"))
+    shown = min(len(tops), MOST_PLANS)
+    wide, high = np.ptp(line.reshape(-1, 2), axis=0) + 1.0
+    width = float(np.clip(4.2 * shown, 6.5, 11.0))
+    labels = run.results_of(name, FramePushover).walls
+    with style.figure(width, width / shown * high / wide + 1.2, 1, shown) as (fig, axes):
+        for ax, storey in zip(axes, range(1, shown + 1), strict=True):
+            for w in range(len(line)):
+                if thickness[w, storey - 1] > 0.0:
+                    _plan_wall(ax, run, name, w, storey, labels[w])
+            for _, w, level, a, b, _ in flange:
+                if int(level) == storey:
+                    box = _on_plan(line[int(w)], a, b, thickness[int(w), storey - 1])
+                    ax.add_patch(Polygon(box, facecolor="none", edgecolor=style.HINGE, hatch="////", linewidth=0.6))
+            for w, level in run.array(name, "ring_beam").astype(int):
+                if level == storey:
+                    ax.plot(line[w, [0, 2]], line[w, [1, 3]], color=style.SAFE, linewidth=1.4, linestyle="--")
+            for x0, y0, z0, x1, y1, z1 in run.array(name, "rod"):
+                if int(np.abs(tops - 0.5 * (z0 + z1)).argmin()) + 1 == storey:
+                    ax.plot([x0, x1], [y0, y1], color=style.THRUST, linewidth=1.2)
+            for level, kind, x, y, dx, dy in run.array(name, "floor"):
+                if int(level) != storey:
+                    continue
+                if dx or dy:
+                    way = 0.12 * min(wide, high) * np.array([dx, dy])
+                    ax.annotate(
+                        "", (x + way[0], y + way[1]), (x - way[0], y - way[1]), arrowprops={"arrowstyle": "<->", "color": style.EDGE}
+                    )
+                word = ("load", "membrane", "rigid", "joists")[int(kind)]
+                ax.annotate(word, (x, y), (6, 0), textcoords="offset points", va="center", fontsize=7, color=style.EDGE)
+            ax.set_aspect("equal")
+            ax.autoscale_view()
+            ax.grid(False)
+            ax.set_title(f"storey {storey}")
+            ax.set_xlabel("x [m]")
+        axes[0].set_ylabel("y [m]")
+        handles = [
+            Patch(facecolor=style.STONE, edgecolor=style.EDGE, label="pier"),
+            Patch(facecolor="white", edgecolor=style.EDGE, label="opening"),
+            Patch(facecolor="none", edgecolor=style.HINGE, hatch="////", label="flange of effective width"),
+            Line2D([], [], color=style.SAFE, linestyle="--", label="ring beam"),
+            Line2D([], [], color=style.THRUST, label="tie rod"),
+        ]
+        fig.legend(handles=handles, loc="outside lower center", ncols=3)
+        saved = style.save(fig, folder, f"{name}-plan")
+    return saved, "The frame on the plan: piers between openings, the flanges that walls lift at their corners, floors."
+
+
+def _on_plan(line: np.ndarray, a: float, b: float, thickness: float) -> np.ndarray:
+    """Corners of the part of a wall from a to b along it on the plan [m]."""
+    way = line[2:] - line[:2]
+    way = way / np.hypot(*way)
+    across = 0.5 * thickness * np.array([-way[1], way[0]])
+    start, end = line[:2] + a * way, line[:2] + b * way
+    return np.array([start + across, end + across, end - across, start - across])
+
+
+def _plan_wall(ax: Axes, run: Stored, name: str, w: int, storey: int, label: str) -> None:
+    line, thickness = run.array(name, "wall_line")[w], float(run.array(name, "wall_thickness")[w, storey - 1])
+    part, of, kind, at = (run.array(name, f"element_{word}") for word in ("part", "wall", "pier", "storey"))
+    length = float(run.array(name, "wall_length")[w])
+    ax.add_patch(Polygon(_on_plan(line, 0.0, length, thickness), facecolor="white", edgecolor=style.EDGE, linewidth=0.5))
+    for a, b, _, _ in part[(of == w) & (kind == 1) & (at == storey)]:
+        ax.add_patch(Polygon(_on_plan(line, a, b, thickness), facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.8))
+    middle, way = 0.5 * (line[:2] + line[2:]), (line[2:] - line[:2]) / length
+    x, y = middle + (0.5 * thickness + 0.18) * np.array([-way[1], way[0]])
+    angle = float(np.degrees(np.arctan2(way[1], way[0])))
+    turn = angle - 180.0 if angle > 90.0 else angle + 180.0 if angle <= -90.0 else angle
+    ax.text(x, y, label, ha="center", va="center", fontsize=7, rotation=turn)
 
 
 def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, told: str) -> tuple[str, str]:

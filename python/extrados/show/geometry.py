@@ -124,6 +124,6 @@ def draw_stones(
         ):
             scene.show(ax, scene.picture(solids, view, frame, colours), frame)
             scene.ground(ax, points, view)
-            scene.compass(ax, points, view)
+            scene.compass(ax, view)
             ax.set_title(title)
         style.write(fig, folder, name)

@@ -125,7 +125,7 @@ def ground(ax: Axes, points: np.ndarray, view: View) -> None:
     ax.fill(*corners.T, facecolor="#f2efe8", edgecolor="#d8d2c4", linewidth=0.6, zorder=1)
 
 
-def compass(ax: Axes, points: np.ndarray, view: View, push: float | None = None) -> None:
+def compass(ax: Axes, view: View, push: float | None = None) -> None:
     """The axes x, y, z, the scale, and the direction of the load [deg in plan], below the solids."""
     left, right, low, high = (*ax.get_xlim(), *ax.get_ylim())
     size = 0.09 * max(right - left, high - low)

@@ -391,12 +391,12 @@ def _paint(ax: Axes, run: Stored, name: str, place: np.ndarray, values: np.ndarr
     return scale
 
 
-def _magnified(node: np.ndarray, moved: np.ndarray, part: float = 0.05) -> float:
-    """A round factor that makes the largest displacement a small part of the building."""
+def _magnified(node: np.ndarray, moved: np.ndarray) -> float:
+    """A round factor that makes the largest displacement about a twentieth of the building."""
     most = float(np.linalg.norm(moved, axis=-1).max())
     if not most > 0.0:
         return 1.0
-    exact = part * float(np.ptp(node, axis=0).max()) / most
+    exact = 0.05 * float(np.ptp(node, axis=0).max()) / most
     power = 10.0 ** np.floor(np.log10(exact))
     return float(max(v for v in (1.0, 2.0, 5.0) if v * power <= exact or v == 1.0) * power)
 

@@ -63,7 +63,7 @@ class _Stage:
     def show(self, ax: Axes, k: int, push: float | None) -> None:
         scene.show(ax, self.image(k), self.frame)
         scene.ground(ax, self.still.vertices, VIEW)
-        scene.compass(ax, self.still.vertices, VIEW, push)
+        scene.compass(ax, VIEW, push)
 
 
 def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -124,19 +124,25 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    states = {"closed": "#f4f1ea", "open at\nsome corners": style.THRUST, "apart": style.HINGE}
     time, state = run.array(name, "time"), run.array(name, "state")
-    colours = ListedColormap(["#f4f1ea", style.THRUST, style.HINGE])
+    return draw_states(time, state, states, 0, "contact", folder, f"{name}-contacts"), "State of the contacts over time."
+
+
+def draw_states(time: np.ndarray, state: np.ndarray, states: dict[str, str], first: int, what: str, folder: Path, target: str) -> str:
+    """States (times, joints) over time as a map into a file; `states` are their words and colours, from the number `first` on."""
+    numbers = np.arange(first, first + len(states))
     with style.figure(8.0, min(7.0, 1.6 + 0.18 * state.shape[1])) as (fig, (ax,)):
-        norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
-        mesh = ax.pcolormesh(time, np.arange(state.shape[1]), state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
-        bar = fig.colorbar(mesh, ax=ax, ticks=[0, 1, 2])
-        bar.ax.set_yticklabels(["closed", "open at\nsome corners", "apart"])
+        norm = BoundaryNorm([first - 0.5, *(numbers + 0.5)], len(states))
+        colours, joints = ListedColormap(list(states.values())), np.arange(state.shape[1])
+        mesh = ax.pcolormesh(time, joints, state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
+        bar = fig.colorbar(mesh, ax=ax, ticks=numbers)
+        bar.ax.set_yticklabels(list(states))
         style.numbers(ax.yaxis)
         ax.set_xlabel("time [s]")
-        ax.set_ylabel("contact")
+        ax.set_ylabel(what)
         ax.grid(False)
-        saved = style.save(fig, folder, f"{name}-contacts")
-    return saved, "State of the contacts over time."
+        return style.save(fig, folder, target)
 
 
 def _film(run: Stored, name: str, folder: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from extrados.results.codes import Checked
-from extrados.results.rocking import COLLAPSE, RECOVERY
+from extrados.results.rocking import COLLAPSE, RECOVERY, SLID
 from extrados.results.statistics import Ensemble, HarmonicMap, OverDurations, OverLevels, Resonance, RockingSpectrum
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
@@ -407,13 +407,15 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
     with style.figure(7.0, 4.4) as (fig, (ax,)):
         shown = np.where(outcome == RECOVERY, np.minimum(ratio, 1.0), np.nan)
         drawn = ax.pcolormesh(f, a, shown.T, cmap="YlGnBu", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
-        fell = np.where(outcome == COLLAPSE, 1.0, np.nan)
         from matplotlib.colors import ListedColormap
 
-        ax.pcolormesh(f, a, fell.T, cmap=ListedColormap([style.MODES[3]]), shading="nearest", rasterized=True)
+        for code, color, text in ((COLLAPSE, style.MODES[3], "overturned"), (SLID, style.MODES[SLID], "blocks only slide")):
+            here = np.where(outcome == code, 1.0, np.nan)
+            if code == COLLAPSE or np.isfinite(here).any():
+                ax.pcolormesh(f, a, here.T, cmap=ListedColormap([color]), shading="nearest", rasterized=True)
+                ax.plot([], [], "s", color=color, label=text)
         fig.colorbar(drawn, ax=ax, label="greatest rotation / critical rotation")
         ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.8)
-        ax.plot([], [], "s", color=style.MODES[3], label="overturned")
         ax.legend(loc="upper left", frameon=True)
         ax.set_xlabel("frequency [Hz]")
         ax.set_ylabel("amplitude [g]")

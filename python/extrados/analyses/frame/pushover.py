@@ -10,6 +10,7 @@ import numpy as np
 
 from extrados.analyses.codes.verification import confidence_factor
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.frame.drawn import drawn_arrays
 from extrados.analyses.frame.modes import Mode, modes_of, rest_of, way_of
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.frame.verified import verify_frame
@@ -99,7 +100,7 @@ def run(context: Context, options: FramePushover) -> Result:
         with ThreadPoolExecutor(max(1, context.threads)) as pool:
             paths = list(pool.map(one, pushes))
     if any(path.stop == "no equilibrium under the weight" for path in paths):
-        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+        raise Refused("the frame has no equilibrium under its own weight", ("structure", "walls"))
     runs = [row_of(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
@@ -114,7 +115,8 @@ def run(context: Context, options: FramePushover) -> Result:
         governing=runs[least]["name"],
         failed=runs[least]["failed"],
         piers=frame.piers,
-        spandrels=len(frame.elements) - frame.piers,
+        spandrels=frame.spandrels,
+        **_ring_beams(frame, paths),
         walls=[wall.name for wall in frame.plan.walls],
         remarks=frame.remarks,
     )
@@ -124,7 +126,7 @@ def run(context: Context, options: FramePushover) -> Result:
     _arrays(result, frame, paths)
     interrupted = any(path.stop == "interrupted" for path in paths)
     if interrupted:
-        result.status, result.reason = "interrupted", "interrupted; the curves up to then are kept"
+        result.status, result.reason = "interrupted", "interrupted; the curves up to then are saved"
     result.answer = _answer(result.results)
     if verified is not None and verified.decides:
         walls = result.results.out_of_plane
@@ -133,14 +135,30 @@ def run(context: Context, options: FramePushover) -> Result:
     return result
 
 
+def push_once(frame: EquivalentFrame, options: FramePushover, direction: float) -> tuple[dict[str, Any], Path]:
+    """One pushover by the masses along a direction on the plan [deg], without eccentricity: its row of results and its path."""
+    level = options.control_level or max(one.level for one in frame.masses)
+    update = {"directions": [direction], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]}
+    with frame.core() as core:
+        rest = rest_of(frame, core)
+        (push,) = pushes_of(frame, options.model_copy(update=update), modes_of(frame, rest.tangent, MODES), level)
+        height = float(frame.plan.levels[level])
+        path = core.push(push.forces, push.control, options.target_drift * height, options.steps, options.drop)
+    if path.stop == "no equilibrium under the weight":
+        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+    return row_of(frame, push, path), path
+
+
 def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -> None:
     loose = [s.name for s, f in zip(frame.strips, force, strict=True) if s.kind == "pier" and f[0] <= 0.0]
     if loose:
-        context.warnings.append(f"{len(loose)} piers carry no vertical load at rest, first {loose[0]}: they resist no horizontal force.")
+        context.warnings.append(
+            f"{len(loose)} piers carry no vertical load at rest and resist no horizontal force; the first is {loose[0]}."
+        )
     for strip, element, f in zip(frame.strips, frame.elements, force, strict=True):
         limit = element.strength * element.depth * element.thickness
         if strip.kind == "pier" and f[0] > 0.6 * limit:
-            context.warnings.append(f"Pier '{strip.name}' carries {f[0] / limit:.0%} of its compressive strength at rest.")
+            context.warnings.append(f"The stress in pier '{strip.name}' at rest is {f[0] / limit:.0%} of its compressive strength.")
 
 
 def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
@@ -223,24 +241,17 @@ def _failed(frame: EquivalentFrame, path: Path) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: row["control_displacement_m"])
 
 
+def _ring_beams(frame: EquivalentFrame, paths: Sequence[Path]) -> dict[str, float]:
+    """Greatest moment of the elastic ring beams up to the peaks of all runs; nothing without any."""
+    own = [k for k, s in enumerate(frame.strips) if s.kind == "ring beam"]
+    if not own:
+        return {}
+    return {"ring_beam_moment_N_m": max(float(np.abs(p.force[: int(p.multiple.argmax()) + 1, own, 1:]).max()) for p in paths)}
+
+
 def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> None:
     """What figures need: walls and elements once; of each run the states of its elements."""
-    plan = frame.plan
-    result.arrays["element_part"] = Array(
-        np.array([s.part for s in frame.strips]), ("element", "box"), "m", "deformable parts: along the wall from, to, height from, to"
-    )
-    result.arrays["element_wall"] = Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0")
-    result.arrays["element_pier"] = Array(np.array([int(e.pier) for e in frame.elements]), ("element",), "", "1: pier, 0: spandrel")
-    result.arrays["wall_length"] = Array(np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls")
-    result.arrays["wall_height"] = Array(
-        np.array([plan.levels[plan.reach(w)[1]] for w in plan.walls]), ("wall",), "m", "heights of the walls"
-    )
-    holes = [
-        (w, *o.x, plan.levels[o.storey - 1] + o.z[0], plan.levels[o.storey - 1] + o.z[1])
-        for w, wall in enumerate(plan.walls)
-        for o in wall.openings
-    ]
-    result.arrays["opening"] = Array(np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "wall, along it from, to, height from, to")
+    result.arrays.update(drawn_arrays(frame))
     for k, path in enumerate(paths):
         result.arrays[f"state_{k + 1}"] = Array(
             path.state.astype(np.int8),
@@ -267,15 +278,19 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
 def _answer(r: out.FramePushover) -> str:
     worst = next(row for row in r.runs if row.name == r.governing)
     text = (
-        f"Least base shear of {len(r.runs)} pushovers {r.base_shear_N / 1e3:.3g} kN ({r.base_shear_N / r.weight_N:.3g} of the weight), "
-        f"{worst.name}, at a displacement of {1e3 * worst.displacement_at_peak_m:.3g} mm."
+        f"The least base shear of {len(r.runs)} pushovers is {r.base_shear_N / 1e3:.3g} kN "
+        f"({r.base_shear_N / r.weight_N:.3g} of the weight), by {worst.name}, at a displacement of "
+        f"{1e3 * worst.displacement_at_peak_m:.3g} mm."
     )
     if worst.ultimate_displacement_m is not None:
-        text += f" Ultimate displacement of this run {1e3 * worst.ultimate_displacement_m:.3g} mm."
+        text += f" The ultimate displacement of this run is {1e3 * worst.ultimate_displacement_m:.3g} mm."
     if worst.failed:
         first = worst.failed[0]
-        text += f" First beyond its drift limit: {first.element}, in {first.mode}, at {1e3 * first.control_displacement_m:.3g} mm."
+        text += (
+            f" The first element beyond its drift limit is {first.element}, in {first.mode}, at "
+            f"{1e3 * first.control_displacement_m:.3g} mm."
+        )
     lost = [row.name for row in r.runs if row.stop.startswith("no equilibrium")]
     if lost:
-        text += f" Without equilibrium at the least step ended: {', '.join(lost)}."
+        text += f" These runs ended without equilibrium at the least step: {', '.join(lost)}."
     return text

@@ -9,6 +9,7 @@ import { outMenu } from "./out.js";
 import { classPanel } from "./class.js";
 import { fallPanel } from "./fall.js";
 import { deckOf, fragmentOf } from "./share.js";
+import { planPanel } from "./plan.js";
 import { sheetPanel } from "./sheet.js";
 import { sidebar } from "./sidebar.js";
 import { choose, language, LANGUAGES, tr } from "./words.js";
@@ -17,7 +18,7 @@ const REST = 130; // ms without a change, after which the hand rests
 const BESIDE = 100; // ms between two looks of what stands beside the drawing while a hand moves
 const SAID = 8000; // ms for which words at the foot stay that complain of nothing
 const KEPT = "extrados-kept";
-const CHANGE = new Set(["hello", "open", "draw", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
+const CHANGE = new Set(["hello", "open", "draw", "draw-plan", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
 const TABS = [["structure", tr`Structure`], ["motion", tr`Motion`], ["results", tr`Results`]];
 
 export function mount(root, transport, film, { embedded = false } = {}) {
@@ -28,8 +29,9 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     ask, change, show, edit, say, open, rest, on, tellDetail: () => tell("detail"),
     /** True at rest: all requested results are shown, and the text is up to date. */
     get still() { return !moved && !unanswered.size; },
-    undo: () => (app.sheet.drawing() ? app.sheet.undo() : travel(-1)), redo: () => (app.sheet.drawing() ? app.sheet.redo() : travel(1)), drafted, draft: null, typed, setTab, remember, dialog,
+    undo: () => (board() ? board().undo() : travel(-1)), redo: () => (board() ? board().redo() : travel(1)), drafted, draft: null, typed, setTab, remember, dialog,
   };
+  const board = () => [app.sheet, app.plan].find((one) => one?.drawing()); // what is drawn on
   const listeners = {};
   const waiting = new Map(); // number of a message -> what to do with its replies
   const flying = new Map(); // lane -> {busy, next}
@@ -263,8 +265,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   function remember() {
     if (!travelling && past.at(-1) !== app.text) { past.push(app.text); future = []; if (past.length > 300) past.shift(); }
     travelling = false;
-    undoButton.disabled = past.length < 2 && !app.sheet.drawing();
-    redoButton.disabled = future.length === 0 && !app.sheet.drawing();
+    undoButton.disabled = past.length < 2 && !board();
+    redoButton.disabled = future.length === 0 && !board();
     title.textContent = app.deck?.title || app.name || "";
     title.title = app.name;
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
@@ -347,7 +349,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       if (kept?.text && app.root.dataset.role !== "pupil" && fits("last", kept.name)) groups.push([tr`Where you left off`, [item(kept.name, tr`the deck of your last page`, { text: kept.text, name: kept.name, ...kept.source })]]);
       if (w.folder) groups.push([tr`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
       const blank = h("button", { class: "choice", "data-blank": true, onclick: () => { shown.close(); app.sheet.begin(true); } }, h("b", {}, tr`Blank sheet`), h("span", {}, tr`draw arches, piers, walls and blocks`));
-      groups.push([tr`New`, [...(fits("new blank sheet draw") ? [blank] : []), ...w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(tr`new ${k}`, tr`a starter deck`, { starter: k }))]]);
+      const plan = h("button", { class: "choice", "data-blank-plan": true, onclick: () => { shown.close(); app.plan.begin(true); } }, h("b", {}, tr`Blank plan`), h("span", {}, tr`draw walls and openings of a building`));
+      groups.push([tr`New`, [...(fits("new blank sheet draw") ? [blank] : []), ...(fits("new blank plan draw building walls") ? [plan] : []), ...w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(tr`new ${k}`, tr`a starter deck`, { starter: k }))]]);
       groups.push([tr`Decks with known answers`, w.presets.filter((p) => fits(p.name, p.title, p.kind)).map((p) => item(p.title || p.name, `${p.name}${p.kind ? ` · ${p.kind}` : ""}`, { preset: p.name }))]);
       box.replaceChildren(...groups.filter(([, items]) => items.length).flatMap(([name, items]) => [h("h3", {}, name), h("div", { class: "choice-grid" }, items)]));
     }
@@ -398,7 +401,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "s") { e.preventDefault(); app.save?.(); }
     if (e.key === "?" && !writing) help();
     const by = { "+": 1.3, "-": 1 / 1.3, 0: null }[e.key];
-    if (by !== undefined && !writing && !e.ctrlKey && !e.metaKey && app.tab !== "results") (app.sheet.drawing() ? app.sheet : drawing).zoom(by);
+    if (by !== undefined && !writing && !e.ctrlKey && !e.metaKey && app.tab !== "results") (board() ?? drawing).zoom(by);
   });
   function help() {
     dialog(tr`How to use this page`, h("ul", { class: "help" },
@@ -482,6 +485,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   sidebar(app, side);
   structurePanel(app, lower);
   app.sheet = Object.assign(sheetPanel(app, stageFrame, stageBox), { button: drawButton });
+  app.plan = planPanel(app, stageFrame, stageBox);
   fallPanel(app, stageFrame);
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);

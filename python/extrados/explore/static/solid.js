@@ -44,6 +44,7 @@ export function solidPanel(app, stageBox) {
     for (const [key, value] of Object.entries(seen.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
     const parts = [h("p", { class: "verdict" }, OF[seen.of]), h("table", { class: "numbers" }, h("tbody", {}, rows)), h("p", { class: "remark" }, tr`No line of thrust is drawn: ${why}.`)];
     for (const text of seen.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
+    if (seen.of === "walls") parts.push(h("div", { class: "row" }, h("button", { class: "first", "data-plan": true, onclick: () => app.plan.begin() }, tr`✎ Draw the plan`)));
     if (seen.of === "solids") {
       parts.push(h("div", { class: "row" }, h("button", { class: "first", onclick: () => { app.say(tr`calculating the capacity …`); app.ask({ do: "push" }); } }, tr`Calculate capacity`), it.push ? h("button", { onclick: () => mechanism() }, tr`▶ Mechanism`) : null));
       if (it.push) parts.push(h("p", { class: "verdict good", "data-number": "push" }, it.push.answer), ...it.push.warnings.map((text) => h("p", { class: "remark" }, text)), rose());

@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.results.limit import Imperfections, Sweep
 from extrados.results.store import Stored
-from extrados.show import style
+from extrados.show import solids, style
 from extrados.show.limit import section
 
 MOST_NAMED = 8  # mechanisms in a legend
@@ -80,6 +80,8 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 "under self-weight. Points on the axis: values without a result, or values at which the structure does not collapse at any tilt.",
             )
         ]
+    if "example" not in run.arrays[name]:  # solids
+        return found + solids.draw_examples(run, name, folder, {m.number: m.hinges for m in r.mechanisms})
     if len(run.array(name, "example")):
         examples, moved = (list(section.paths(run, name, what).values()) for what in ("example", "example_moved"))
         of = run.array(name, "example_mechanism")

@@ -6,14 +6,18 @@ from typing import Any
 import numpy as np
 
 from extrados.results.limit import Thrust
+from extrados.results.solids import SolidThrust
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.limit import section
+from extrados.show.solids import draw_thrust
 from extrados.show.stones import outlines
 
 
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """The three lines and their force polygons; friction needed along the joints."""
+    """The three lines and their force polygons; friction needed along the joints. Of solids the forces between blocks."""
+    if isinstance(run[name], SolidThrust):
+        return draw_thrust(run, name, folder)
     r = run.results_of(name, Thrust)
     blocks = outlines(run, name)
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}

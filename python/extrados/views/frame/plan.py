@@ -14,26 +14,30 @@ from extrados.core.frame import UNLIMITED, Frame, Link, MacroElement
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.properties import Material
-from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, StoreyFloor, WallOpening, meeting, nearly_meeting
+from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, WallOpening, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
+from extrados.views.frame.flanges import Flange, effective_part
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.rules import Side, deformable
+from extrados.views.frame.spandrels import BLOCK, flexural_strength, shear_strength, strut_of, strut_strength
 from extrados.views.mesh.triangles import fill_ring
 from extrados.views.shell.plan import RIGID_THICKNESS, RIGID_YOUNG
 
-#: Share of the compressive strength in the stress block of codes
-BLOCK = 0.85
 #: Shear factor of rectangles
 SHEAR_FACTOR = 1.2
 #: Piers above each other belong to one node where they overlap by more than this part of the narrower
 OVERLAP = 0.25
+#: Share of the compressive strength that masonry has along the wall
+HORIZONTAL = 0.5
+#: Distance of a rod from the middle plane of a wall, and from its spandrels, within which it is their tie [m]
+BESIDE = 0.5
 #: Stiffness of props that do not move [N/m]
 HELD = 1e12
 
 
 @dataclass(frozen=True)
 class Strip:
-    """A pier or spandrel: its wall, storey (a spandrel's is that below its level), what it is called, its whole masonry and its
+    """A pier, spandrel or ring beam: its wall, storey (of the others that below their level), its name, its whole masonry and its
     deformable part as s from, to and z from, to [m]."""
 
     kind: str
@@ -88,11 +92,17 @@ class EquivalentFrame:
     inertia: np.ndarray
     total_weight: float
     remarks: list[str] = field(default_factory=list)
+    flanges: list[Flange] = field(default_factory=list)
 
     @property
     def piers(self) -> int:
         """How many of the elements are piers."""
         return len(self.piers_at)
+
+    @property
+    def spandrels(self) -> int:
+        """How many are spandrels."""
+        return sum(s.kind == "spandrel" for s in self.strips)
 
     @property
     def piers_at(self) -> list[int]:
@@ -140,6 +150,8 @@ class _Maker:
         self.nodes: list[Node] = []
         self.at: dict[tuple[int, int], list[int]] = {}  # wall and level: its nodes from start to end
         self.strips: list[Strip] = []
+        self.placed: list[tuple[int, int, float, float, float]] = []  # vertical forces: wall, level, s from, to, force
+        self.flanges: list[Flange] = []
         self.junctions = {
             (a, b): at
             for a, b in itertools.combinations(range(len(plan.walls)), 2)
@@ -151,22 +163,20 @@ class _Maker:
         for a, b in itertools.combinations(range(len(plan.walls)), 2):
             if (a, b) not in self.junctions and (gap := nearly_meeting(plan.walls[a], plan.walls[b])) is not None:
                 self.remarks.append(
-                    f"Walls '{plan.walls[a].name}' and '{plan.walls[b].name}' end {gap:.3g} m apart and do not meet: nothing joins them."
+                    f"Walls '{plan.walls[a].name}' and '{plan.walls[b].name}' end {gap:.3g} m apart, so they do not meet and are not "
+                    "connected."
                 )
         for k, corner in enumerate(plan.corners):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
         if plan.beds:
-            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own strength.")
+            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
         if plan.ring_beams:
-            self.remarks.append(
-                "Ring beams of [[structure.ring_beams]] are not modelled: spandrels have the strength of their masonry (conservative). Use "
-                "pushover."
-            )
+            self.remarks.append("Ring beams of [[structure.ring_beams]] remain elastic: check their reinforcement for the greatest moment.")
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
-                    raise BadGeometry(f"wall '{wall.name}' does not reach the ground: a frame has no pier below it")
+                    raise BadGeometry(f"wall '{wall.name}' does not reach the ground, so it has no pier below")
                 self._divide(w, wall)
         n = self._number()
         self.linear, self.weight = np.zeros((n, n)), np.zeros(n)
@@ -180,7 +190,7 @@ class _Maker:
             with blaming("floors", k):
                 around = frozenset(w for w, _, _ in plan.around(floor))
                 if (first := rings.setdefault((floor.storey, around), k)) != k:
-                    raise BadGeometry(f"floor {first + 1} lies between the same walls on storey {floor.storey}")
+                    raise BadGeometry(f"floor {first + 1} is given for the same walls on storey {floor.storey}")
                 self._floor(floor)
         for load in plan.prestress:
             w = self._named(load.wall)
@@ -192,19 +202,23 @@ class _Maker:
             self.linear += HELD * np.outer(row, row)
         if plan.foundation_stiffness is not None:
             self._ground(plan.foundation_stiffness)
+        rods = self._rods()
         elements = [self._element(strip) for strip in self.strips]
+        for k in sorted(self.idle):
+            self.remarks.append(f"Rod {k + 1} passes no spandrel and joins no walls that move apart: it has no effect on the frame.")
         return EquivalentFrame(
             plan,
             self.nodes,
             self.strips,
             elements,
-            [*self._corners(), *self._rods()],
+            [*self._corners(), *rods],
             self.linear,
             self.weight,
             self.masses,
             self.inertia,
             self.total,
             self.remarks,
+            self.flanges,
             self.along,
         )
 
@@ -218,20 +232,20 @@ class _Maker:
         pieces = {storey: _between(wall, storey, plan.storeys[storey - 1]) for storey in range(1, last + 1)}
         for storey, found in pieces.items():
             if not found:
-                raise BadGeometry(f"wall '{wall.name}', storey {storey}: its openings leave no pier")
+                raise BadGeometry(f"wall '{wall.name}', storey {storey}: the openings leave no pier")
         for level in range(last + 1):
             below, above = pieces.get(level, []), pieces.get(level + 1, [])
             groups = _groups([p[:2] for p in below], [p[:2] for p in above])
             if level and any(len(g) > 2 for g in groups):
                 self.remarks.append(
-                    f"Wall '{wall.name}', level {level}: piers above and below do not match; those that overlap share one rigid node."
+                    f"Wall '{wall.name}', level {level}: piers above and below do not match. Piers that overlap share one rigid node."
                 )
             for group in groups:
                 if level and not any(side == 0 for side, _ in group):
                     ends = [above[k][:2] for _, k in group]
                     self.remarks.append(
-                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m stands above an opening; "
-                        "only spandrels carry it."
+                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m is above an opening, so "
+                        "only spandrels support it."
                     )
                 ends = [(below, above)[side][k][:2] for side, k in group]
                 self.at.setdefault((w, level), []).append(len(self.nodes))
@@ -258,6 +272,7 @@ class _Maker:
             own = self.at[w, level]
             for k, (i, j) in enumerate(itertools.pairwise(own)):
                 self._spandrel(w, wall, level, k, i, j)
+                self._ring_beam(w, wall, level, k, i, j)
 
     def _node(self, w: int, level: int, s: float) -> int:
         """The node at or nearest to a place along a wall."""
@@ -270,8 +285,9 @@ class _Maker:
         above = [o for o in wall.openings if o.storey == level + 1 and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
         z = float(plan.levels[level])
         low = max((float(plan.levels[level - 1]) + o.z[1] for o in below), default=z)
-        high = min((z + o.z[0] for o in above), default=z)
-        if high - low < MEETS or not (below or above):
+        ring = self._ring_depth(wall, level)
+        high = min((z + o.z[0] for o in above), default=z - ring)
+        if high - low - (ring if above else 0.0) < MEETS or not (below or above):
             return
         held = [o for o in below if o.lintel is not None]
         if self.options.spandrels == "none" or (self.options.spandrels == "lintels" and below and not held):
@@ -291,6 +307,18 @@ class _Maker:
             )
         )
 
+    def _ring_depth(self, wall: PlanWall, level: int) -> float:
+        """Height of the ring beams of a wall on a level; 0 without any [m]."""
+        return sum(beam.depth for beam in self.plan.ring_beams if beam.storey == level and wall in self.plan.of_ring_beam(beam))
+
+    def _ring_beam(self, w: int, wall: PlanWall, level: int, k: int, i: int, j: int) -> None:
+        depth = self._ring_depth(wall, level)
+        start, end, z = self.nodes[i].end, self.nodes[j].start, float(self.plan.levels[level])
+        if depth > 0.0 and end - start > MEETS:
+            box = (start, end, z - depth, z)
+            thickness = _thickness(self.plan, wall, level)
+            self.strips.append(Strip("ring beam", f"{wall.name}, level {level}, ring beam {k + 1}", w, level, box, box, thickness, (i, j)))
+
     # Freedoms
 
     def _number(self) -> int:
@@ -306,8 +334,10 @@ class _Maker:
         if any(sign < 0.0 for sign in self.turned.values()):
             w = next(w for w, sign in self.turned.items() if sign < 0.0)
             raise BadGeometry(
-                f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line and run against each other; give them one "
-                "sense",
+                (
+                    f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line with opposite directions: give "
+                    "both the same direction"
+                ),
                 ("structure", "walls", w),
             )
         count = 0
@@ -356,6 +386,7 @@ class _Maker:
     def _load(self, w: int, level: int, start: float, end: float, force: float, massive: bool = True) -> None:
         """A vertical force spread along a wall on a level: on its nodes, up to the middles of the gaps between them."""
         self.total += force if massive else 0.0
+        self.placed.append((w, level, start, end, force))
         own = self.at[w, level]
         bounds = [-np.inf]
         bounds += [0.5 * (self.nodes[i].end + self.nodes[j].start) for i, j in itertools.pairwise(own)]
@@ -455,7 +486,7 @@ class _Maker:
         if name is None:
             return self.building.material
         if name not in self.building.materials:
-            raise BadGeometry(f"wall '{wall.name}': there is no [materials.{name}]")
+            raise BadGeometry(f"wall '{wall.name}': the deck has no [materials.{name}]")
         return self.building.materials[name]
 
     def _element(self, strip: Strip) -> MacroElement:
@@ -495,11 +526,42 @@ class _Maker:
                 sections=o.sections,
                 second_order=o.second_order,
             )
-        z = 0.5 * (low + high) - float(levels[i.level])
+        return self._beam(strip, freedoms, young, shear, cohesion, tension, pressed)
+
+    def _beam(
+        self,
+        strip: Strip,
+        freedoms: tuple[int, int, int, int, int, int],
+        young: float,
+        shear: float,
+        cohesion: float,
+        tension: float,
+        pressed: float,
+    ) -> MacroElement:
+        """A spandrel or ring beam; ring beams stay elastic, uncracked."""
+        o, wall = self.options, self.plan.walls[strip.wall]
+        i, j = (self.nodes[k] for k in strip.nodes)
+        start, end, low, high = strip.part
+        z = 0.5 * (low + high) - float(self.plan.levels[i.level])
         depth, length = high - low, end - start
-        moment, by_shear = self._spandrel_strength(strip, depth, length, cohesion, tension, pressed)
-        held = any(x.lintel is not None for x in wall.openings if x.storey == strip.storey and x.x[0] < end and x.x[1] > start)
-        residual = o.spandrel_residual if o.spandrel_residual is not None else 0.6 if held else 0.1
+        drifts, residual, moment, by_shear = (UNLIMITED, UNLIMITED), 1.0, UNLIMITED, False
+        if strip.kind == "ring beam":
+            beam = next(b for b in self.plan.ring_beams if b.storey == strip.storey and wall in self.plan.of_ring_beam(b))
+            if beam.material not in self.building.materials:
+                raise BadGeometry(
+                    f"ring beam of storey {beam.storey}: there is no [materials.{beam.material}]", ("structure", "ring_beams")
+                )
+            material = self.building.materials[beam.material]
+            young = material.young
+            shear = young / (2.0 * (1.0 + material.poisson))
+        else:
+            if high > float(self.plan.levels[strip.storey]) + MEETS:  # the ring beam lies within
+                depth -= self._ring_depth(wall, strip.storey)
+            tie = self._tie(strip)
+            moment, by_shear = self._spandrel_strength(strip, depth, length, cohesion, tension, pressed, tie)
+            held = any(x.lintel is not None for x in wall.openings if x.storey == strip.storey and x.x[0] < end and x.x[1] > start)
+            residual = o.spandrel_residual if o.spandrel_residual is not None else 0.6 if held else 0.1
+            drifts = (o.spandrel_drift_tied if tie > 0.0 else o.spandrel_drift_flexure, o.spandrel_drift_shear)
         return MacroElement(
             freedoms,
             length,
@@ -513,32 +575,62 @@ class _Maker:
             upright=False,
             moment=moment,
             by_shear=by_shear,
-            drifts=(o.spandrel_drift_flexure, o.spandrel_drift_shear),
+            drifts=drifts,
             kept=residual,
             second_order=False,
         )
 
-    def _spandrel_strength(
-        self, strip: Strip, depth: float, length: float, cohesion: float, tension: float, pressed: float
-    ) -> tuple[float, bool]:
-        """Moment of its hinges [N m] without a normal force, and whether shear limits it.
+    def _tie(self, strip: Strip) -> float:
+        """Tension [N] that rods along the wall and ring beams can balance beside a spandrel; 0 without any."""
+        plan, wall = self.plan, self.plan.walls[strip.wall]
+        start, end, low, high = strip.part
+        pull = 0.0
+        for beam in plan.ring_beams:
+            if beam.storey == strip.storey and wall in plan.of_ring_beam(beam):
+                strength = self.building.materials[beam.material].tensile_strength if beam.material in self.building.materials else None
+                pull += UNLIMITED if strength is None else strength * beam.depth * strip.thickness
+        for k, strength in self.along_walls.get(strip.wall, []):
+            rod = plan.rods[k]
+            places = sorted(float((np.asarray(p[:2]) - wall.start) @ wall.direction) for p in (rod.start, rod.end))
+            height = 0.5 * (rod.start[2] + rod.end[2])
+            if places[0] <= start + MEETS and places[1] >= end - MEETS and low - BESIDE <= height <= high + BESIDE:
+                pull += strength
+                self.idle.discard(k)
+        return pull
 
-        Flexure: rectangular stress blocks, in tension f_ft = min(f_b t/2, f_v0 + mu sigma_y/phi) with sigma_y half the pressure of
-        the neighbours. Shear: h t f_v0, and of diagonal cracking h t f_t/b. M = min(M_u, V l/2).
+    def _pressure(self, strip: Strip) -> float:
+        """Half the mean pressure [Pa] under the loads above a spandrel on the piers beside it."""
+        force = area = 0.0
+        for node in (self.nodes[k] for k in strip.nodes):
+            area += (node.end - node.start) * strip.thickness
+            force += sum(self._on(strip.wall, level, node.start, node.end) for level in range(node.level, len(self.plan.levels)))
+        return 0.5 * force / area
+
+    def _on(self, w: int, level: int, start: float, end: float) -> float:
+        """Vertical forces [N] on a part of a wall on a level."""
+        return sum(
+            force * max(0.0, min(b, end) - max(a, start)) / (b - a) for wall, at, a, b, force in self.placed if (wall, at) == (w, level)
+        )
+
+    def _spandrel_strength(
+        self, strip: Strip, depth: float, length: float, cohesion: float, tension: float, pressed: float, tie: float
+    ) -> tuple[float, bool]:
+        """Moment of its hinges [N m], and whether shear limits it.
+
+        Flexure: the greater of that with tension across the head joints, f_ft = min(f_t, f_v0 + mu sigma_y/phi), sigma_y half the
+        pressure beside, and that of a strut against a tie. M = min(M_u, V l/2).
         """
-        sound = [x for x in (cohesion, tension) if x > 0.0]
-        if not sound:
+        o = self.options
+        sideways = o.horizontal_strength / o.confidence_factor if o.horizontal_strength else HORIZONTAL * pressed / BLOCK
+        strut = strut_of(depth, strip.thickness, tie, UNLIMITED if pressed >= UNLIMITED and not o.horizontal_strength else sideways)
+        shear = shear_strength(depth, strip.thickness, length, cohesion, tension, strut)
+        if not shear > 0.0:
             return 1e-3, False
-        pull = min(sound)
-        area = depth * strip.thickness
-        flexure = area * depth / 2.0 * pull * (1.0 if pressed >= UNLIMITED else pressed / (pull + pressed))
-        limits = []
-        if cohesion > 0.0:
-            limits.append(area * cohesion)
-        if tension > 0.0:
-            limits.append(area * tension / float(np.clip(length / depth, 1.0, 1.5)))
-        shear = min(limits) * length / 2.0
-        return (shear, True) if shear < flexure else (flexure, False)
+        pulls = [cohesion + o.friction * self._pressure(strip) / o.interlocking] if cohesion > 0.0 else []
+        flexure = flexural_strength(depth, strip.thickness, min([*pulls, tension] if tension > 0.0 else pulls), pressed)
+        if strut > 0.0:
+            flexure = max(flexure, strut_strength(depth, strip.thickness, strut, sideways))
+        return (0.5 * shear * length, True) if 0.5 * shear * length < flexure else (flexure, False)
 
     # Corners and rods
 
@@ -548,7 +640,7 @@ class _Maker:
         for (a, b), (s, t) in self.junctions.items():
             one, two = plan.walls[a], plan.walls[b]
             bond = plan.bond(one.name, two.name)
-            if bond is not None and bond.bond in ("open", "joint"):
+            if o.flanges == "none" or (bond is not None and bond.bond in ("open", "joint")):
                 continue
             for level in range(1, min(plan.reach(one)[1], plan.reach(two)[1]) + 1):
                 p, q = self.nodes[self._node(a, level, s)], self.nodes[self._node(b, level, t)]
@@ -562,43 +654,74 @@ class _Maker:
                 strength = f / o.confidence_factor * thin * tall if f else UNLIMITED
                 if bond is not None:
                     strength *= bond.strength
-                links.append(Link((*p.freedoms, *q.freedoms), (1.0, s - p.s, -1.0, q.s - t), shear * tall, (strength, strength)))
+                strengths, returns = (strength, strength), False
+                if o.flanges == "effective" and abs(float(one.direction @ two.direction)) < PARALLEL:
+                    lifted = self._flange(b, a, level), self._flange(a, b, level)  # of one by two, of two by one
+                    strengths, returns = (min(strength, lifted[0]), min(strength, lifted[1])), min(lifted) < strength
+                parts = (1.0, s - p.s, -1.0, q.s - t)
+                links.append(Link((*p.freedoms, *q.freedoms), parts, shear * tall, strengths, returns=returns))
         return links
+
+    def _flange(self, web: int, wall: int, level: int) -> float:
+        """Weight [N] on the effective width of a wall on a level as the flange of another."""
+        plan = self.plan
+        thickness, half = (_thickness(plan, plan.walls[w], level) for w in (wall, web))
+        start, end = effective_part(plan, self.junctions, web, wall, level, thickness, 0.5 * half)
+        weight = self._on(wall, level, start, end)
+        self.flanges.append(Flange(web, wall, level, start, end, weight))
+        return weight
 
     def _rods(self) -> list[Link]:
         """Tie rods between two places on walls: they yield where their material has a strength, and carry no pressure."""
         links = []
+        self.along_walls: dict[int, list[tuple[int, float]]] = {}  # wall: rods along it and their strengths
+        self.idle: set[int] = set()  # rods that join nothing
         for k, rod in enumerate(self.plan.rods):
             ends = [np.asarray(rod.start), np.asarray(rod.end)]
             way = (ends[1] - ends[0])[:2]
             length = float(np.linalg.norm(ends[1] - ends[0]))
             if rod.material not in self.building.materials:
-                raise BadGeometry(f"rod {k + 1}: there is no [materials.{rod.material}]", ("structure", "rods", k, "material"))
+                raise BadGeometry(f"rod {k + 1}: the deck has no [materials.{rod.material}]", ("structure", "rods", k, "material"))
             steel = self.building.materials[rod.material]
+            pull = UNLIMITED if steel.tensile_strength is None else rod.area * steel.tensile_strength
+            for w in self._beside(rod, way / length):
+                self.along_walls.setdefault(w, []).append((k, pull))
             row = np.zeros(len(self.weight))
             for sign, end in ((-1.0, ends[0]), (1.0, ends[1])):
                 level = int(np.abs(self.plan.levels - end[2]).argmin())
                 found = [
                     (float(np.linalg.norm(np.asarray(wall.start) + s * wall.direction - end[:2])), w, s)
                     for w, wall in enumerate(self.plan.walls)
-                    if (w, level) in self.along
+                    if level <= self.plan.reach(wall)[1]
                     and (s := float(np.clip((end[:2] - wall.start) @ wall.direction, 0.0, wall.length))) is not None
                 ]
                 if not found or min(found)[0] > 0.5:
                     raise BadGeometry(
-                        f"rod {k + 1}: its end at {', '.join(f'{v:g}' for v in end)} m is not on a wall", ("structure", "rods", k)
+                        f"rod {k + 1}: the end at {', '.join(f'{v:g}' for v in end)} m is not on a wall", ("structure", "rods", k)
                     )
                 _, w, s = min(found)
-                row += sign * way / length @ self._vector(w, s, level)
+                if level:
+                    row += sign * way / length @ self._vector(w, s, level)
             own = np.flatnonzero(np.abs(row) > 1e-12)
             if not len(own):
-                self.remarks.append(f"Rod {k + 1} runs along a wall whose nodes move together: it has no effect on the frame.")
+                self.idle.add(k)
                 continue
             if len(own) > 8:
                 raise BadGeometry(f"rod {k + 1}: expected ends at corners of walls", ("structure", "rods", k))
-            pull = UNLIMITED if steel.tensile_strength is None else rod.area * steel.tensile_strength
             links.append(Link(tuple(own.tolist()), tuple(row[own].tolist()), steel.young * rod.area / length, (0.0, pull), rod.prestress))
         return links
+
+    def _beside(self, rod: Rod, way: np.ndarray) -> list[int]:
+        """Walls that a rod in a direction on the plan runs along."""
+        return [
+            w
+            for w, wall in enumerate(self.plan.walls)
+            if abs(float(way @ wall.direction)) > PARALLEL
+            and all(
+                abs(float(np.array([-wall.direction[1], wall.direction[0]]) @ (np.asarray(p[:2]) - wall.start))) < BESIDE
+                for p in (rod.start, rod.end)
+            )
+        ]
 
 
 def _thickness(plan: Plan, wall: PlanWall, storey: int) -> float:

@@ -1,0 +1,68 @@
+"""Arrays of a frame that its figures need: the plan with piers, flanges, floors, rods and ring beams; the elements on the walls."""
+
+import numpy as np
+
+from extrados.results.model import Array
+from extrados.views.frame.plan import EquivalentFrame
+
+#: Number of a kind of element
+KINDS = {"spandrel": 0, "pier": 1, "ring beam": 2}
+FLOORS = {"none": 0, "flexible": 1, "rigid": 2, "joists": 3}
+
+
+def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
+    """Arrays by their names."""
+    plan = frame.plan
+    holes = [
+        (w, *o.x, plan.levels[o.storey - 1] + o.z[0], plan.levels[o.storey - 1] + o.z[1])
+        for w, wall in enumerate(plan.walls)
+        for o in wall.openings
+    ]
+    thick = [[_thickness(frame, w, storey) for storey in range(1, len(plan.storeys) + 1)] for w in range(len(plan.walls))]
+    flanges = [(f.web, f.wall, f.level, f.start, f.end, f.weight) for f in frame.flanges]
+    rods = [(*rod.start, *rod.end) for rod in plan.rods]
+    beams = [(w, beam.storey) for beam in plan.ring_beams for w, wall in enumerate(plan.walls) if wall in plan.of_ring_beam(beam)]
+    return {
+        "element_part": Array(
+            np.array([s.part for s in frame.strips]), ("element", "box"), "m", "deformable parts: along the wall from, to, height from, to"
+        ),
+        "element_wall": Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0"),
+        "element_storey": Array(np.array([s.storey for s in frame.strips]), ("element",), "", "storey of a pier, else that below it"),
+        "element_pier": Array(
+            np.array([KINDS[s.kind] for s in frame.strips]), ("element",), "", ", ".join(f"{n}: {word}" for word, n in KINDS.items())
+        ),
+        "wall_length": Array(np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls"),
+        "wall_height": Array(np.array([plan.levels[plan.reach(w)[1]] for w in plan.walls]), ("wall",), "m", "heights of the walls"),
+        "wall_line": Array(np.array([[*w.start, *w.end] for w in plan.walls]), ("wall", "line"), "m", "x, y of start and end on the plan"),
+        "wall_thickness": Array(np.array(thick), ("wall", "storey"), "m", "thickness in each storey; 0: the wall is not there"),
+        "storey_height": Array(np.array(plan.storeys), ("storey",), "m", "heights of the storeys"),
+        "opening": Array(np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "wall, along it from, to, height from, to"),
+        "flange": Array(
+            np.array(flanges).reshape(-1, 6),
+            ("flange", "part"),
+            "m",
+            "web, wall of the flange, level, along it from, to [m], weight on it [N]",
+        ),
+        "rod": Array(np.array(rods).reshape(-1, 6), ("rod", "line"), "m", "x, y, z of both ends of tie rods"),
+        "ring_beam": Array(np.array(beams).reshape(-1, 2), ("ring_beam", "part"), "", "wall, level"),
+        "floor": Array(np.array([_floor(frame, k) for k in range(len(plan.floors))]).reshape(-1, 6), ("floor", "part"), "m", FLOOR),
+    }
+
+
+FLOOR = "storey, kind (" + ", ".join(f"{n}: {word}" for word, n in FLOORS.items()) + "), x, y of its middle, direction of its joists"
+
+
+def _thickness(frame: EquivalentFrame, w: int, storey: int) -> float:
+    wall = frame.plan.walls[w]
+    first, last = frame.plan.reach(wall)
+    if not first <= storey <= last:
+        return 0.0
+    return wall.thickness or wall.thicknesses[storey - first]
+
+
+def _floor(frame: EquivalentFrame, k: int) -> tuple[float, ...]:
+    plan, floor = frame.plan, frame.plan.floors[k]
+    corners = np.array([np.asarray(plan.walls[w].start) + s * plan.walls[w].direction for w, _, s in plan.around(floor)])
+    x, y = corners.mean(axis=0).tolist()
+    along = plan.wall(floor.bears_on[0]).direction if floor.kind == "joists" else np.zeros(2)
+    return (float(floor.storey), float(FLOORS[floor.kind]), x, y, float(-along[1]), float(along[0]))
