@@ -9,8 +9,8 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     codes     `code-checks` of a panel, by each code; the least applicable strength of each
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
     units     `sla` of its units and joints, likewise; walls of more than 200 units have units twice as long and as high. The
-              failure mode is that of the state at the peak: the share of the inelastic displacement of the top that comes from
-              the rotation of beds that open and crush (F), and from their slip and cracks in units and heads (S)
+              failure mode is that of the state at the peak, by the share of the inelastic displacement of the top that comes from the
+              rotation of beds that open and crush (F), and from their slip and cracks in units and heads (S)
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
               part and Turnsek-Cacovic; without drift limits, to 2 % drift
 

@@ -270,7 +270,7 @@ def test_what_stands_in_space_is_turned_and_pushed(page: Any) -> None:
     drag(page, ".stage-box .space", 60, -20)
     until(page, "seen => document.querySelector('.stage-box .space').getAttribute('aria-label') !== seen", arg=seen)
     until(page, "look => document.querySelector('.stage-box .space-canvas').toDataURL() !== look", arg=look)
-    page.click("text=Calculate the capacity")
+    page.click("text=Calculate capacity")
     page.wait_for_selector("[data-number=push]")
     run = extrados.run(CASES / "solid" / "column.toml")["tilt"]
     assert f"{run.collapse_acceleration_g:.4f} g" in page.locator("[data-number=push]").inner_text()

@@ -47,7 +47,7 @@ def rods(**place):
 
 
 BAD = {
-    "a wall of one point": (wall(1, end=[6, 0]), "same point.*walls 'right'"),
+    "a wall of one point": (wall(1, end=[6, 0]), "same position.*walls 'right'"),
     "a wall without a thickness": (wall(2, thickness=None), "thickness.*walls 'back'"),
     "a negative thickness": (wall(3, thickness=-0.4), "walls.thickness.*walls 'left'"),
     "two names alike": (wall(1, name="front"), "walls.name.*'front' occurs twice"),
@@ -65,7 +65,7 @@ BAD = {
     "two floors between the same walls": (also("floors", {"storey": 1, "kind": "rigid"}), "storey 1|same walls"),
     "a corner of walls that do not meet": (also("corners", {"walls": ["front", "back"], "bond": "open"}), "'front' and 'back'"),
     "a wall of an unknown material": (wall(0, material="granite"), "granite"),
-    "a rod that ends on no wall": (rods(end=[3, 2.5, 3]), r"rod 1: its end at 3, 2.5, 3 m"),
+    "a rod that ends on no wall": (rods(end=[3, 2.5, 3]), r"rod 1: the end at 3, 2.5, 3 m"),
     "a rod of an unknown material": (rods(material="iron"), "iron"),
     "walls in one line against each other": (
         lambda d: d["structure"].update(

@@ -154,7 +154,7 @@ def test_envelopes() -> None:
         ({"lines": 1}, "at least 2"),
         ({"step": 0.05}, "requires a time step below"),
         ({"duration": 0.0}, "above zero"),
-        ({"lines": [2.0, 1.0]}, "ascending"),
+        ({"lines": [2.0, 1.0]}, "increasing"),
         ({"spectrum": "nowhere.csv"}, "no such file"),
         ({"window": Window("square")}, "unknown envelope"),
     ],

@@ -181,7 +181,7 @@ def test_contacts_of_many_stones() -> None:
         ([square("base", 0, 0), square("gap", 0, 1.002)], "'base' and 'gap' are 2 mm apart"),
         ([square("base", 0, 0), Polygon("bow", SQUARE[[0, 2, 1, 3]])], "'bow': the outline crosses itself"),
         ([square("base", 0, 0), Polygon("line", np.array([[0, 1], [1, 1], [0.5, 1.0]]))], "'line'"),
-        ([Polygon("two", SQUARE[:2])], "'two': 2 distinct vertices"),
+        ([Polygon("two", SQUARE[:2])], "'two' has 2 distinct vertices"),
         ([square("twin", 0, 0), square("twin", 1, 0)], "two blocks are called 'twin'"),
         ([square("base", 0, 0), square("corner", 1, 1)], "block 'corner'"),  # they touch at a point: no joint
         ([], "no blocks"),
@@ -211,9 +211,9 @@ def test_json(tmp_path: Path) -> None:
     for change, words in (
         ({"unit": "furlong"}, "unit 'furlong'"),
         ({"blocks": [{"name": "bad", "points": [[0, 0], [1]]}]}, "'bad': points"),
-        ({"blocks": [{"points": [[0, 0], [1, 0], [1, 1]], "density": -5}]}, "density -5"),
-        ({"blocks": [{"points": [[0, 0], [1, 0], [1, 1]], "density": 10**400}]}, f"density {10**39}..., expected"),
-        ({"blocks": [], "unit": "m" * 400}, f"unit '{'m' * 39}...; expected"),
+        ({"blocks": [{"points": [[0, 0], [1, 0], [1, 1]], "density": -5}]}, "density is -5"),
+        ({"blocks": [{"points": [[0, 0], [1, 0], [1, 1]], "density": 10**400}]}, f"density is {10**39}..., expected"),
+        ({"blocks": [], "unit": "m" * 400}, f"unit '{'m' * 39}... is unknown; expected"),
         ({"colour": "red"}, "unknown key 'colour'"),
         ({"ground": [[0, 0, 1]]}, "ground"),
     ):
@@ -264,7 +264,7 @@ def test_dxf_complaints_name_the_layer(tmp_path: Path) -> None:
         space.add_3dface([(0, 0), (1, 0), (1, 1)], dxfattribs={"layer": "SOLIDS"})
 
     path = drawing(tmp_path / "arch.dxf", 6, mesh)
-    with pytest.raises(BadGeometry, match=r"layer 'SOLIDS', 3DFACE #.* explode it"):
+    with pytest.raises(BadGeometry, match=r"layer 'SOLIDS', 3DFACE #.* Explode it"):
         read_dxf(path)
     assert len(read_dxf(path, layers=["STONE"]).blocks) == 7  # naming the layers leaves the others out
     with pytest.raises(BadGeometry, match="layer 'BRICK' does not exist"):

@@ -121,15 +121,15 @@ def test_springs_of_the_ground_are_those_of_the_soles():
 @pytest.mark.parametrize(
     "change, words",
     [
-        ({"walls": [{**WALLS[0], "openings": [{"storey": 1, "x": [5.0, 7.0], "z": [0.0, 2.0]}]}]}, "6 m long"),
+        ({"walls": [{**WALLS[0], "openings": [{"storey": 1, "x": [5.0, 7.0], "z": [0.0, 2.0]}]}]}, "the wall is 6 m"),
         ({"walls": [{**WALLS[0], "openings": [{"storey": 1, "x": [1.0, 2.0], "z": [0.0, 3.0]}]}]}, "does not fit"),
         ({"walls": [{**WALLS[0], "openings": [{"storey": 3, "x": [1.0, 2.0], "z": [0.0, 2.0]}]}]}, "no storey 3"),
         ({"walls": [WALLS[0], WALLS[0]]}, "occurs twice"),
         ({"walls": [{**WALLS[1], "thicknesses": [0.3]}]}, "either thickness or thicknesses"),
         ({"walls": [{"name": "a", "start": [0.0, 0.0], "end": [1.0, 0.0], "thicknesses": [0.3]}]}, "1 thicknesses for 2"),
-        ({"corners": [{"walls": ["front", "nowhere"], "bond": "open"}]}, "no wall 'nowhere'"),
+        ({"corners": [{"walls": ["front", "nowhere"], "bond": "open"}]}, "wall 'nowhere' does not exist"),
         ({"floors": [{"storey": 3, "kind": "none"}]}, "storey 3 does not exist"),
-        ({"floors": [{"storey": 1, "kind": "flexible"}]}, "needs young"),
+        ({"floors": [{"storey": 1, "kind": "flexible"}]}, "requires young"),
     ],
 )
 def test_wrong_plans_are_reported(change, words):
@@ -140,7 +140,7 @@ def test_wrong_plans_are_reported(change, words):
 def test_parts_that_do_not_fit_together_are_reported():
     with pytest.raises(BadGeometry, match="ring"):
         meshed(plan([WALLS[0], WALLS[1], WALLS[2]], floors=[FLOOR]))
-    with pytest.raises(BadGeometry, match="each other"):
+    with pytest.raises(BadGeometry, match="overlap in plan"):
         meshed(plan([WALLS[0], {"name": "same", "start": [1.0, 0.0], "end": [3.0, 0.0], "thickness": 0.3}]))
     with pytest.raises(BadGeometry, match="ground"):
         meshed(plan([{**WALLS[1], "storeys": [2, 2]}]))

@@ -91,7 +91,7 @@ def test_a_turned_plan_is_the_same(tmp_path, angle):
 @pytest.mark.parametrize(
     "faces, walls, why",
     [
-        (FACES, ["WALLS"], "no layer 'WALLS'"),
+        (FACES, ["WALLS"], "layer 'WALLS' does not exist"),
         ([[(0, 0), (5, 0)]], ["A-WALL"], "no two parallel lines"),
         ([[(0, 0), (5, 0)], [(0, 0.01), (5, 0.01)]], ["A-WALL"], "no two parallel lines"),
     ],

@@ -124,7 +124,7 @@ def test_a_flange_behind_a_joint(tmp_path):
         ("shear_energy = 10", "", "joints.shear_energy", "joint 'bed 1' has a cohesion but no shear_energy"),
         ("beds = [{ z = HEIGHT }]", "beds = [{ z = 1.0 }]", "structure", "is not below the top of a storey"),
         ("beds = [{ z = HEIGHT }]", "beds = [{}, {}]", "structure", "bed 1 has the same height"),
-        ("beds = [{ z = HEIGHT }]", 'beds = [{ walls = ["b"] }]', "structure", "there is no wall 'b'"),
+        ("beds = [{ z = HEIGHT }]", 'beds = [{ walls = ["b"] }]', "structure", "wall 'b' does not exist"),
         ("ripple = 0.1", 'without_equilibrium = "force-release"', "without_equilibrium", "can follow"),
         (
             "friction = 0.4",

@@ -364,7 +364,7 @@ def test_a_tie_of_a_range_passes_over_places_between_stones():
         ({"acceleration": "0.3 g", "assess": True}, "the deck has no [motion]"),
         ({"acceleration": "0.3 g", "changes": [{"vary": "structure.heigth", "stop": 2.0}]}, "no value above 0"),
         ({"acceleration": "0.3 g", "changes": [{"vary": "structure.width", "stop": "2 kN"}]}, "kN"),
-        ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "start_stone": "stone"}]}, "no stone 'stone'"),
+        ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "start_stone": "stone"}]}, "block 'stone' does not exist"),
         ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "prestress": "1 kN"}]}, "does not depend on prestress"),
         ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "places": 4}]}, "second end of the range"),
         ({"by": "local-mechanism", "safety_factor": 1.0, "options": {"mechanisms": "facade"}}, "has no key 'mechanisms'"),

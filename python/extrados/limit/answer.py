@@ -184,8 +184,8 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
             upright = [limit.collapse(direction)[1].upper_bound for direction in (1, -1)]
         except NoEquilibrium:
             return CannotStand(
-                f"{why_not(limit)}; certificate: already if planes outside the strength curves are used as limits, no equilibrium "
-                "forces exist"
+                f"{why_not(limit)}; certificate: no equilibrium forces exist, even if planes outside the strength "
+                "curves replace these curves"
             )
         if upright[0] < 0.0 or upright[1] > 0.0:
             return CannotStand(
@@ -212,7 +212,7 @@ def why_not(limit: LimitAnalysis) -> str:
         told = ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
         if not LimitAnalysis(assembly, loads=limit.loads).stands():
             return f"nothing carries {told} from below"
-        return f"only friction carries {told}, and also {_slides(limit)}"
+        return f"only friction carries {told}; {_slides(limit)}"
     try:
         interval = sorted(limit.collapse(d)[0].gamma for d in (1, -1))
     except NoEquilibrium:

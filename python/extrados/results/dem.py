@@ -224,7 +224,7 @@ class SolidDemRun(BlocksRun):
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest plastic slip of a dowel, with the slip that occurs before the motion, under self-weight", "m")
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, including the slip under self-weight before the motion", "m")
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of any block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed at another point", "m")

@@ -152,9 +152,9 @@ class SectionThrust(ResultModel):
     name: str = fact("its name")
     direction: str = fact("direction of the thrust: in plan, or outward from the middle of the structure")
     contacts: int = fact("contacts of the section")
-    least_N: float | None = fact("least thrust; null where it has no least value", "N")
+    least_N: float | None = fact("least thrust; null if the thrust has no least value", "N")
     central_N: float | None = fact("thrust of the most central state; null without one", "N")
-    greatest_N: float | None = fact("greatest thrust; null where it has no greatest value, as between rigid supports", "N")
+    greatest_N: float | None = fact("greatest thrust; null if the thrust has no greatest value, as between rigid supports", "N")
 
 
 class SolidThrust(KindResults):
@@ -165,7 +165,7 @@ class SolidThrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations along the direction between which a state is admissible", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "one over the least part of the contacts, about their middles, that holds a state in equilibrium; null where that part is below "
+        "inverse of the smallest part of the contacts, about their middles, that permits a state in equilibrium; null if that part is below "
         "1 % (no horizontal demand), or if not found"
     )
     least_part_of_joints: float | None = fact("the part of the contacts, about their middles, that the most central state needs")

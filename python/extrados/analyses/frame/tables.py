@@ -105,8 +105,8 @@ class FramePushover(FrameAnalysis):
     control_level: int | None = key(
         None,
         (
-            "number of the control storey: the control displacement is the mean, weighted by the masses, on its top; "
-            "default: the highest storey with masses"
+            "number of the control storey: the control displacement is the mean displacement, weighted by the masses, at the top "
+            "of this storey; default: the highest storey with masses"
         ),
         ge=1,
     )

@@ -200,7 +200,7 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
         context.warnings += [told + warning for warning in rocker.warnings]
         limit = rocker.model.fastest_beat if isinstance(rocker.model, ArchModel) else None
         if limit is not None and max(options.cycles) >= OFTEN:
-            context.warnings.append(f"{told}trains of sines repeat themselves. {too_fast(limit)}")
+            context.warnings.append(f"{told}trains of sines repeat themselves: {too_fast(limit)}")
         for cycles in options.cycles:
             of_train = [f"{cycles} cycle{'s' if cycles > 1 else ''}"] if len(options.cycles) > 1 else []
             found.append(Variant(", ".join(parts + of_train) or rocker.word, rocker, cycles))

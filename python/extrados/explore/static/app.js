@@ -1,4 +1,4 @@
-// The page: what is open, what is asked of the session, what is shown where.
+// The page: the open deck, the requests to the session, and the layout.
 import { h, number, quantity } from "./dom.js";
 import { stage } from "./stage.js";
 import { structurePanel } from "./structure.js";
@@ -27,7 +27,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     detail: null, tab: "structure", view: { gamma: 0, through: null, thrust: null, chain: null }, welcome: null, timings: [],
     layers: { least: true, most: true, through: true, plus: true, minus: false, central: false, reactions: true, joints: true },
     ask, change, show, edit, say, open, rest, on, tellDetail: () => tell("detail"),
-    /** True at rest: all that was asked for is seen, and the text is that of it. */
+    /** True at rest: all requested results are shown, and the text is up to date. */
     get still() { return !moved && !unanswered.size; },
     undo: () => (board() ? board().undo() : travel(-1)), redo: () => (board() ? board().redo() : travel(1)), drafted, draft: null, typed, setTab, remember, dialog,
   };
@@ -140,7 +140,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (there?.next) ask(there.next.message, there.next);
   }
   function change(changes, lane, more = {}, when = performance.now()) { ask({ do: "set", changes, lane, ...more }, { when }); }
-  /** Another view of the same building. One lane for all: what was asked for last is what is seen last. */
+  /** Another view of the same building. All views share one lane: the last request determines the final view. */
   function show(view, when) {
     const other = view.through ? { thrust: null } : (view.thrust ?? null) !== null ? { through: null } : {};
     Object.assign(app.view, view, other);
@@ -167,7 +167,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   transport.onreply = ({ words, arrays }) => {
     const entry = waiting.get(words.of);
     if (!words.presets) unanswered.delete(words.of); // after what there is to choose from comes the first deck
-    // A fall that was asked of an earlier scene: neither its pictures nor its refusal belong to what is shown now.
+    // A collapse requested for an earlier scene: its pictures and its refusal do not belong to the present scene.
     if (entry?.message.do === "fall" && entry.scene !== scenes) { entry.reply?.(words, arrays); landed(entry); return; }
     if (words.complaints || words.bad) {
       if (!["rocking", "domain", "impulse"].includes(words.to)) say((words.complaints ?? [words.bad]).join("\n"), true);

@@ -1,4 +1,4 @@
-// The collapse: what cannot stand, or is tilted beyond its capacity, falls in real time; then the fall is shown again, slower.
+// The collapse of a structure that cannot stand, or is tilted beyond its capacity: shown in real time, then slower.
 import { capital, h } from "./dom.js";
 import { tr } from "./words.js";
 

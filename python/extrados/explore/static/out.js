@@ -1,4 +1,4 @@
-// What is seen, taken out: PNG, SVG, and films of what moves.
+// Export of the present view: PNG, SVG, and films of animations.
 import { download, h, number } from "./dom.js";
 import { fragmentOf } from "./share.js";
 import { language, tr } from "./words.js";

@@ -20,7 +20,7 @@ export async function fragmentOf(text) {
   for (const byte of bytes) letters += String.fromCharCode(byte);
   return MARK + btoa(letters).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
-/** The deck of a link or a fragment; null where it holds none. */
+/** The deck of a link or a fragment; null without a deck. */
 export async function deckOf(link) {
   const at = link.indexOf(MARK);
   if (at < 0) return null;

@@ -1,4 +1,4 @@
-// Beside the drawing: what the structure bears, its sizes, its deck.
+// Panels beside the drawing: results of limit analysis, sizes, deck.
 import { teachPanel } from "./teach.js";
 import { capital, degrees, download, h, number, quantity } from "./dom.js";
 import { tr } from "./words.js";
@@ -91,7 +91,7 @@ export function sidebar(app, box) {
       app.deck?.structure?.kind !== "blocks" ? h("button", { title: tr`Turn every stone into a block whose vertices can be dragged`, onclick: () => app.ask({ do: "blocks" }) }, tr`Free the stones`) : null);
   }
 
-  /** What is needed for an acceleration: the least interventions, each with a button that puts it into the deck. */
+  /** The least interventions for an acceleration, each with a button that adds it to the deck. */
   let target = "", needed = null, asking = false;
   const mark = () => JSON.stringify(app.scene.capacity ?? null);
   function ask(e) {

@@ -1,4 +1,4 @@
-// A building that stands in space: turned by hand, and pushed where limit analysis of solids can answer.
+// A building in space: rotated by the user; limit analysis of solids gives its capacity on request.
 import { h, number, quantity, s, set } from "./dom.js";
 import { carried, space } from "./space.js";
 import { tr } from "./words.js";
@@ -20,7 +20,7 @@ export function solidPanel(app, stageBox) {
     body = { ...app.arrays, both: seen.of === "walls" };
     view.label = `${app.deck.title || app.name}.`;
     view.show(body, !opened);
-    if (!opened && it.push) { it.push = null; app.say(tr`The sizes have changed: calculate the capacity again.`); }
+    if (!opened && it.push) { it.push = null; app.say(tr`The sizes have changed: calculate again.`); }
   });
   app.on("theme", () => view.redraw());
   app.on("tab", (name) => { if (name !== "structure") stop(); });
@@ -32,7 +32,7 @@ export function solidPanel(app, stageBox) {
     if (arrays.mechanism_pose) mechanism();
   });
 
-  /** What is told of it beside the drawing. */
+  /** The text beside the drawing. */
   function page(seen, why) {
     const row = (label, value) => h("tr", {}, h("th", { scope: "row" }, label), h("td", {}, value));
     const [x, y, z] = seen.size_m, rows = [];
@@ -46,7 +46,7 @@ export function solidPanel(app, stageBox) {
     for (const text of seen.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
     if (seen.of === "walls") parts.push(h("div", { class: "row" }, h("button", { class: "first", "data-plan": true, onclick: () => app.plan.begin() }, tr`✎ Draw the plan`)));
     if (seen.of === "solids") {
-      parts.push(h("div", { class: "row" }, h("button", { class: "first", onclick: () => { app.say(tr`calculating the capacity …`); app.ask({ do: "push" }); } }, tr`Calculate the capacity`), it.push ? h("button", { onclick: () => mechanism() }, tr`▶ Mechanism`) : null));
+      parts.push(h("div", { class: "row" }, h("button", { class: "first", onclick: () => { app.say(tr`calculating the capacity …`); app.ask({ do: "push" }); } }, tr`Calculate capacity`), it.push ? h("button", { onclick: () => mechanism() }, tr`▶ Mechanism`) : null));
       if (it.push) parts.push(h("p", { class: "verdict good", "data-number": "push" }, it.push.answer), ...it.push.warnings.map((text) => h("p", { class: "remark" }, text)), rose());
     }
     return parts;

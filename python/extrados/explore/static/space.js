@@ -185,7 +185,7 @@ export function space(box) {
     if (body.push !== undefined) {
       const turn = (body.push * Math.PI) / 180, way = [Math.cos(turn), Math.sin(turn), 0], dx = 60 * (right[0] * way[0] + right[1] * way[1]), dy = -60 * (up[0] * way[0] + up[1] * way[1]);
       const size = Math.hypot(dx, dy) || 1, [ux, uy] = [dx / size, dy / size], [ax, ay] = [w / 2, hgt - 40];
-      parts.push(s("path", { class: "push", d: `M${ax} ${ay}L${ax + dx} ${ay + dy}M${ax + dx - 9 * ux - 5 * uy} ${ay + dy - 9 * uy + 5 * ux}L${ax + dx} ${ay + dy}L${ax + dx - 9 * ux + 5 * uy} ${ay + dy - 9 * uy - 5 * ux}` }), s("text", { x: ax, y: ay + 30, "text-anchor": "middle", text: tr`push along ${body.push}°` }));
+      parts.push(s("path", { class: "push", d: `M${ax} ${ay}L${ax + dx} ${ay + dy}M${ax + dx - 9 * ux - 5 * uy} ${ay + dy - 9 * uy + 5 * ux}L${ax + dx} ${ay + dy}L${ax + dx - 9 * ux + 5 * uy} ${ay + dy - 9 * uy - 5 * ux}` }), s("text", { x: ax, y: ay + 30, "text-anchor": "middle", text: tr`load along ${body.push}°` }));
     }
     svg.replaceChildren(...parts);
   }

@@ -1,4 +1,4 @@
-// The drawing of a structure: stones, lines of thrust, hinges, loads, reactions, and the handles that hands move.
+// The drawing of a structure: blocks, lines of thrust, hinges, loads, reactions, and handles.
 import { degrees, number, quantity, s, set, shapes } from "./dom.js";
 import { pinch } from "./gestures.js";
 import { tr } from "./words.js";

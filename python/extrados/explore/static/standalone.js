@@ -1,4 +1,4 @@
-// A page without a server: a structure that was computed beforehand, over one size and the tilt of the ground.
+// A page without a server: results calculated in advance for values of a dimension and of the tilt of the ground.
 import { capital, degrees, h, number, quantity } from "./dom.js";
 import { stage } from "./stage.js";
 import { unpack } from "./transport.js";

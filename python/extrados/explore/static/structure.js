@@ -1,4 +1,4 @@
-// Below the drawing of a structure: its force polygon, and where its thrust lies between least and greatest.
+// Below the drawing of a structure: its force polygon, and its thrust between the least and the greatest.
 import { h, number, quantity, s, set, shapes } from "./dom.js";
 import { tr } from "./words.js";
 

@@ -1,4 +1,4 @@
-// How messages travel: JSON to the session, frames of words and arrays back (see frames.py).
+// Transport of messages: JSON to the session, frames of words and arrays back (see frames.py).
 
 const TYPES = { f: Float32Array, d: Float64Array, i: Int32Array, b: Uint8Array };
 
@@ -16,7 +16,7 @@ export function unpack(buffer) {
   return { words, arrays };
 }
 
-/** A socket that comes back when it breaks: `onstate` tells "open", "lost" or "refused", `onreply` gets replies. */
+/** A socket that reconnects: `onstate` receives "open", "lost" or "refused", `onreply` the replies. */
 export function socketTransport(address) {
   const transport = { onstate: () => {}, onreply: () => {}, send, close, open: false };
   let socket = null, tries = 0, closed = false;
