@@ -177,6 +177,15 @@ class DemTilt(KindResults):
         return _tilted(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.interval, demand)
 
 
+class PairWork(ResultModel):
+    """Energy that a pair of blocks, or a block and its support, lost in a run."""
+
+    name: str = fact("both blocks; the ground is one support")
+    friction_J: float = fact("by friction", "J")
+    damping_J: float = fact("in dashpots, or by impacts of rigid contacts", "J")
+    peak_force_N: float = fact("greatest force between them at an output time", "N")
+
+
 class SolidDemRun(KindResults):
     """dem: blocks in space under a motion."""
 
@@ -221,6 +230,9 @@ class SolidDemRun(KindResults):
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
+    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks at an output time", "N")
+    peak_base_shear_over_weight: float = fact("the same over the weight of the structure")
+    joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
     energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")

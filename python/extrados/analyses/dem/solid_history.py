@@ -10,6 +10,7 @@ from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.files import MOST_FRAMES
 from extrados.analyses.dem.job import SolidRuns, SolidTask, watched
 from extrados.analyses.dem.perturbed import probe_chaos
+from extrados.analyses.dem.solid_forces import force_arrays, force_keys, reactions
 from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import farthest_settlement
@@ -129,6 +130,7 @@ def _numbers(options: Dem, seen: SolidsSeen) -> dict[str, Any]:
         "peak_kinetic_energy_J": float(kinetic.max(initial=0.0)),
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
+        **force_keys(model, found),
         "energy_residual_ratio": found.residual,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
@@ -176,6 +178,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         columns[f"rotation of {names[i]}"] = seen.angle[:, i]
     units = {key: "rad" if key.startswith("rotation") else "m" for key in columns} | {"time": "s"}
     forces = tie_columns(model.ties, found.tension)
+    forces |= {f"reaction {axis}": values for axis, values in zip("xyz", reactions(model, found).T, strict=True)}
     result.tables["dem"] = TableData(columns | energies | forces, units | dict.fromkeys(energies, "J") | dict.fromkeys(forces, "N"))
     result.arrays = {
         **run_arrays(model, found, measures.snapshot_times(options, found)),
@@ -187,6 +190,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         "slip": Array(seen.slip, ("time", "contact"), "m", "slip at its most closed corner"),
         **{name: Array(values, ("time",), "J") for name, values in energies.items()},
         **tie_arrays(model.ties, found.tension),
+        **force_arrays(model, found),
         "ground": Array(ground, ("time",), "m/s^2", "acceleration of the ground along the direction"),
     }
     if len(found.time):

@@ -12,6 +12,7 @@ from extrados.model.errors import BadGeometry
 from extrados.model.geometry.anchors import stone_at
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.strands import Strand
+from extrados.model.ties import Tie
 from extrados.results.dem import TieRun
 from extrados.results.model import Array
 from extrados.views.building import Building
@@ -68,7 +69,8 @@ def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block:
         return NO_TIES
     refuse_rigid_ties(building)
     whole = np.bincount([s.tie for s in strands], [s.length for s in strands])
-    tables = [(*building.ties, *building.dampers)[s.tie] for s in strands]
+    every: tuple[Tie | Damper, ...] = (*building.ties, *building.dampers)
+    tables = [every[s.tie] for s in strands]
     dashpots = [t if isinstance(t, Damper) and t.damping is not None else None for t in tables]
     anchors = [
         (point, -1 if block < 0 else int(body_of_block[block]), place)

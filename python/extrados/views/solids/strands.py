@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from extrados.model.devices import Damper
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
@@ -51,9 +52,10 @@ def damper_strands(building: "Building") -> tuple[Strand, ...]:
 def strand_names(building: "Building", strands: tuple[Strand, ...]) -> tuple[str, ...]:
     """Names of strands: those of their ties and dampers, the segments of a bonded chain numbered."""
     names = []
+    tables: tuple[Tie | Damper, ...] = (*building.ties, *building.dampers)
     for strand in strands:
         fellows = [other for other in strands if other.tie == strand.tie]
-        name = (*building.ties, *building.dampers)[strand.tie].name or ""
+        name = tables[strand.tie].name or ""
         number = next(k for k, other in enumerate(fellows, start=1) if other is strand)
         names.append(f"{name}, segment {number}" if len(fellows) > 1 else name)
     return tuple(names)
