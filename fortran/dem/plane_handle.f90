@@ -189,7 +189,7 @@ contains
       allocate (run, stat=failed)
       if (failed /= 0) return
       call start_model(built, run%model, status)
-      if (status == status_ok) call run_record_new(size(built%set%item), 3, .false., count_ties(built), &
+      if (status == status_ok) call run_record_new(size(built%set%item), 3, .false., count_ties(built), 0, &
          wanted, run%record, status)
       if (status /= status_ok) return
       run%domain = built%domain

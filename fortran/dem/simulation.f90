@@ -43,6 +43,8 @@ module dem_simulation
       real(wp), allocatable :: rate(:, :, :)    !! (3 or 6, bodies, nt) velocity, spin; relative to the ground
       real(wp), allocatable :: energy(:, :)     !! (dem_energy_count, nt) [J]
       real(wp), allocatable :: tension(:, :)    !! (ties, nt) [N]
+      !> (5, joints, nt) force on the first body of each joint [N], losses by friction and in dashpots so far [J]; plane: of none
+      real(wp), allocatable :: joint(:, :, :)
       integer :: points = 0
       integer(c_int) :: reason = stop_end
       integer :: blamed(2) = 0               !! bodies that caused the stop, 0 none
@@ -196,11 +198,12 @@ module dem_simulation
 contains
 
    !> A record for `bodies` bodies at the times `wanted`
-   subroutine run_record_new(bodies, rates, attitudes, ties, wanted, record, status)
+   subroutine run_record_new(bodies, rates, attitudes, ties, joints, wanted, record, status)
       integer, intent(in) :: bodies
       integer, intent(in) :: rates                   !! of a body
       logical, intent(in) :: attitudes               !! they are no part of its place
       integer, intent(in) :: ties
+      integer, intent(in) :: joints                  !! whose forces are recorded
       real(wp), intent(in) :: wanted(:)              !! [s]
       type(run_record), intent(out) :: record
       integer(c_int), intent(out) :: status
@@ -208,7 +211,7 @@ contains
       nt = size(wanted)
       allocate (record%wanted(nt), record%time(nt), record%place(3, bodies, nt), record%rate(rates, bodies, nt), &
          record%turn(3, 3, merge(bodies, 0, attitudes), nt), record%energy(dem_energy_count, nt), &
-         record%tension(ties, nt), stat=failed)
+         record%tension(ties, nt), record%joint(5, joints, nt), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed == 0) record%wanted(:) = wanted
    end subroutine run_record_new

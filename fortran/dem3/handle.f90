@@ -190,7 +190,8 @@ contains
       status = status_out_of_memory
       allocate (run, stat=failed)
       if (failed /= 0) return
-      call run_record_new(size(built%set%item), 6, .true., count_ties(built), wanted, run%record, status)
+      call run_record_new(size(built%set%item), 6, .true., count_ties(built), size(built%law_of, 2), wanted, &
+         run%record, status)
       if (status /= status_ok) return
       associate (model => run%model)
          call copy_bodies(built%set, model%set, status)
@@ -198,12 +199,13 @@ contains
          dowels = 0
          if (allocated(built%dowels)) dowels = size(built%dowels)
          allocate (model%law(size(built%law)), model%law_of(3, size(built%law_of, 2)), model%dowels(dowels), &
-            stat=failed)
+            model%joint_loss(2, size(built%law_of, 2)), stat=failed)
          if (failed /= 0) status = status_out_of_memory
          if (failed /= 0) return
          if (dowels > 0) model%dowels(:) = built%dowels
          model%law(:) = built%law
          model%law_of(:, :) = built%law_of
+         model%joint_loss = 0.0_wp
          model%gravity = built%gravity
          model%way = built%way
          call set_rigid(model%rigid, model%model_clock, built%rigid, norm2(model%gravity), model%set%size, &

@@ -41,6 +41,7 @@ module dem3_law
    type :: contact_pair
       integer :: part(2) = 0
       integer :: law = 1
+      integer :: joint = 0                     !! of the two bodies, 0 where they had none at the start
       integer :: points = 0
       integer :: reference = 0                 !! whose face the last polygon lay on
       integer :: marks(2) = -1                 !! of the bodies, as they were last compared; -1: never

@@ -37,6 +37,7 @@ module dem3_model
       real(wp) :: far = 0.0_wp                        !! bodies that have moved farther apart find them anew [m]
       real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is checked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
+      real(wp), allocatable :: joint_loss(:, :)       !! (2, joints) their part of that, by joints of law_of [J]
       real(wp) :: support_work = 0.0_wp               !! of them [J]
       ! Contacts without springs, see dem3_moreau
       type(body), allocatable :: ahead(:)             !! (bodies) where the old velocities lead to
@@ -118,8 +119,9 @@ contains
                cycle
             end if
          end if
-         found(k)%law = law_between(model, model%set%parts(found(k)%part(1))%owner, &
+         found(k)%joint = joint_between(model, model%set%parts(found(k)%part(1))%owner, &
             model%set%parts(found(k)%part(2))%owner)
+         if (found(k)%joint > 0) found(k)%law = model%law_of(3, found(k)%joint)
       end do
       do old = old, model%pairs
          call drop_pair(model, old)
@@ -154,6 +156,8 @@ contains
       associate (pair => model%pair(number))
          call drop_points(model%law(pair%law), pair)
          model%lost = model%lost + [pair%friction_loss, pair%damping_loss]
+         if (pair%joint > 0) model%joint_loss(:, pair%joint) = model%joint_loss(:, pair%joint) &
+            + [pair%friction_loss, pair%damping_loss]
          model%support_work = model%support_work + pair%support_work
       end associate
    end subroutine drop_pair
@@ -217,13 +221,13 @@ contains
    end subroutine colour_pairs
 
    !> The law of a pair of bodies
-   pure function law_between(model, one, two) result(law)
+   pure function joint_between(model, one, two) result(joint)
       type(solid_model), intent(in) :: model
       integer, intent(in) :: one
       integer, intent(in) :: two
-      integer :: law
+      integer :: joint
       integer :: low, high, middle, wanted(2)
-      law = 1
+      joint = 0
       if (.not. allocated(model%law_of)) return
       wanted = [min(one, two), max(one, two)]
       low = 1
@@ -231,7 +235,7 @@ contains
       do while (low <= high)
          middle = (low + high) / 2
          if (all(model%law_of(1:2, middle) == wanted)) then
-            law = model%law_of(3, middle)
+            joint = middle
             return
          end if
          if (before(model%law_of(1:2, middle), wanted)) then
@@ -240,7 +244,7 @@ contains
             high = middle - 1
          end if
       end do
-   end function law_between
+   end function joint_between
 
    !> Whether a pair of numbers comes before another
    pure function before(one, two) result(earlier)

@@ -258,6 +258,7 @@ contains
          end do
          call forget_tie_losses(model%ties)
          model%lost = 0.0_wp
+         model%joint_loss = 0.0_wp
          model%support_work = 0.0_wp
          model%set%item%work = 0.0_wp
          model%set%item%bounces = 0
@@ -283,7 +284,30 @@ contains
             record%rate(4:6, k, n) = spin_of(b, b%swing - half * b%moment)
          end do
       end associate
+      call record_joints(run%model, run%record%joint(:, :, run%record%points))
    end subroutine record_state
+
+   !> Forces of the joints at the last forces, and what they lost so far
+   pure subroutine record_joints(model, joint)
+      type(solid_model), intent(in) :: model
+      real(wp), intent(out) :: joint(:, :)          !! (5, joints) on the first body [N]; friction, dashpots [J]
+      real(wp) :: force(3)
+      integer :: k, n
+      joint(1:3, :) = 0.0_wp
+      joint(4:5, :) = model%joint_loss
+      do k = 1, model%pairs
+         associate (pair => model%pair(k))
+            if (pair%joint == 0) cycle
+            force = 0.0_wp
+            do n = 1, pair%points
+               force = force + pair%point(n)%force
+            end do
+            ! The forces of points are those on the second part.
+            if (model%set%parts(pair%part(1))%owner < model%set%parts(pair%part(2))%owner) force = -force
+            joint(:, pair%joint) = joint(:, pair%joint) + [force, pair%friction_loss, pair%damping_loss]
+         end associate
+      end do
+   end subroutine record_joints
 
    function list_sizes(run) result(told)
       class(solid_simulation), intent(in) :: run
@@ -323,12 +347,14 @@ contains
          call on%pass(model%far, storage_size(model%far))
          call on%pass(model%wander, storage_size(model%wander))
          call on%pass(model%lost, storage_size(model%lost))
+         call on%pass(model%joint_loss, storage_size(model%joint_loss))
          call on%pass(model%support_work, storage_size(model%support_work))
          call on%pass(model%dowels, storage_size(model%dowels))
          do k = 1, model%pairs
             associate (pair => model%pair(k))
                call on%pass(pair%part, storage_size(pair%part))
                call on%pass(pair%law, storage_size(pair%law))
+               call on%pass(pair%joint, storage_size(pair%joint))
                call on%pass(pair%points, storage_size(pair%points))
                call on%pass(pair%reference, storage_size(pair%reference))
                call on%pass(pair%marks, storage_size(pair%marks))

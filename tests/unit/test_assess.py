@@ -34,7 +34,7 @@ from extrados.views.building import Building
 COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
 PULSE = {"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.6}
 TIE = {"start": [-0.6, 5.0], "ground": [-4.6, 5.0], "stiffness": "8 MN/m", "yield_force": "6 kN"}
-DAMPER = {"start": [-0.6, 5.0], "ground": [-4.6, 5.0], "damping": "20 kN*s/m"}
+HINGE = {"joints": ["ground"], "damping": "20 kN*m*s"}
 
 
 def deck(**more) -> dict:
@@ -127,21 +127,21 @@ def test_first_table_comes_before_the_costly_strategies(monkeypatch: pytest.Monk
 
 
 def test_a_strategy_reports_what_it_neglects() -> None:
-    r = extrados.run(deck(dampers=[DAMPER], assess={"strategies": ["rocking", "dem"]}))["assess"]
+    r = extrados.run(deck(hinges=[HINGE], assess={"strategies": ["rocking", "dem"]}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
-    assert "without [[dampers]]" in rows["dem"].parameters and "without" not in rows["rocking"].parameters
+    assert "without [[hinges]]" in rows["dem"].parameters and "without" not in rows["rocking"].parameters
     assert rows["dem"].status == "ok"
 
 
-def test_a_collapse_without_the_damper_of_the_deck_decides_nothing() -> None:
-    """Elements take no damper: their result for the column alone is no verdict on the column with its damper."""
+def test_a_collapse_without_the_added_hinge_of_the_deck_decides_nothing() -> None:
+    """Elements take no added hinge: their result for the column alone is no verdict on the column with its hinge."""
     shaken = {**PULSE, "amplitude": "1 g", "period": 1.5}
     asked = {"motion": shaken, "assess": {"strategies": ["rocking", "dem"]}}
     bare, held = (
-        {v.strategy: v for v in extrados.run(deck(**asked, **more))["assess"].verdicts}["dem"] for more in ({}, {"dampers": [DAMPER]})
+        {v.strategy: v for v in extrados.run(deck(**asked, **more))["assess"].verdicts}["dem"] for more in ({}, {"hinges": [HINGE]})
     )
     assert bare.outcome == "collapses"
-    assert held.outcome == "open" and "neglects [[dampers]]" in held.statement
+    assert held.outcome == "open" and "neglects [[hinges]]" in held.statement
 
 
 def test_elements_carry_the_tie_of_the_deck() -> None:

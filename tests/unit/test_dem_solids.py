@@ -305,3 +305,57 @@ def test_what_is_more_than_a_column_is_followed(tmp_path, structure: str) -> Non
     )
     found = answered(tmp_path, text)
     assert found["stopped"] == "end" and found["energy_residual_ratio"] < 0.01
+
+
+SLAB = """
+[structure]
+kind = "column"
+section = "round"
+sides = 6
+width = 2.0
+height = 0.4
+drums = 1
+[joints]
+friction = 0.3
+normal_stiffness = 1e10
+[motion]
+kind = "constant"
+amplitude = "0.5 g"
+duration = 1.0
+"""
+
+
+@pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
+def test_forces_and_work_of_friction_of_a_sliding_slab(tmp_path, solver: str) -> None:
+    """The reaction is weight and mu times it, against the slip; friction loses their product with the way."""
+    text = f'{SLAB}[[analysis]]\nkind = "dem"\nend_time = 0.5\nperturbed = false\nfloor = 0.0\ndirection = 30.0\nsolver = "{solver}"\n'
+    found = answered(tmp_path, text)
+    weight = float(2000.0 * GRAVITY * 0.4 * 6 * np.sin(np.pi / 3) / 2)
+    reaction = found.arrays["reaction"].numbers
+    assert reaction[0, 2] == pytest.approx(weight, rel=0.02)
+    way = np.array([np.cos(np.pi / 6), np.sin(np.pi / 6)])
+    late = reaction[len(reaction) // 2 :]
+    assert late[:, 2] == pytest.approx(weight, rel=0.01)
+    assert late[:, :2] == pytest.approx(np.tile(0.3 * weight * way, (len(late), 1)), abs=0.01 * weight)
+    assert found.results.peak_base_shear_over_weight == pytest.approx(0.3, rel=0.05)
+    slid = float(np.linalg.norm(found.arrays["shift"].numbers[-1, 0]))
+    assert slid == pytest.approx(0.5 * 0.2 * GRAVITY * 0.25, rel=0.02)
+    (row,) = found.results.joint_work
+    assert row.name == "drum 1 / ground" and row.friction_J == pytest.approx(0.3 * weight * slid, rel=0.01)
+    assert found.arrays["pair_friction_work"].numbers[-1].sum() == pytest.approx(found.results.friction_loss_J, rel=1e-9)
+
+
+def test_forces_of_a_rocking_column_are_its_momentum(tmp_path) -> None:
+    """The mean reaction is the rate of momentum less weights and inertia; forces of pairs balance the drum above."""
+    quick = f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.6\noutput_step = 0.001\nperturbed = false\nsolver = "nonsmooth"\n'
+    found = answered(tmp_path, quick)
+    a = {name: array.numbers for name, array in found.arrays.items()}
+    blocks = found.results.blocks
+    mass = 2000.0 * 8 * 0.25 * np.sin(np.pi / 4) / 2  # of a drum 1 m high
+    momentum = mass * a["rate"][:, :, :3].sum(axis=1)
+    inertia = blocks * mass * np.column_stack([a["ground"], np.zeros(len(a["ground"])), np.full(len(a["ground"]), GRAVITY)])
+    step = np.diff(a["time"])[:, None]
+    gained = np.cumsum(0.5 * (a["reaction"][1:] + a["reaction"][:-1] - inertia[1:] - inertia[:-1]) * step, axis=0)
+    smooth = a["time"][1:] < 0.3  # an impact between two outputs shows in none
+    assert gained[smooth] == pytest.approx((momentum[1:] - momentum[0])[smooth], abs=0.02 * np.abs(momentum[1:][smooth]).max())
+    assert a["pair_friction_work"][-1].sum() <= found.results.friction_loss_J * (1 + 1e-9) + 1e-9

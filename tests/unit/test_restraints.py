@@ -251,6 +251,8 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     for kind in ("tilt", "dem", "assessment", "rocking-spectrum"):
         ((status, reason),) = told(DECK.replace("rocking", kind))
         assert status == "refused" and f"supports.abutting_wall: {kind} cannot take [supports] abutting_wall into account" in reason, reason
+        if kind == "dem":  # elements take dampers
+            continue
         ((status, reason),) = told(damper + DECK.replace('[supports]\nabutting_wall = "left"\n', "").replace("rocking", kind))
         assert status == "refused" and "[[dampers]]" in reason and "rocking" in reason
     ((status, reason),) = told("[[ties]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\nyield_force = 10.0\n" + DECK)

@@ -214,6 +214,15 @@ class DemTilt(BlocksTilt):
     peak_slip_m: float = fact("greatest slip in the mechanism", "m")
 
 
+class PairWork(ResultModel):
+    """Energy that a pair of blocks, or a block and its support, lost in a run."""
+
+    name: str = fact("both blocks; the ground is one support")
+    friction_J: float = fact("energy lost by friction", "J")
+    damping_J: float = fact("energy lost in dashpots, or by impacts of rigid contacts", "J")
+    peak_force_N: float = fact("greatest force between them at an output time", "N")
+
+
 class SolidDemRun(BlocksRun):
     """dem: blocks in space under a motion."""
 
@@ -228,6 +237,9 @@ class SolidDemRun(BlocksRun):
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of any block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed at another point", "m")
+    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks at an output time", "N")
+    peak_base_shear_over_weight: float = fact("ratio of that force to the weight of the structure")
+    joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
 
 
 class SolidDemTilt(BlocksTilt):

@@ -102,6 +102,10 @@ class Runs(Job[dem.Run]):
         return dem.Run(**record_of(row), contacts=NO_CONTACTS)
 
 
+#: Histories of blocks in space alone
+SOLID_HISTORIES = ("turn", "joint_force", "joint_friction", "joint_damping")
+
+
 @dataclass(frozen=True)
 class SolidTask:
     """One run of blocks in space: options, and how the ground moves along their way and, horizontally, across it, each times
@@ -145,7 +149,8 @@ class SolidRuns(Job[dem3.Run]):
         return {
             **recorded(found, length),
             "blamed": np.array([*found.blamed, -1][:1]),
-            "turn": padded(found.turn, length),
+            **{name: padded(getattr(found, name), length) for name in SOLID_HISTORIES},
+            "joint_body": found.joint_body,
             "settled_turn": found.settled_turn,
             "dowel_slip": found.dowel_slip,
             "dowel_out": found.dowel_out,
@@ -154,8 +159,8 @@ class SolidRuns(Job[dem3.Run]):
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem3.Run:
         """The run of row k."""
         row = {name: values[k] for name, values in rows.items()}
-        history = {"turn": row["turn"][: int(row["points"])]}
-        rest = {name: row[name] for name in ("settled_turn", "dowel_slip", "dowel_out")}
+        history = {name: row[name][: int(row["points"])] for name in SOLID_HISTORIES}
+        rest = {name: row[name] for name in ("joint_body", "settled_turn", "dowel_slip", "dowel_out")}
         return dem3.Run(**record_of(row), **history, **rest)
 
 
