@@ -170,6 +170,30 @@ def cracked_buttresses_are_cut_blocks(preset: str, width: float, more: float, vo
     near("cut along the crack", cut.results.collapse_acceleration_g, f.collapse_acceleration_g, 1e-4)
 
 
+PANELS = st.tuples(number(1.0, 3.0, 8), number(1.0, 3.0, 8), number(0.2, 0.4, 4), number(5e4, 2e5, 6))
+
+
+@relation("sla", st.tuples(PANELS, number(1.5, 6.0, 9), st.sampled_from([1.0, -1.0])), 1e-6, share=0.5)
+def loads_that_a_panel_does_not_carry(panel: tuple, factor: float, side: float, within: float) -> None:
+    """A panel under a constant horizontal load beyond that which tears or overturns it: its outcome is open, with the end of the run; under a
+    hundredth of that load it has a capacity."""
+    width, height, thickness, strength = panel
+    deck: Deck = {
+        "structure": {"kind": "panel", "width": width, "height": height, "thickness": thickness},
+        "material": {"density": 2000.0, "young": 2e9, "tensile_strength": strength, "fracture_energy": 50.0},
+    }
+    # Twice the moment of the weight and of the whole section at its strength
+    force = 2.0 * (UNIT * width * height * thickness * width + strength * thickness * width**2) / height
+    found = []
+    for times in (factor, 0.01):
+        load = [{"kind": "gravity"}, {"kind": "spread", "edge": "top", "fx": side * times * force}]
+        found.append(ask(deck, "sla", constant=load, mesh={"size": 0.5}, events=200, directions=["+"]))
+    beyond, small = found
+    must(beyond.status == "ok" and beyond.outcome == "open", f"beyond its strength {beyond.outcome} {beyond.said}")
+    must(not beyond.results.proven and beyond.verdict.violated != [], f"{beyond.verdict}")
+    must(small.answers, f"a small load is not carried: {small.said or small.outcome}")
+
+
 # ----- codes
 
 
