@@ -172,6 +172,27 @@ def cracked_buttresses_are_cut_blocks(preset: str, width: float, more: float, vo
     near("cut along the crack", cut.results.collapse_acceleration_g, f.collapse_acceleration_g, 1e-4)
 
 
+@relation(
+    "tilt", st.tuples(decks("arch", "pointed-arch", "brickwork", "column"), number(0.1, 0.9, 80), number(0.02, 0.2, 9), st.booleans()), 1e-6
+)
+def a_load_acts_on_the_surface_below(deck: Deck, share: float, part: float, sways: bool, within: float) -> None:
+    """A horizontal or swaying load without a height acts at the highest point of the blocks below it."""
+    blocks = building(deck).blocks()
+    points = np.concatenate(blocks.outlines)
+    x = round(float(points[:, 0].min() + share * np.ptp(points[:, 0])), 5)
+    tops = []
+    for one in blocks.outlines:
+        for (xa, ya), (xb, yb) in zip(one, np.roll(one, -1, axis=0), strict=True):
+            if xa != xb and min(xa, xb) <= x <= max(xa, xb):
+                tops.append(float(ya + (x - xa) / (xb - xa) * (yb - ya)))
+    force = round(part * GRAVITY * float(blocks.mass.sum()), 2)
+    load: Deck = {"x": x, "force": force, "sways": True} if sways else {"x": x, "force": force, "horizontal": round(0.3 * force, 2)}
+    free, given = (ask(deck, "tilt", load=[{**load, **more}]) for more in ({}, {"y": max(tops) - 1e-9}))
+    must((free.status, free.outcome) == (given.status, given.outcome), f"{free.outcome} {free.said} against {given.outcome} {given.said}")
+    ok(free, given)
+    near("capacity", free.capacity, given.capacity, within, 1.0)
+
+
 PANELS = st.tuples(number(1.0, 3.0, 8), number(1.0, 3.0, 8), number(0.2, 0.4, 4), number(5e4, 2e5, 6))
 
 

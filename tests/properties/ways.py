@@ -251,7 +251,8 @@ def models_anywhere(deck: Deck, shift: tuple, turn: int, skew: float, within: fl
             must(deck["structure"]["kind"] != "arch" or other.status != "ok", f"a block that is no prism: {other.capacity}")
         except DeckError:
             pass
-    ok(one, back)
+    ok(one)
+    must(back.answers, f"read back: {back.outcome} {back.said}")
     capacities = [one.capacity, one.capacity[::-1]]
     must(any(np.allclose(back.capacity, c, rtol=within, atol=within) for c in capacities), f"{one.capacity}, read back {back.capacity}")
 
