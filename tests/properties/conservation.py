@@ -433,7 +433,7 @@ def peaks_are_those_of_histories(deck: Deck, motion: Deck, within: float) -> Non
     _peaks(answer, "rocking", deck["structure"]["kind"])
     r = answer.results
     near("peak ground acceleration", r.peak_ground_acceleration_g, float(motion["amplitude"].split()[0]), 1e-2)
-    words = answer.result.answer
+    words = answer.result.answer.replace("from which gravity causes collapse", "")
     must(any(w in words for w in ("collapse", "overturn")) == (r.outcome == "collapse"), f"{r.outcome}: {words}")
     must(r.impacts == len(r.impact_times_s or []) or deck["structure"]["kind"] != "stack", f"{r.impacts} impacts at {r.impact_times_s}")
 

@@ -1,6 +1,7 @@
 """Parts of the program that few decks reach: each against the same question asked in another way, or by hand."""
 
 import csv
+import itertools
 import math
 import tempfile
 from pathlib import Path
@@ -12,6 +13,7 @@ from buildings import changed, decks, drawn, number, pulses
 from conservation import building
 from definitions_codes import UNIT, code_spectrum, floor_spectrum
 from definitions_keys import PULSE
+from hypothesis import reject
 from hypothesis import strategies as st
 from relations import GRAVITY, RIGID, ok, relation
 from scipy.optimize import linprog
@@ -168,6 +170,51 @@ def cracked_buttresses_are_cut_blocks(preset: str, width: float, more: float, vo
     cut = ask(blocks, "tilt")
     ok(cut)
     near("cut along the crack", cut.results.collapse_acceleration_g, f.collapse_acceleration_g, 1e-4)
+
+
+@relation(
+    "tilt", st.tuples(decks("arch", "pointed-arch", "brickwork", "column"), number(0.1, 0.9, 80), number(0.02, 0.2, 9), st.booleans()), 1e-6
+)
+def a_load_acts_on_the_surface_below(deck: Deck, share: float, part: float, sways: bool, within: float) -> None:
+    """A horizontal or swaying load without a height acts at the highest point of the blocks below it."""
+    blocks = building(deck).blocks()
+    points = np.concatenate(blocks.outlines)
+    x = round(float(points[:, 0].min() + share * np.ptp(points[:, 0])), 5)
+    tops = []
+    for one in blocks.outlines:
+        for (xa, ya), (xb, yb) in zip(one, np.roll(one, -1, axis=0), strict=True):
+            if xa != xb and min(xa, xb) <= x <= max(xa, xb):
+                tops.append(float(ya + (x - xa) / (xb - xa) * (yb - ya)))
+    force = round(part * GRAVITY * float(blocks.mass.sum()), 2)
+    load: Deck = {"x": x, "force": force, "sways": True} if sways else {"x": x, "force": force, "horizontal": round(0.3 * force, 2)}
+    free, given = (ask(deck, "tilt", load=[{**load, **more}]) for more in ({}, {"y": max(tops) - 1e-9}))
+    must((free.status, free.outcome) == (given.status, given.outcome), f"{free.outcome} {free.said} against {given.outcome} {given.said}")
+    ok(free, given)
+    near("capacity", free.capacity, given.capacity, within, 1.0)
+
+
+PANELS = st.tuples(number(1.0, 3.0, 8), number(1.0, 3.0, 8), number(0.2, 0.4, 4), number(5e4, 2e5, 6))
+
+
+@relation("sla", st.tuples(PANELS, number(1.5, 6.0, 9), st.sampled_from([1.0, -1.0])), 1e-6, share=0.5)
+def loads_that_a_panel_does_not_carry(panel: tuple, factor: float, side: float, within: float) -> None:
+    """A panel under a constant horizontal load beyond that which tears or overturns it: its outcome is open, with the end of the run; under a
+    hundredth of that load it has a capacity."""
+    width, height, thickness, strength = panel
+    deck: Deck = {
+        "structure": {"kind": "panel", "width": width, "height": height, "thickness": thickness},
+        "material": {"density": 2000.0, "young": 2e9, "tensile_strength": strength, "fracture_energy": 50.0},
+    }
+    # Twice the moment of the weight and of the whole section at its strength
+    force = 2.0 * (UNIT * width * height * thickness * width + strength * thickness * width**2) / height
+    found = []
+    for times in (factor, 0.01):
+        load = [{"kind": "gravity"}, {"kind": "spread", "edge": "top", "fx": side * times * force}]
+        found.append(ask(deck, "sla", constant=load, mesh={"size": 0.5}, events=200, directions=["+"]))
+    beyond, small = found
+    must(beyond.status == "ok" and beyond.outcome == "open", f"beyond its strength {beyond.outcome} {beyond.said}")
+    must(not beyond.results.proven and beyond.verdict.violated != [], f"{beyond.verdict}")
+    must(small.answers, f"a small load is not carried: {small.said or small.outcome}")
 
 
 # ----- codes
@@ -379,3 +426,57 @@ def a_survey_goes_on_where_it_was(names: list, within: float) -> None:
         peak = float(PULSE["amplitude"].split()[0])
         near(f"margin of {stem}", by_name[stem].least_margin, width / 2.0 / peak, 5e-3)
         must(by_name[stem].folder.name == stem, f"{by_name[stem]}")
+
+
+# ----- lines and energies
+
+CROSSED = {"tilt": {}, "thrust": {}, "moving-load": {"count": 3}}
+
+
+@relation(
+    "tilt thrust moving-load", st.tuples(decks("arch", "vault", "bridge", "column", "pointed-arch"), st.sampled_from(sorted(CROSSED))), 1e-6
+)
+def thrust_lines_pass_through_their_points(deck: Deck, kind: str, within: float) -> None:
+    """Each state of thrust that a result has at its joints has a line, which passes through these points, is whole and has a force on each part."""
+    answer = ask(deck, kind, **CROSSED[kind])
+    ok(answer)
+    a = {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
+    size = float(np.ptp(a["outline"], axis=0).max())
+    states = [name.removesuffix("_point") for name in a if name.endswith("_point") and a[name].ndim == 2]
+    must(bool(states), f"{kind}: no state of thrust in {sorted(a)}")
+    for name in states:
+        must({f"{name}_line", f"{name}_line_start", f"{name}_line_of", f"{name}_line_force"} <= set(a), f"{kind}: no line of {name}")
+        line, start = a[f"{name}_line"], a[f"{name}_line_start"].astype(int)
+        must(start[0] == 0 and start[-1] == len(line) and bool((np.diff(start) > 1).all()), f"{kind}, {name}: parts from {start}")
+        ends = [(line[i:j][:-1], line[i:j][1:]) for i, j in itertools.pairwise(start)]
+        one, two = (np.concatenate(side) for side in zip(*ends, strict=True))
+        for j, point in enumerate(a[f"{name}_point"]):
+            if not np.isfinite(point).all():
+                continue
+            along = two - one
+            share = np.clip(((point - one) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0.0, 1.0)
+            gap = float(np.hypot(*(one + share[:, None] * along - point).T).min())
+            must(gap <= within * size, f"{kind}, {name}: the line passes joint {j} at {gap} m")
+
+
+DAMPED = st.tuples(number(0.6, 1.2, 6), number(2.5, 4.0, 6), number(0.05, 0.4, 7), number(0.4, 0.8, 4), number(0.0, 80.0, 8))
+
+
+@relation("dem", st.tuples(DAMPED, pulses(0.3, 0.6)), 0.005, share=0.5)
+def energies_of_damped_solids(column: tuple, motion: Deck, within: float) -> None:
+    """Blocks in space on damped springs: what the ground supplies is motion, height, springs and losses; the losses never fall."""
+    width, slender, ratio, friction, way = column
+    structure = {"kind": "column", "section": "round", "sides": 8, "drums": 2, "width": width, "height": round(width * slender, 4)}
+    deck = {"structure": structure, "joints": {"friction": friction, "normal_stiffness": 1e8, "damping_ratio": ratio}, "motion": motion}
+    answer = ask(deck, "dem", direction=way, end_time=0.8, output_step=0.01, perturbed=False)
+    ok(answer)
+    e = {k.removesuffix("_energy"): np.asarray(v.data) for k, v in answer.result.arrays.items() if k.endswith("_energy")}
+    change = {k: v - v[0] for k, v in e.items()}
+    left = change["kinetic"] + change["potential"] + change["elastic"] + change["friction"] + change["damping"] - change["work"]
+    scale = float(max(np.abs(change[k]).max() for k in ("kinetic", "potential", "work")))
+    if scale < 1.0:
+        reject()  # at rest
+    near("energy balance", left, np.zeros(len(left)), within, scale)
+    near("residual", e["residual"], left + e["residual"][0], within, scale)
+    for name in ("friction", "damping"):
+        must(bool((np.diff(e[name]) >= -1e-3 * within * scale).all()), f"losses by {name} fall")

@@ -277,11 +277,12 @@ def test_a_semicircle_above_the_least_thickness_carries_what_limit_analysis_says
     assert r["stop"] == "mechanism" and r["stones"]
 
 
-def test_without_a_certificate_what_is_not_carried_is_refused(monkeypatch) -> None:
-    """Limit analysis finds equilibrium: elements have no result."""
+def test_without_a_certificate_what_is_not_carried_is_open(monkeypatch) -> None:
+    """Limit analysis finds equilibrium: elements prove no collapse."""
     monkeypatch.setattr("extrados.analyses.sla.driver.LimitAnalysis.stands", lambda self: True)
     found = sla({**SEMICIRCLE, "thickness": 1.05})
-    assert found.status == "refused" and "cannot carry the constant loads" in found.reason and "1/10" in found.reason
+    assert (found.status, found.verdict.outcome, found.results.proven) == ("ok", "open", False)
+    assert "cannot carry the constant loads" in found.verdict.statement and "1/10" in found.verdict.statement
 
 
 def test_own_constant_loads_are_certified_as_limit_analysis_certifies_them() -> None:

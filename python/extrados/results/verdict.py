@@ -95,17 +95,23 @@ def as_model(results: KindResults, model: type[Model]) -> Model:
 
 
 class SelfWeight(KindResults):
-    """Results of any analysis of a building that collapses under its own weight, which a certificate proves."""
+    """Results of any analysis of a building that collapses under its own weight, which a certificate proves; or of one that did not carry its
+    constant loads in a run that proves nothing."""
 
     collapse_acceleration_g: float = fact("always 0: the building carries no horizontal acceleration", "g")
     safety_factor: float = fact("always 0: the building collapses before the demand acts")
-    certificate: str = fact("certificate of collapse, with the joints or blocks at which equilibrium fails")
+    certificate: str = fact(
+        "certificate of collapse, with the joints or blocks at which equilibrium fails; if the collapse is not proven, the end of the run"
+    )
+    proven: bool = fact("whether a certificate proves the collapse; otherwise the outcome is open")
     neglected: list[str] = fact(
         "strengths, restraints and pressures of the deck that the certificate neglects; if there are any, the outcome is open"
     )
 
     def statement(self) -> str:
         """The result in words."""
+        if not self.proven:
+            return f"Whether the structure carries its constant loads is open: no certificate proves that it collapses. {self.certificate}."
         if not self.neglected:
             return f"The structure cannot stand: it collapses under its own weight. {self.certificate}."
         strengths = " and ".join(self.neglected)
@@ -115,15 +121,16 @@ class SelfWeight(KindResults):
         )
 
     def judged(self, demand: Demand) -> Verdict:
-        """cannot-stand; open where the deck gives strengths that the proof neglects."""
+        """cannot-stand; open without a proof, or where the deck gives strengths that the proof neglects."""
+        undecided = bool(self.neglected) or not self.proven
         return Verdict(
             demand=demand.peak_g,
             capacity=0.0,
             unit="g",
             ratio=0.0,
-            outcome="open" if self.neglected else "cannot-stand",
-            bound="lower" if self.neglected else "exact",
-            violated=[f"The analysis neglects {one}." for one in self.neglected],
+            outcome="open" if undecided else "cannot-stand",
+            bound="lower" if undecided else "exact",
+            violated=[f"The analysis neglects {one}." for one in self.neglected] + ([] if self.proven else [f"{self.certificate}."]),
             statement=self.statement(),
         )
 

@@ -142,7 +142,7 @@ def row_of(
     elif verdict.bound == "lower" and isinstance(r, Sla | Pushover | FramePushover):
         low = verdict.ratio
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
-        margin = None if isinstance(r, SelfWeight) and r.neglected else verdict.ratio  # of another building
+        margin = None if isinstance(r, SelfWeight) and verdict.outcome == "open" else verdict.ratio  # of another building, or not proven
     outcome, violated = outcome or verdict.outcome, list(verdict.violated)
     if violated and outcome in ("stands", "collapses"):
         outcome, statement = "open", f"{statement} {' '.join(violated)}"

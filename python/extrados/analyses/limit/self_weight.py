@@ -23,7 +23,8 @@ def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Resu
     if building.supports.abutting_wall is not None:  # no statics takes the contact with the wall
         neglected.append(_WALL)
     text = str(proof)
-    found = SelfWeight(collapse_acceleration_g=0.0, safety_factor=0.0, certificate=text[:1].upper() + text[1:], neglected=neglected)
+    certificate = text[:1].upper() + text[1:]
+    found = SelfWeight(collapse_acceleration_g=0.0, safety_factor=0.0, certificate=certificate, proven=True, neglected=neglected)
     result = Result(kind, results=found, answer=found.statement())
     if proof.motion is not None:
         result.arrays = geometry_arrays(building.blocks()) | {
@@ -35,6 +36,13 @@ def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Resu
             )
         }
     return result
+
+
+def open_at_rest(kind: str, reason: str) -> Result:
+    """The result of an analysis of a kind that did not find its building to carry the constant loads, without a proof that it collapses."""
+    end = reason[:1].upper() + reason[1:]
+    found = SelfWeight(collapse_acceleration_g=0.0, safety_factor=0.0, certificate=end, proven=False, neglected=[])
+    return Result(kind, results=found, answer=found.statement())
 
 
 def neglecting(result: Result, building: Building, without: Sequence[str]) -> Result:

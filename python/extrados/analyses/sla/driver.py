@@ -9,6 +9,7 @@ from extrados.analyses.batches import Chain
 from extrados.analyses.codes.verification import with_design_strengths
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import loads_of
+from extrados.analyses.limit.self_weight import open_at_rest
 from extrados.analyses.sla.bar_forces import bar_arrays
 from extrados.analyses.sla.contact import NotCarried
 from extrados.analyses.sla.events import Curve, run_curves
@@ -79,10 +80,10 @@ def _run(context: Context, options: Sla) -> Result:
             curves = run_stages(model, options, context.threads, context.progress, chain)
         else:
             curves = run_curves(model, options, context.threads, context.progress, damage, chain)
-    except NotCarried:
+    except NotCarried as error:
         if stones:
             certify(context.building, model)
-        raise
+        return open_at_rest("sla", str(error))  # a run of events proves no collapse
     if options.stages:
         main = curves[min(options.main, len(curves) - 1)]
         model = replace(model, unit=main.unit, acceleration=main.acceleration, control=main.control or model.control)

@@ -292,6 +292,8 @@ class Runs:
         result = run_one(context, deck.analyses[0], deck.buildings[0])
         if result.status != "ok":
             return Worth(None, reason=result.reason)
+        if isinstance(result.results, SelfWeight) and not result.results.proven:
+            return Worth(None, reason=result.results.statement())
         if isinstance(result.results, SelfWeight):
             return Worth(1.0 if self.by_probability else 0.0, "collapse under self-weight")
         if self.by_probability:
