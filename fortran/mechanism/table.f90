@@ -19,11 +19,12 @@ module mechanism_table
    public :: side_table, table_new, table_numbers, table_pack, table_unpack, table_facts
    public :: degree, lowest, panels, fit_polynomials, fit_angles
 
-   integer, parameter :: panels = 32, degree = 11
+   !> Panels of a table, twice as many where the derivative of M needs them; more would add rounding to it
+   integer, parameter :: panels = 32, most_panels = 2 * panels, degree = 11
    integer, parameter :: mass = 1, gravity_moment = 2, drive = 3
-   !> Length of the flat list of one side: critical rotation, limit, end, L, then the coefficients of each panel
-   !> and its potential at the start
-   integer, parameter :: table_numbers = 4 + panels * (3 * (degree + 1) + 1)
+   !> Length of the flat list of one side: critical rotation, limit, end, L, number of panels, then the coefficients of
+   !> each panel and its potential at the start
+   integer, parameter :: table_numbers = 5 + most_panels * (3 * (degree + 1) + 1)
 
    real(wp), parameter :: reach = 1.6_wp  !! greatest rotation that is looked at [rad]
    integer, parameter :: scan = 400
@@ -38,9 +39,10 @@ module mechanism_table
       real(wp) :: limit = 0.0_wp     !! q taken as collapse [rad]
       real(wp) :: last = 0.0_wp       !! last q of the table [rad]
       real(wp) :: scale = 1.0_wp     !! L [rad]
+      integer :: count = panels           !! panels in use
       real(wp) :: per_panel = 0.0_wp !! panels per unit of w
-      real(wp), allocatable :: coefficient(:, :, :)  !! (3, 0:degree, panels) of M_w, V_w, H_w by t in [-1, 1]
-      real(wp), allocatable :: start(:)              !! (panels) potential at the start of each [J]
+      real(wp), allocatable :: coefficient(:, :, :)  !! (3, 0:degree, most_panels) of M_w, V_w, H_w by t in [-1, 1]
+      real(wp), allocatable :: start(:)              !! (most_panels) potential at the start of each [J]
    contains
       procedure :: coefficients
       procedure :: potential
@@ -71,9 +73,8 @@ contains
       !> status_bad_geometry where gravity does not hold the mechanism shut, status_energy_lost where table and
       !> kinematics disagree
       integer(c_int), intent(out) :: status
-      real(wp) :: half_dm, v, barrier, angle(degree + 1), value(3, degree + 1), exact(degree + 1), per_w, w, panel_width
-      type(linkage_state) :: here
-      integer :: i, k, stat
+      real(wp) :: half_dm, v, barrier
+      integer :: stat
 
       call linkage_coefficients(mechanism, rest, facts%m, half_dm, facts%dv, facts%dh, v)
       facts%dh = real(side, wp) * facts%dh
@@ -87,19 +88,41 @@ contains
       ! Trial steps of the integrator look past it.
       table%last = table%limit + 0.5_wp * min(table%limit, facts%lock - table%limit)
       table%scale = merge(facts%lock, 4.0_wp * table%limit, facts%lock < min(reach, 4.0_wp * table%limit))
-      panel_width = table_coordinate(table, table%last) / real(panels, wp)
-      table%per_panel = 1.0_wp / panel_width
-      allocate (table%coefficient(3, 0:degree, panels), table%start(panels), stat=stat)
+      allocate (table%coefficient(3, 0:degree, most_panels), table%start(most_panels), source=0.0_wp, stat=stat)
       if (stat /= 0) then
          status = status_out_of_memory
          return
       end if
+      table%count = panels
+      call fit_panels(mechanism, rest, side, barrier, table, facts, status)
+      if (status == status_energy_lost) then
+         table%count = most_panels
+         call fit_panels(mechanism, rest, side, barrier, table, facts, status)
+      end if
+   end subroutine table_new
 
+   !> Fit the coefficients on all panels in use and compare them with the kinematics
+   subroutine fit_panels(mechanism, rest, side, barrier, table, facts, status)
+      type(linkage), intent(in) :: mechanism
+      type(linkage_state), intent(in) :: rest
+      integer, intent(in) :: side             !! +1: it rocks to +x, -1 to -x
+      real(wp), intent(in) :: barrier         !! potential at the critical rotation [J]
+      type(side_table), intent(inout) :: table
+      type(table_facts), intent(inout) :: facts
+      integer(c_int), intent(out) :: status   !! status_energy_lost where table and kinematics disagree
+      real(wp) :: v, angle(degree + 1), value(3, degree + 1), exact(degree + 1), per_w, w, panel_width
+      type(linkage_state) :: here
+      integer :: i, k
+
+      facts%misfit = 0.0_wp
+      facts%energy = 0.0_wp
+      panel_width = table_coordinate(table, table%last) / real(table%count, wp)
+      table%per_panel = 1.0_wp / panel_width
       angle = fit_angles()
       call copy_state(rest, here, status)
       if (status /= status_ok) return
       table%start(1) = 0.0_wp
-      do i = 1, panels
+      do i = 1, table%count
          do k = 1, degree + 1
             w = panel_width * (real(i, wp) - 0.5_wp + 0.5_wp * cos(angle(k)))
             call mechanism%carry_state(here, table%scale * w * (2.0_wp - w), status)
@@ -117,11 +140,11 @@ contains
          w = panel_width * real(i, wp)
          call mechanism%carry_state(here, table%scale * w * (2.0_wp - w), status)
          if (status /= status_ok) return
-         if (i < panels) table%start(i + 1) = table%start(i) + climb(table, i, 1.0_wp)
+         if (i < table%count) table%start(i + 1) = table%start(i) + climb(table, i, 1.0_wp)
          call enter_differences(mechanism, here, side, table, i, barrier, facts)
       end do
       if (.not. max(facts%misfit, facts%energy) <= agreement) status = status_energy_lost
-   end subroutine table_new
+   end subroutine fit_panels
 
    !> Critical rotation, the potential there, and the lock: walk out, then refine by bisection
    subroutine find_limits(mechanism, rest, critical, barrier, lock, status)
@@ -355,7 +378,7 @@ contains
       class(side_table), intent(in) :: sides
       real(wp), intent(in) :: w
       integer :: i
-      i = max(1, min(panels, 1 + int(w * sides%per_panel)))
+      i = max(1, min(sides%count, 1 + int(w * sides%per_panel)))
    end function panel_of
 
    !> The coefficients by the polynomials of panel i
@@ -418,10 +441,10 @@ contains
       type(side_table), intent(in) :: table
       real(wp), intent(out) :: list(:)  !! (table_numbers)
       integer :: n
-      n = 3 * (degree + 1) * panels
-      list(1:4) = [table%critical, table%limit, table%last, table%scale]
-      list(5:4 + n) = reshape(table%coefficient, [n])
-      list(5 + n:table_numbers) = table%start
+      n = 3 * (degree + 1) * most_panels
+      list(1:5) = [table%critical, table%limit, table%last, table%scale, real(table%count, wp)]
+      list(6:5 + n) = reshape(table%coefficient, [n])
+      list(6 + n:table_numbers) = table%start
    end subroutine table_pack
 
    !> A table from its flat list
@@ -431,7 +454,7 @@ contains
       integer(c_int), intent(out) :: status
       integer :: n, stat
 
-      n = 3 * (degree + 1) * panels
+      n = 3 * (degree + 1) * most_panels
       status = status_invalid_argument
       if (size(list) /= table_numbers) return
       table%critical = list(1)
@@ -440,12 +463,14 @@ contains
       table%scale = list(4)
       if (.not. (table%critical > 0.0_wp .and. table%limit > 0.0_wp)) return
       if (.not. (table%last >= table%limit .and. table%scale > table%last)) return
-      allocate (table%coefficient(3, 0:degree, panels), table%start(panels), stat=stat)
+      if (.not. (list(5) >= 1.0_wp .and. list(5) <= real(most_panels, wp))) return
+      table%count = nint(list(5))
+      allocate (table%coefficient(3, 0:degree, most_panels), table%start(most_panels), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
-      table%per_panel = real(panels, wp) / table_coordinate(table, table%last)
-      table%coefficient(:, :, :) = reshape(list(5:4 + n), [3, degree + 1, panels])
-      table%start(:) = list(5 + n:table_numbers)
+      table%per_panel = real(table%count, wp) / table_coordinate(table, table%last)
+      table%coefficient(:, :, :) = reshape(list(6:5 + n), [3, degree + 1, most_panels])
+      table%start(:) = list(6 + n:table_numbers)
    end subroutine table_unpack
 
 end module mechanism_table

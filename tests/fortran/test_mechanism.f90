@@ -47,11 +47,13 @@ contains
       type(side_table) :: table, again
       type(table_facts) :: facts
       type(table_rocker) :: body
-      real(wp) :: list(table_numbers), parameters(table_parameters), q, found(4), wanted(4)
+      real(wp), allocatable :: list(:), parameters(:)
+      real(wp) :: q, found(4), wanted(4)
       integer(c_int) :: status
       integer :: k
       logical :: closed
 
+      allocate (list(table_numbers), parameters(table_parameters))
       call four_hinge_new(hinge, mass, centroid, inertia, reference, status)
       call demand(status == status_ok, 'four hinges')
       call four_bar(hinge, mass, centroid, inertia, made, rest, status)

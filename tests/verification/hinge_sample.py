@@ -7,19 +7,23 @@ periods between 0.7 and 4 times the arch's own time (1/p of a block), both sprea
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
 
+from extrados.analyses.context import Context
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.from_deck import joint_values
+from extrados.analyses.rocking.hand_over import Fates, Leaving, Left, contacts_of
 from extrados.core import arch as core_arch
 from extrados.core import dem, rocking
-from extrados.decks.reader import make_deck
+from extrados.core.ground import Ground
+from extrados.decks.reader import Deck, make_deck
 from extrados.model.structures.arch import ArchAssembly, make_arch
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
+from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.mechanism import MechanismModel
@@ -48,6 +52,13 @@ RULES = ("thesis", "energy-safe", "inelastic")
 REST = 40.0
 #: Of the arch's size: a displacement that is collapse.
 FALLEN = 0.2
+
+
+class AtRest(Leaving):
+    """A mechanism that is left before it moves."""
+
+    def leave(self, ground: Ground, end_time: float, scale: float) -> Left:
+        return Left(0.0, False, 0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -112,20 +123,29 @@ class Sample:
         return float((np.abs(line.position - 0.5).max(axis=1) > 0.51).mean())
 
     @cached_property
+    def deck(self) -> Deck:
+        """The arch as a deck."""
+        sizes = {"radius": 1.0, "thickness": self.thickness, "embrace": self.embrace, "voussoirs": self.voussoirs}
+        joints = {"friction": 2.0, "normal_stiffness": 1e12}
+        return make_deck({"structure": {"kind": "arch", **sizes}, "joints": joints, "analysis": {"kind": "failure-domain"}})
+
+    def handed(self) -> tuple[np.ndarray, np.ndarray]:
+        """Which pulses bring it down (pulses,): by its mechanism and rigid contacts from where a condition fails, and by rigid contacts
+        from rest."""
+        building = self.deck.building
+        contacts = contacts_of(building.rocker(), building)
+        assert contacts is not None
+        fates = Fates.of(Context(self.deck), contacts)
+        leaving = Fates.of(Context(self.deck), replace(contacts, leaving=AtRest(**vars(contacts.leaving))))
+        found = [
+            [one.follow(motion.ground, 1.0, motion.end + REST * self.time_unit).outcome == COLLAPSE for one in (fates, leaving)]
+            for _, motion in self.pulses
+        ]
+        return tuple(np.array(found).T)
+
+    @cached_property
     def elements(self) -> dem_model.Model:
-        building = make_deck(
-            {
-                "structure": {
-                    "kind": "arch",
-                    "radius": 1.0,
-                    "thickness": self.thickness,
-                    "embrace": self.embrace,
-                    "voussoirs": self.voussoirs,
-                },
-                "joints": {"friction": 2.0, "normal_stiffness": 1e12},
-                "analysis": [{"kind": "tilt"}],
-            }
-        ).building
+        building = self.deck.building
         return dem_model.Model(building.blocks(), building.rigid(), joint_values(building))
 
     def falls(self, motion: Motion) -> bool:
