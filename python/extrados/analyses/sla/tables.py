@@ -385,8 +385,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
-        if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states):
-            raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
+        if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
+            raise ValueError("an incremental solution has no events: without_equilibrium, states and budget belong to events")
         if self.verification.model_fields_set and not self.by_inertia:
             raise ValueError("verification: needs one horizontal push by masses alone, without stages")
         if self.verification.shape == "mode":
