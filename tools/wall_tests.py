@@ -9,8 +9,8 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     codes     `code-checks` of a panel, by each code; the least applicable strength of each
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
     units     `sla` of its units and joints, likewise; walls of more than 200 units have units twice as long and as high. The
-              failure mode is that of the state at the peak, by the share of the inelastic displacement of the top that comes from the
-              rotation of beds that open and crush (F), and from their slip and cracks in units and heads (S)
+              failure mode is that of the state at the peak: does more than half of the displacement of the top come from the rotation
+              of horizontal sections (F), or from the slip of beds and the shear of units (S)?
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
               part and Turnsek-Cacovic; without drift limits, to 2 % drift
 
@@ -314,34 +314,28 @@ def _followed(wall: Wall, deck: dict[str, Any]) -> Predicted:
 
 
 def failure_of_state(wall: Wall, answer: dict[str, Any], arrays: dict[str, Any]) -> tuple[str, str]:
-    """ "F" or "S" of the state at the peak, and the shares of the inelastic displacement of the top in words.
+    """ "F" or "S" of the state at the peak, and the shares of the displacement of its top in words.
 
-    A bed at the height z of mean slip s and rotation r (the slope of its opening along the wall) moves the top by s - r (h - z).
-    The rest of the displacement, less the elastic one, comes from cracks in units and heads.
+    Horizontal sections of mean rotation r (the slope of their vertical displacement along the wall) move the top by the integral of
+    -r over the height: beds that open and crush, and bending. Beds of mean slip s move it by their sum. The rest is shear of units:
+    their cracks, and their elastic strain.
     """
     at = int(np.flatnonzero(arrays["state_event"] == answer["greatest_load_event"])[0])
     node, moved = arrays["node"], arrays["state_displacement"][at]
-    beds: dict[float, list[tuple[float, float, float]]] = {}
-    for name in (key for key in arrays if key.startswith("elements_")):
-        for corners in arrays[name]:
-            if len(corners) < 4 or np.abs(node[corners[3]] - node[corners[0]]).max() > 1e-9:
-                continue
-            if abs(node[corners[1], 1] - node[corners[0], 1]) > 1e-9:
-                continue  # of a head
-            for low, high in ((corners[0], corners[3]), (corners[1], corners[2])):
-                slip, opening = moved[high] - moved[low]
-                beds.setdefault(round(float(node[low, 1]), 6), []).append((float(node[low, 0]), float(slip), float(opening)))
-    slides = rocks = 0.0
-    for z, rows in beds.items():
-        x, slip, opening = np.array(rows).T
-        slides += float(slip.mean())
-        rocks -= float(np.polyfit(x, opening, 1)[0]) * (wall.height - z)
+    levels = np.round(node[:, 1], 6)
+    heights = np.unique(levels)
+    turns = np.array([np.polyfit(node[levels == z, 0], moved[levels == z, 1], 1)[0] for z in heights])
+    rotation = -float(0.5 * (turns[1:] + turns[:-1]) @ np.diff(heights))
+    slips: dict[float, list[float]] = {}
+    for corners in (row for name, rows in arrays.items() if name.startswith("elements_") for row in rows if len(row) == 4):
+        first, second, _, fourth = node[corners]
+        if np.abs(fourth - first).max() < 1e-9 and abs(second[1] - first[1]) < 1e-9:
+            jumps = moved[corners[[3, 2]], 0] - moved[corners[:2], 0]
+            slips.setdefault(round(float(first[1]), 6), []).append(float(jumps.mean()))
+    slip = sum(float(np.mean(rows)) for rows in slips.values())
     top = float(moved[np.abs(node[:, 1] - wall.height) < 1e-6, 0].mean())
-    elastic = answer["greatest_load_N"] / answer["initial_stiffness_N_m"]
-    cracks = max(top - elastic - slides - rocks, 0.0)
-    total = max(slides, 0.0) + max(rocks, 0.0) + cracks
-    shares = [max(part, 0.0) / total for part in (rocks, slides, cracks)]
-    return "F" if shares[0] > 0.5 else "S", "rocking {:.0%}, slip {:.0%}, cracks {:.0%}".format(*shares)
+    shares = [part / top + 0.0 for part in (rotation, slip, top - rotation - slip)]
+    return "F" if shares[0] > 0.5 else "S", "rotation {:.0%}, slip {:.0%}, shear of units {:.0%}".format(*shares)
 
 
 #: Units of a wall beyond which they are twice as long and as high; processor time of a run [s]

@@ -269,7 +269,7 @@ contains
                if (loop%lambda >= model%rules%lambda * (1.0_wp - near)) reason = stop_load
             end associate
             if (path%implicit .and. path%steps > 1 .and. iterations < few) then
-              path%step = min(growth * path%step, path%longest)
+              path%step = min(growth * path%step, longest_step(model))
             end if
          end do
          do g = 1, size(model%mesh%holders)

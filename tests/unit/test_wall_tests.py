@@ -92,7 +92,7 @@ def test_the_failure_of_a_state_is_that_by_which_its_top_moves(slip: float, rota
     answer = {"greatest_load_event": 7, "greatest_load_N": 1.0, "initial_stiffness_N_m": 1e9}
     said, shares = tool.failure_of_state(wall, answer, arrays)
     assert said == failure
-    assert shares == f"rocking {rotation / (slip + rotation):.0%}, slip {slip / (slip + rotation):.0%}, cracks 0%"
+    assert shares.startswith(f"rotation {rotation / (slip + rotation):.0%}, slip {slip / (slip + rotation):.0%}")
 
 
 def test_a_wall_of_many_units_has_units_twice_as_large(tmp_path, monkeypatch) -> None:

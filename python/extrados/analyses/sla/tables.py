@@ -431,8 +431,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             raise ValueError("seeds: a seed occurs twice, which would give the same wall again")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
-        if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states):
-            raise ValueError("an incremental solution has no events: remove without_equilibrium and states")
+        if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
+            raise ValueError("an incremental solution has no events: remove without_equilibrium, states and budget")
         if self.verification.model_fields_set and not self.by_inertia:
             raise ValueError("verification requires one horizontal load by the masses only, without stages")
         if self.verification.shape == "mode":
