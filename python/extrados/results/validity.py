@@ -162,7 +162,7 @@ FramePushover = Validity(
     "Walls are plane frames of piers and spandrels between rigid nodes. Sections carry no tension and crush; piers slide or crack in "
     "shear; beyond a drift limit an element loses its strength and keeps its vertical load. All nodes of a wall on a level have one "
     "displacement along it.",
-    "Failure of walls out of their planes is not considered: use local-mechanism. Spandrels carry no normal force. Strengths and drift limits "
+    "Failure of walls out of their planes is not considered: use local-mechanism. Spandrels carry no normal force but that of ties and ring beams. A corner lifts the weight on the effective width of its flange. Strengths and drift limits "
     "are those of codes; tested walls scatter by a fifth about them. Irregular openings make the division into piers uncertain.",
 )
 FrameHistory = Validity(
