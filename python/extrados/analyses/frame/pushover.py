@@ -239,7 +239,7 @@ def _failed(frame: EquivalentFrame, path: Path) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: row["control_displacement_m"])
 
 
-def _ring_beams(frame: EquivalentFrame, paths: Sequence[Path]) -> dict[str, float]:
+def _ring_beams(frame: EquivalentFrame, paths: Sequence[Path]) -> dict[str, Any]:
     """Greatest moment of the elastic ring beams up to the peaks of all runs; nothing without any."""
     own = [k for k, s in enumerate(frame.strips) if s.kind == "ring beam"]
     if not own:
