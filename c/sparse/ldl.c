@@ -19,7 +19,8 @@
 #include "extrados.h"
 #include "four.h"
 
-enum { most_vectors = 4, most_changes = extrados_most_changes, most_ahead = 16384 /* bytes */, most_threads = 4 };
+enum { most_vectors = 4, most_changes = extrados_most_changes, most_ahead = 16384 /* bytes */, most_threads = 4,
+  shared_from = 4000000 /* values of a factor */ };
 
 struct extrados_sparse {
   cholmod_common common;
@@ -137,12 +138,13 @@ static int all_finite(int64_t count, const double *x) {
   return 1;
 }
 
-/* CHOLMOD's loops are shared among up to four threads, whoever asks; where there is no room for them it goes alone. */
+/* CHOLMOD's loops are shared among up to four threads, whoever asks. It goes alone where there is no room for them, and
+ * where the factor is small: threads then wait for each other longer than they work, on a busy machine by far. */
 static int factor_values(struct extrados_sparse *self, cholmod_factor *factor) {
   const int room = extrados_blas_enter();
   if (room != EXTRADOS_ok) return room;
   const int levels = omp_get_max_active_levels();
-  if (extrados_threads(most_threads) < most_threads) omp_set_max_active_levels(0);
+  if (factor->xsize < shared_from || extrados_threads(most_threads) < most_threads) omp_set_max_active_levels(0);
   cholmod_l_factorize(&self->matrix, factor, &self->common);
   omp_set_max_active_levels(levels);
   extrados_blas_leave();

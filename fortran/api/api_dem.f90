@@ -63,7 +63,7 @@ contains
       call handle_leave(handle)
    end subroutine start
 
-   !> Supports that give way
+   !> Supports that move
    subroutine moves(handle, nmove, body, move, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_out_of_memory

@@ -109,7 +109,7 @@ contains
       integer(c_int), intent(in) :: ntie
       integer(c_int), intent(in) :: nanchor
       integer(c_int), intent(in) :: nbody                     !! of the model
-      real(c_double), intent(in) :: value(5, ntie)            !! stiffness [N/m], length [m], prestress, least, most [N]
+      real(c_double), intent(in) :: value(7, ntie)            !! stiffness, length, prestress, least, most, damping, power
       integer(c_int), intent(in) :: first(ntie + 1)           !! first point of each, 1-based
       integer(c_int), intent(in) :: closed(ntie)              !! 1: a hoop
       integer(c_int), intent(in) :: body(nanchor)             !! 1-based; 0: the ground

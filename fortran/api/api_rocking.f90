@@ -148,7 +148,7 @@ contains
 
    end subroutine history
 
-   !> Many runs without histories; run_status tells each member's fate
+   !> Many runs without histories; run_status has the outcome of each member
    subroutine ensemble(bodies, motions, nrun, run_body, run_motion, run_scale, end_time, start_q, &
                        tolerance, stop_when_safe, threads, outcome, peak, stop_time, demand, run_status, status)
       use common_handles, only : handle_leave

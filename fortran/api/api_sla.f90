@@ -284,9 +284,11 @@ contains
          end do
          model%threads = threads_available(model%threads)
          reason = stop_none
-         if (.not. model%path%active) call run_events(model, watched, log, reason, fate)
-         if (fate == status_ok .and. reason == stop_none .and. model%path%active) then
-           call run_steps(model, watched, log, reason, fate)
+         ! Where events hand over, the call ends: the caller wants the state of each step
+         if (model%path%active) then
+            call run_steps(model, watched, log, reason, fate)
+         else
+            call run_events(model, watched, log, reason, fate)
          end if
          counts = [int(log%count, c_int), int(model%checks%checks, c_int), int(model%checks%solutions, c_int), &
             int(model%checks%factors, c_int), reason, &

@@ -160,7 +160,7 @@ contains
       integer(c_int), intent(in) :: connect(per, elements)
       real(c_double), intent(in) :: gradient(ways, per, elements) !! strain per displacement in x, y and z [1/m]
       real(c_double), intent(in) :: property(2, elements)         !! volume [m^3], Young's modulus [Pa]
-      !> Table of tension teeth, of compression teeth, 0 none; 0 bears both, 1 tension, 2 pressure alone
+      !> Table of tension teeth, of compression teeth, 0 none; 0 carries both, 1 tension, 2 pressure alone
       integer(c_int), intent(in) :: choice(3, elements)
       integer(c_int), intent(out) :: bad                          !! bar without length
       integer(c_int), intent(out) :: status

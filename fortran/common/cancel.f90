@@ -8,13 +8,13 @@ module common_cancel
 
 contains
 
-   !> 1 asks the running loops to stop, 0 clears the request
+   !> 1 requests the running loops to stop, 0 clears the request
    subroutine cancel_set(value)
       integer(c_int), intent(in) :: value
       call extrados_cancel_set(value)
    end subroutine cancel_set
 
-   !> True once the user asked to stop
+   !> True once the user has requested a stop
    function cancel_requested() result(answer)
       logical :: answer
       answer = extrados_cancel_get() /= 0

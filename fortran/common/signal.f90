@@ -107,7 +107,7 @@ contains
       vertical = motion%scale * value(2)
    end subroutine value_at
 
-   !> Value at time t and slope of the straight lines of segment k, sines left out
+   !> Value at time t and slope of the straight lines of segment k, without the sines
    pure subroutine line_at(motion, k, t, value, slope)
       class(signal), intent(in) :: motion
       integer, intent(in) :: k           !! segment

@@ -1,4 +1,4 @@
-!> The energy ledger: what the ground gave, what moves, what is stored, what was lost.
+!> The energy balance: work of the ground, kinetic, stored and dissipated energy.
 !>
 !> Leap-frog conserves m v(n-1/2) v(n+1/2) / 2 plus the potential of linear springs and gravity exactly;
 !> the residual is taken with this kinetic energy, so that it shows true gain or loss and not the
@@ -35,7 +35,7 @@ contains
          + (energy%mass_damping - start%mass_damping) - (energy%work - start%work)
    end function energy_residual
 
-   !> The ledger as the rows of the list dem_energy [J]
+   !> The energy balance as the rows of the list dem_energy [J]
    pure function energy_row(energy, start) result(row)
       type(energy_terms), intent(in) :: energy
       type(energy_terms), intent(in) :: start

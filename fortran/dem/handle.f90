@@ -1,7 +1,7 @@
 !> Models of rigid bodies behind handles: built in steps, run under as many motions as wanted, read after.
 !>
-!> What was built stays as it is: every run starts from a copy, so runs of one model do not know of each other. Blocks
-!> of the plane (dem_plane_handle) and of space (dem3_handle) tell how they are copied.
+!> What was built stays as it is: every run starts from a copy, so runs of one model do not affect each other. Blocks
+!> of the plane (dem_plane_handle) and of space (dem3_handle) copy them.
 module dem_handle
    use common_handles, only : handle_new, handle_leave, handle_take
    use common_kinds, only : wp

@@ -1,4 +1,4 @@
-!> The force at a contact point: a spring that knows no tension, Coulomb friction on a shear spring,
+!> The force at a contact point: a spring without tension, Coulomb friction on a shear spring,
 !> and dashpots in parallel with both, proportional to their stiffness.
 !>
 !> With the normal n from body 1 to body 2, the tangent t, the gap g (negative where bodies overlap), the velocity
@@ -176,7 +176,7 @@ contains
       viscous = law%damping * stiffness
       ! The predicted velocity held the old dashpot force: u* is without it.
       force%dash_n = -viscous * (u - kick * w_nn * point%dash_n) / (1.0_wp + viscous * kick * w_nn)
-      ! A dashpot never pulls more than the mortar can bear.
+      ! A dashpot never pulls more than the mortar can carry.
       force%normal = force%spring_n + force%dash_n
       force%normal = max(force%normal, merge(-law%tension * point%length, 0.0_wp, point%bonded))
       force%dash_n = force%normal - force%spring_n

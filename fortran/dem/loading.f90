@@ -1,4 +1,4 @@
-!> What moves a model: the ground, and supports that give way.
+!> Loading of a model: the ground, and supports that move.
 module dem_loading
    use common_kinds, only : wp, pi
    use common_signal, only : signal

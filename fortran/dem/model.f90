@@ -189,7 +189,7 @@ contains
       integer :: k
       if (size(model%ties%item) == 0) return
       call place_anchors(model)
-      call stretch_ties(model%ties)
+      call stretch_ties(model%ties, merge(model%drift, 0.0_wp, model%shaking .and. .not. model%quasi_static))
       do k = 1, size(model%ties%anchor)
          associate (one => model%ties%anchor(k))
             rate = model%base_before

@@ -154,7 +154,7 @@ contains
       built%set%item%spin = rate(3, :)
    end subroutine set_start
 
-   !> Supports that give way
+   !> Supports that move
    subroutine set_moves(built, move, status)
       type(built_blocks), intent(inout) :: built
       type(support_move), intent(in) :: move(:)

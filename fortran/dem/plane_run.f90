@@ -15,7 +15,7 @@ module dem_plane_run
    use dem_simulation, only : simulation, model_sizes, slides_not
    use dem_search, only : search_pairs
    use dem_tape, only : tape
-   use dem_ties, only : forget_tie_losses, tie_energy, tie_loss
+   use dem_ties, only : forget_tie_losses, tie_dash_loss, tie_energy, tie_loss
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
@@ -107,7 +107,7 @@ contains
       call finish_step(run%model)
    end subroutine move_bodies
 
-   !> Ledger at the time of the last forces
+   !> Energy balance at the time of the last forces
    function measure_energy(run) result(now)
       class(block_simulation), intent(in) :: run
       type(energy_terms) :: now
@@ -138,7 +138,7 @@ contains
          end do
          now%friction = model%contacts%friction_loss + tie_loss(model%ties)
          now%elastic = tie_energy(model%ties)
-         now%damping = model%contacts%damping_loss
+         now%damping = model%contacts%damping_loss + tie_dash_loss(model%ties)
          now%work = now%work + model%contacts%support_work + model%ties%support_work
          do k = 1, model%contacts%pairs
             associate (pair => model%contacts%pair(k))

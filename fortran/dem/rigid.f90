@@ -7,7 +7,7 @@
 !>
 !>    g(x(n) + h v(n-1/2)) + h n.(v(n+1/2) - v(n-1/2)) >= 0,
 !>
-!> the gap at the place that the old velocity leads to, which knows how far corners have turned, and a linear step from
+!> the gap at the place that the old velocity leads to, which includes the rotation of corners, and a linear step from
 !> there. Motion that stays on its contacts is so followed to second order (the SHAKE of molecular dynamics: Ryckaert,
 !> Ciccotti and Berendsen 1977); a contact that closes loses its parting velocity. With a rebound e a contact that
 !> closes faster than gravity would in a few steps leaves with e times its speed instead. An overlap that is there
@@ -37,7 +37,7 @@ module dem_rigid
    real(wp), parameter :: gentle = 5.0_wp          !! steps of gravity: slower contacts do not rebound
    real(wp), parameter :: least_gravity = 1.0e-3_wp   !! by which velocities are measured where there is less [m/s^2]
 
-   !> What is asked of the contacts
+   !> Settings of rigid contacts
    type :: rigid_setting
       logical :: used = .false.                !! instead of the joints' springs and dashpots
       logical :: quasi_static = .false.        !! every step starts from rest
@@ -62,7 +62,7 @@ module dem_rigid
 
 contains
 
-   !> Before a run: what is asked of the contacts, and by what their velocities and energies are measured
+   !> Before a run: settings of the contacts, and the scales of their velocities and energies
    pure subroutine set_rigid(solver, clock, setting, gravity, size, mass)
       class(rigid_solver), intent(inout) :: solver
       class(model_clock), intent(inout) :: clock

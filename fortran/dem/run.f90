@@ -11,6 +11,7 @@ module dem_run
    use dem_loading, only : movement_end
    use dem_rigid, only : forget_effort
    use dem_simulation, only : any_step, simulation
+   use dem_ties, only : tie_forces
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -81,7 +82,7 @@ contains
    end subroutine settle_bodies
 
    !> Rest on springs, damped as much as rest needs, whatever the damping of the motion. Mortar does not break while the
-   !> weight comes, which comes at once and overshoots; then what cannot bear the weight at rest breaks, and all comes
+   !> weight comes, which comes at once and overshoots; then joints that cannot carry the weight at rest break, and all comes
    !> to rest anew.
    subroutine rest_with_mortar(run, rests, status)
       class(simulation), intent(inout), target :: run
@@ -276,8 +277,8 @@ contains
       end associate
    end subroutine run_on
 
-   !> Energy that came from nowhere, over the energy that went round; what rigid contacts take they must not give back,
-   !> or it came from nowhere too. Without inertia there is no ledger
+   !> Error of the energy balance over the total energy exchanged; energy that rigid contacts dissipate must not return,
+   !> or it counts as an error, too. Without inertia there is no energy balance
    function energy_from_nowhere(run, energy) result(ratio)
       class(simulation), intent(inout), target :: run
       type(energy_terms), intent(in) :: energy       !! now
@@ -314,7 +315,7 @@ contains
          record%points = record%points + 1
          record%time(record%points) = model%t - model%drift
          record%energy(:, record%points) = energy_row(energy, record%start)
-         record%tension(:, record%points) = model%ties%item%tension
+         record%tension(:, record%points) = tie_forces(model%ties)
       end associate
       call run%record_state()
    end subroutine record_point

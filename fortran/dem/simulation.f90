@@ -1,4 +1,4 @@
-!> A model of rigid bodies on its way: how it is asked to run, what it leaves, and the hooks that blocks of the plane
+!> A run of a model of rigid bodies: its options, its results, and the hooks that blocks of the plane
 !> (dem_plane_run) and of space (dem3_run) fill. Their steps, on springs or on rigid contacts, are chosen here.
 module dem_simulation
    use common_kinds, only : wp
@@ -16,18 +16,18 @@ module dem_simulation
 
    !> Greatest stable step where any step is stable [s]
    real(wp), parameter :: any_step = huge(1.0_wp)
-   integer, parameter :: model_sizes = 8     !! that a state tells of a model
+   integer, parameter :: model_sizes = 8     !! of a model in a stored state
 
    type :: run_options
       real(wp) :: end_time = 0.0_wp          !! [s]
       real(wp) :: step = 0.0_wp              !! [s]; 0: the fraction of the critical step
       real(wp) :: fraction = 0.3_wp          !! of the critical step
       real(wp) :: settle_tolerance = 1.0e-6_wp  !! unbalanced force over weight
-      real(wp) :: settlement = 0.0_wp        !! displacement by which a body falls instead of settling [m]; 0: none
+      real(wp) :: settlement = 0.0_wp        !! displacement beyond which a body collapses instead of settling [m]; 0: none
       real(wp) :: collapse = 0.0_wp          !! displacement that counts as collapse [m]; 0: none
-      real(wp) :: residual_limit = 0.1_wp    !! of the energy that went round
+      real(wp) :: residual_limit = 0.1_wp    !! of the total energy exchanged
       real(wp) :: settle_damping = 0.0_wp    !! beta of all joints while they settle, where their own is less [s]
-      real(wp) :: collapse_turn = 0.0_wp     !! a body that moved that far has collapsed where it turned by more [rad]
+      real(wp) :: collapse_turn = 0.0_wp     !! a body that moved that far has collapsed if it rotated by more [rad]
       real(wp) :: collapse_drop = 0.0_wp     !! or is lower by more [m]; both 0: the displacement alone counts
       integer :: settle_steps = 0            !! at most; 0: no settling
       logical :: stop_at_rest = .false.      !! once the ground is quiet
@@ -53,9 +53,9 @@ module dem_simulation
       real(wp) :: least_step = 0.0_wp        !! [s]
       real(wp) :: critical = 0.0_wp          !! critical step at the start; 0 where any step is stable [s]
       real(wp) :: stop_time = 0.0_wp         !! [s]
-      real(wp) :: residual = 0.0_wp          !! greatest, over the energy that went round
+      real(wp) :: residual = 0.0_wp          !! greatest, over the total energy exchanged
       type(energy_terms) :: start            !! energies as the shaking began
-      real(wp) :: round = 0.0_wp             !! greatest energy that went round so far [J]
+      real(wp) :: round = 0.0_wp             !! greatest total energy exchanged so far [J]
       real(wp) :: taken = 0.0_wp             !! greatest lasting loss by rigid contacts so far [J]
       real(wp) :: damping = 0.0_wp           !! loss at the look before [J]
       integer :: calm_looks = 0              !! looks in a row at which all was quiet
@@ -105,7 +105,7 @@ module dem_simulation
       subroutine search_pairs(run, first_time, status)
          import :: simulation, c_int
          implicit none
-         class(simulation), intent(inout) :: run        !! its record tells how many
+         class(simulation), intent(inout) :: run        !! its record has their number
          logical, intent(in) :: first_time              !! then it refuses what was drawn wrong, by the record's reason
          integer(c_int), intent(out) :: status          !! not_finite where a place is no number
       end subroutine search_pairs
@@ -158,7 +158,7 @@ module dem_simulation
       subroutine look(run, collapse)
          import :: simulation, wp
          implicit none
-         class(simulation), intent(inout) :: run        !! its record tells why it stops, and who is to blame
+         class(simulation), intent(inout) :: run        !! its record has the reason for the stop and the bodies that caused it
          real(wp), intent(in) :: collapse               !! displacement [m]; 0: none
       end subroutine look
 

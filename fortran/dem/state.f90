@@ -13,7 +13,7 @@ module dem_state
    private
    public :: state_words, state_save, state_load
 
-   !> Entries of the head: words, output times, points, and what the model tells of itself
+   !> Entries of the head: words, output times, points, and the sizes of the model
    integer, parameter :: entries = 3 + model_sizes
 
 contains
@@ -28,7 +28,7 @@ contains
       words = entries + (measure%at + per_word - 1) / per_word
    end function state_words
 
-   !> Write the state; state_words tells how many words there must be
+   !> Write the state; state_words gives the number of words
    subroutine state_save(run, word, status)
       class(simulation), intent(inout), target :: run
       integer(c_int64_t), intent(out), target :: word(:)

@@ -9,8 +9,12 @@
 !> A bound of zero is slackness: the tie carries nothing and keeps its length. At any other bound it yields, and e_p is
 !> the plastic elongation. A block feels T times the sum of the unit vectors to the neighbours of its point.
 !>
+!> A dashpot beside it resists the rate of the length, D = c |dL/dt|^n in the sense of the rate, of the position step
+!> that led to the forces. Below a small rate it is linear, so that a step cannot reverse the rate.
+!>
 !> Energy: T^2 / 2k is stored, and the mean tension of a step times the change of e_p is lost, which closes the balance
-!> with the trapezoidal work of dem_energy while T changes linearly in the step.
+!> with the trapezoidal work of dem_energy while T changes linearly in the step. The dashpot loses its mean force times
+!> the change of length.
 module dem_ties
    use common_kinds, only : wp
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_out_of_memory
@@ -18,7 +22,7 @@ module dem_ties
    implicit none
    private
    public :: tie_set, tie_set_new, tie_set_copy, trace_ties, stretch_ties, add_tie_stiffness, tie_energy, tie_loss, &
-      forget_tie_losses
+      tie_dash_loss, tie_forces, forget_tie_losses
 
    type :: tie
       integer :: first = 0                     !! its points
@@ -35,6 +39,11 @@ module dem_ties
       real(wp) :: lowest = 0.0_wp              !! least and greatest tension of any step since the settling [N]
       real(wp) :: highest = 0.0_wp
       real(wp) :: loss = 0.0_wp                !! by yielding [J]
+      real(wp) :: damping = 0.0_wp             !! c [N (s/m)^n]
+      real(wp) :: power = 1.0_wp               !! n
+      real(wp) :: dash = 0.0_wp                !! D at the last forces [N]
+      real(wp) :: before = 0.0_wp              !! L at the last forces [m]
+      real(wp) :: dash_loss = 0.0_wp           !! in the dashpot [J]
    end type tie
 
    !> A place of a block, or of the ground, that has a share of the force at a point of the line
@@ -63,7 +72,7 @@ contains
 
    !> Ties from flat arrays
    subroutine tie_set_new(value, first, closed, body, point, place, bodies, ties, status)
-      real(wp), intent(in) :: value(:, :)           !! (5, ties) k [N/m], L_0 [m], T_0, T_min, T_max [N]
+      real(wp), intent(in) :: value(:, :)           !! (7, ties) k, L_0, T_0, T_min, T_max, c, n: N, m, s
       integer(c_int), intent(in) :: first(:)        !! (ties + 1) first point of each, 1-based
       integer(c_int), intent(in) :: closed(:)       !! (ties) 1: a hoop
       integer(c_int), intent(in) :: body(:)         !! (anchors) 1-based; 0: the ground
@@ -75,7 +84,8 @@ contains
       integer :: k, points, failed
 
       status = status_invalid_argument
-      if (.not. all(value(1, :) > 0.0_wp .and. value(2, :) > 0.0_wp)) return
+      if (.not. all(value(1, :) >= 0.0_wp .and. value(2, :) > 0.0_wp .and. value(6, :) >= 0.0_wp)) return
+      if (.not. all(value(1, :) + value(6, :) > 0.0_wp .and. value(7, :) > 0.0_wp)) return
       if (.not. all(value(4, :) <= 0.0_wp .and. value(5, :) >= 0.0_wp)) return
       if (.not. all(value(3, :) >= value(4, :) .and. value(3, :) <= value(5, :))) return
       points = int(first(size(first))) - 1
@@ -92,7 +102,7 @@ contains
       do k = 1, size(closed)
          ties%item(k) = tie(first=int(first(k)), last=int(first(k + 1)) - 1, closed=closed(k) /= 0, &
             stiffness=value(1, k), length_start=value(2, k), prestress=value(3, k), least=value(4, k), &
-            most=value(5, k), tension=value(3, k))
+            most=value(5, k), tension=value(3, k), damping=value(6, k), power=value(7, k))
       end do
       do k = 1, size(body)
          ties%anchor(k) = tie_anchor(body=int(body(k)), point=int(point(k)), &
@@ -154,15 +164,25 @@ contains
    end subroutine trace_ties
 
    !> Tensions and forces on the anchors, from the places of the anchors
-   pure subroutine stretch_ties(ties)
+   pure subroutine stretch_ties(ties, span)
       type(tie_set), intent(inout) :: ties
+      real(wp), intent(in) :: span                  !! position step that led here, 0 without dashpots [s]
+      real(wp) :: mobility
       integer :: k, n
       call trace_ties(ties)
       do n = 1, size(ties%item)
-         call load_tie(ties%item(n))
-         do k = ties%item(n)%first, ties%item(n)%last
-            ties%pull(:, k) = ties%item(n)%tension * ties%pull(:, k)
-         end do
+         associate (one => ties%item(n))
+            call load_tie(one)
+            mobility = 0.0_wp
+            if (one%damping > 0.0_wp) mobility = sum(ties%anchor%answer, &
+               mask=ties%anchor%point >= one%first .and. ties%anchor%point <= one%last)**2
+            call damp_tie(one, span, mobility)
+            do k = one%first, one%last
+               ties%pull(:, k) = (one%tension + one%dash) * ties%pull(:, k)
+            end do
+            one%lowest = min(one%lowest, one%tension + one%dash)
+            one%highest = max(one%highest, one%tension + one%dash)
+         end associate
       end do
       do k = 1, size(ties%anchor)
          associate (one => ties%anchor(k))
@@ -183,14 +203,32 @@ contains
          one%loss = one%loss + 0.5_wp * (one%tension + new) * (trial - new) / one%stiffness
       end if
       one%tension = new
-      one%lowest = min(one%lowest, new)
-      one%highest = max(one%highest, new)
    end subroutine load_tie
+
+   !> Force of the dashpot of one tie, whose length answers a tension of one with the acceleration `mobility`
+   pure subroutine damp_tie(one, span, mobility)
+      type(tie), intent(inout) :: one
+      real(wp), intent(in) :: span                  !! [s]
+      real(wp), intent(in) :: mobility              !! [1/kg]
+      !> Of the rate of the length: what a force may change of it in a step
+      real(wp), parameter :: most = 0.5_wp
+      real(wp) :: rate, new
+      new = 0.0_wp
+      if (one%damping > 0.0_wp .and. span > 0.0_wp) then
+         rate = (one%length - one%before) / span
+         new = sign(one%damping * abs(rate)**one%power, rate)
+         if (mobility * abs(new) * span > most * abs(rate)) new = most * rate / (mobility * span)
+         one%dash_loss = one%dash_loss + 0.5_wp * (one%dash + new) * (one%length - one%before)
+      end if
+      one%dash = new
+      one%before = one%length
+   end subroutine damp_tie
 
    !> Add a bound of what the ties contribute to the greatest eigenvalue of each body's stiffness scaled by its masses.
    !> With g_i the pull at an anchor of body i, scaled so, the stiffness of a tie is k g g^T, and by Cauchy's inequality
    !> at most that of separate bodies with k |g_i| (sum of all |g_j|). A tension T across a segment of length l adds the
    !> geometric stiffness T / l, at most twice that at each of its ends; T is that of yielding where the tie yields.
+   !> A dashpot counts as a frequency of twice its rate of decay, at a rate of the length of one.
    pure subroutine add_tie_stiffness(ties, square)
       type(tie_set), intent(inout) :: ties          !! answer: |g_i| of a pull of one, 0 of supports and of the ground
       real(wp), intent(inout) :: square(:)          !! (bodies) squares of frequencies [1/s^2]
@@ -205,6 +243,7 @@ contains
                associate (anchor => ties%anchor(n))
                   if (anchor%body == 0 .or. anchor%point < one%first .or. anchor%point > one%last) cycle
                   square(anchor%body) = square(anchor%body) + one%stiffness * anchor%answer * total &
+                     + (2.0_wp * one%damping * anchor%answer * total)**2 &
                      + 2.0_wp * max(tension, 0.0_wp) * ties%near(anchor%point) * anchor%share * anchor%mobility
                end associate
             end do
@@ -216,7 +255,7 @@ contains
    pure function tie_energy(ties) result(energy)
       type(tie_set), intent(in) :: ties
       real(wp) :: energy
-      energy = sum(0.5_wp * ties%item%tension**2 / ties%item%stiffness)
+      energy = sum(0.5_wp * ties%item%tension**2 / ties%item%stiffness, mask=ties%item%stiffness > 0.0_wp)
    end function tie_energy
 
    !> Energy lost by yielding of all ties [J]
@@ -226,10 +265,25 @@ contains
       energy = sum(ties%item%loss)
    end function tie_loss
 
+   !> Energy lost in the dashpots [J]
+   pure function tie_dash_loss(ties) result(energy)
+      type(tie_set), intent(in) :: ties
+      real(wp) :: energy
+      energy = sum(ties%item%dash_loss)
+   end function tie_dash_loss
+
+   !> Forces of the ties at the last forces, dashpots included (ties) [N]
+   pure function tie_forces(ties) result(force)
+      type(tie_set), intent(in) :: ties
+      real(wp) :: force(size(ties%item))
+      force = ties%item%tension + ties%item%dash
+   end function tie_forces
+
    !> Losses, work and extremes so far count no more
    pure subroutine forget_tie_losses(ties)
       type(tie_set), intent(inout) :: ties
       ties%item%loss = 0.0_wp
+      ties%item%dash_loss = 0.0_wp
       ties%item%lowest = ties%item%tension
       ties%item%highest = ties%item%tension
       ties%support_work = 0.0_wp

@@ -1,4 +1,4 @@
-!> Dowels across joints of blocks in space: they bear shear and no pull.
+!> Dowels across joints of blocks in space: they carry shear and no tension.
 !>
 !> A dowel stands in the first body at a place r1, with its axis n there, and reaches into the second at r2. With d the
 !> way from the one place to the other and P = 1 - n n^T,

@@ -1,4 +1,4 @@
-!> The force at the points of a contact: a spring that knows no tension beyond that of mortar, Coulomb friction on a
+!> The force at the points of a contact: a spring without tension beyond that of mortar, Coulomb friction on a
 !> shear spring in the plane of the contact, and dashpots in parallel with both, taken implicitly: the law of the plane
 !> room with a cone (dem/law.f90).
 !>
@@ -63,7 +63,7 @@ module dem3_law
 contains
 
    !> Where a pair touches, looked at anew if its bodies have moved relative to each other by more than `far`; what goes
-   !> on keeps its springs. What the springs of all gain or lose by that is booked nowhere: it shows in the ledger.
+   !> on keeps its springs. What the springs of all gain or lose by that is not recorded: it shows as an error of the energy balance.
    pure subroutine find_points(set, far, margin, pair)
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: far               !! [m]
@@ -89,7 +89,7 @@ contains
       if (fresh) call free_of_force(set, deep * far, pair)
    end subroutine find_points
 
-   !> Where a pair touches now. Apart from find_points, which is asked far more often than it must look:
+   !> Where a pair touches now. Apart from find_points, which is called far more often than it must search:
    !> a patch is long.
    pure subroutine find_anew(set, margin, pair)
       type(body_set), intent(in) :: set
@@ -303,7 +303,7 @@ contains
       w = dot_product(normal, matmul(answer, normal))
       viscous = law%damping * stiff_n
       dash_n = -viscous * (dot_product(star, normal) - kick * w * point%dash_n) / (1.0_wp + viscous * kick * w)
-      ! A dashpot never pulls more than the mortar can bear.
+      ! A dashpot never pulls more than the mortar can carry.
       push_n = max(spring_n + dash_n, merge(-law%tension * point%what%area, 0.0_wp, point%bonded))
       ! Shear, now that the normal force is known; mortar may break.
       bound = max(law%friction * push_n + held_by_mortar, 0.0_wp)

@@ -6,7 +6,7 @@ module dem3_model
    use dem_energy, only : energy_terms
    use dem_joint, only : joint_law
    use dem_jointed, only : jointed_model
-   use dem_ties, only : add_tie_stiffness, stretch_ties, tie_energy, tie_loss, trace_ties
+   use dem_ties, only : add_tie_stiffness, stretch_ties, tie_dash_loss, tie_energy, tie_loss, trace_ties
    use dem3_bodies, only : body, body_set, cross, place_part, spin_of, turn_freely
    use dem3_dowels, only : act_dowel, dowel, dowel_energy
    use dem3_law, only : apply_pair_law, bond_points, contact_pair, contact_point, drop_points, elastic_energy, &
@@ -35,7 +35,7 @@ module dem3_model
       real(wp) :: reach = 0.0_wp                      !! a body that has moved farther makes them stale [m]
       real(wp) :: margin = 0.0_wp                     !! features nearer than this are points of a pair [m]
       real(wp) :: far = 0.0_wp                        !! bodies that have moved farther apart find them anew [m]
-      real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
+      real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is checked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
       real(wp) :: support_work = 0.0_wp               !! of them [J]
       ! Contacts without springs, see dem3_moreau
@@ -413,7 +413,7 @@ contains
       integer :: k
       if (size(model%ties%item) == 0) return
       call place_anchors(model)
-      call stretch_ties(model%ties)
+      call stretch_ties(model%ties, merge(model%drift, 0.0_wp, model%shaking .and. .not. model%quasi_static))
       do k = 1, size(model%ties%anchor)
          associate (one => model%ties%anchor(k))
             if (one%body == 0) cycle
@@ -638,7 +638,7 @@ contains
       bound = size * exp((scale + log(norm2(power))) / 16.0_wp)
    end function above_eigenvalues
 
-   !> Ledger at the time of the last forces: leap-frog keeps m v(n-1/2) v(n+1/2) / 2 plus the energy of linear springs
+   !> Energy balance at the time of the last forces: leap-frog keeps m v(n-1/2) v(n+1/2) / 2 plus the energy of linear springs
    pure function energy_now(model) result(now)
       type(solid_model), intent(in) :: model
       type(energy_terms) :: now
@@ -660,7 +660,7 @@ contains
          now%work = now%work + b%work
       end do
       now%friction = model%lost(1) + tie_loss(model%ties)
-      now%damping = model%lost(2)
+      now%damping = model%lost(2) + tie_dash_loss(model%ties)
       now%elastic = tie_energy(model%ties)
       now%work = now%work + model%support_work
       do k = 1, model%pairs

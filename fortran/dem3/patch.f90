@@ -22,7 +22,7 @@ module dem3_patch
    integer, parameter, public :: on_second = 2    !! a point of the first body over a plane of the second
    integer, parameter, public :: on_edges = 3     !! an edge of each
 
-   !> Of the size of the lesser part: faces that overlap deeper are asked for edges that cross
+   !> Of the size of the lesser part: faces that overlap deeper are searched for edges that cross
    real(wp), parameter :: deep = 2.0e-3_wp
    !> Of the same: side of the square that a point where edges cross stands for
    real(wp), parameter :: edge_side = 0.05_wp
@@ -91,7 +91,7 @@ contains
             call look_back(set, face_two, b, one, a, facing, facing_cosine)
          end if
          ! Corners beyond the outline of a face may lie deep below its plane: of faces that look against each other the
-         ! polygon tells what touches.
+         ! polygon gives the points in contact.
          if (max(least_one, least_two) < -deep * size .and. facing_cosine > -facing_enough) then
             call find_edges(set, one, two, here_one, here_two, max(least_one, least_two), margin, size, found)
             if (found%points >= 0) found%reference = 0

@@ -21,9 +21,20 @@ module frame_push
       integer(c_int), allocatable :: state(:, :)      !! (elements, most) of the list frame_state
    end type push_path
 
+   !> The last step of a run. The next one begins as if it went on, so that the piers which slide do so from the first
+   !> iteration on: an elastic beginning overshoots, more piers seem to slide, and the iterations diverge.
+   type :: last_step
+      real(wp) :: length = 0.0_wp                     !! 0: none
+      real(wp) :: multiple = 0.0_wp
+      real(wp), allocatable :: d(:)                   !! (n)
+      real(wp), allocatable :: slip(:)                !! (elements)
+   end type last_step
+
    !> Step over the greatest in which shear strengths follow the forces of the last equilibrium. It is taken where no
    !> smaller step converges: friction makes the problem unsymmetric, and it may have no solution nearby.
    real(wp), parameter :: lagged_step = 0.1_wp
+   !> The step, over the greatest, within which the displacement at a drift limit is found
+   real(wp), parameter :: event_step = 0.02_wp
    !> The least step, over the greatest; parts in which moments of failed elements fade, at most
    real(wp), parameter :: least_step = 1.0e-4_wp
    integer, parameter :: most_parts = 256
@@ -91,8 +102,11 @@ contains
       integer(c_int), intent(out) :: status
       type(frame_state) :: past, now
       real(wp) :: multiple, trial, start, moved, step, most, greatest
+      type(last_step) :: last
+      logical :: goes_on
       integer :: failed
       path%count = 0
+      goes_on = .false.
       ended = frame_stop_weight
       call weigh_frame(model, past, status)
       if (status /= status_ok) then
@@ -120,9 +134,12 @@ contains
          step = min(step, target - moved, max(0.05_wp * most, 0.1_wp * moved), most)
          call take_over(past, now)
          trial = multiple
+         if (goes_on) call go_on(last, step, now, trial)
          call equilibrate(model, 1.0_wp, past, pattern, control, start + moved + step, .true., now, trial, status)
          if (status /= status_ok) then
             status = status_ok
+            goes_on = .not. goes_on .and. last%length > 0.0_wp
+            if (.not. goes_on .and. last%length > 0.0_wp) cycle
             step = 0.5_wp * step
             ended = frame_stop_step
             if (step < least_step * most) then
@@ -132,13 +149,21 @@ contains
             end if
             cycle
          end if
+         call commit(model, now, failed)
+         if (failed > 0 .and. step > event_step * most) then   ! closer to the displacement at which a limit is reached
+            step = 0.25_wp * step
+            cycle
+         end if
          now%lagged = .false.
+         goes_on = .true.
+         call keep_step(last, step, past, now, trial - multiple)
          moved = moved + step
          multiple = trial
-         call commit(model, now, failed)
          call take_over(now, past)
          call note(path, past, moved, multiple)
          if (failed > 0) then
+            goes_on = .false.
+            last%length = 0.0_wp
             call redistribute(model, pattern, control, start, moved, past, multiple, path, status)
             if (status /= status_ok) then
                status = status_ok
@@ -154,6 +179,32 @@ contains
       end do
    end subroutine push_frame
 
+   !> Begin a step as if the last one went on
+   pure subroutine go_on(last, length, now, multiple)
+      type(last_step), intent(in) :: last
+      real(wp), intent(in) :: length
+      type(frame_state), intent(inout) :: now
+      real(wp), intent(inout) :: multiple
+      real(wp) :: ratio
+      ratio = length / last%length
+      now%d(:) = now%d + ratio * last%d
+      now%element%slip = now%element%slip + ratio * last%slip
+      multiple = multiple + ratio * last%multiple
+   end subroutine go_on
+
+   !> Keep the step from one state to the next
+   pure subroutine keep_step(last, length, past, now, multiple)
+      type(last_step), intent(inout) :: last
+      real(wp), intent(in) :: length
+      type(frame_state), intent(in) :: past
+      type(frame_state), intent(in) :: now
+      real(wp), intent(in) :: multiple                !! its growth
+      last%length = length
+      last%d = now%d - past%d
+      last%slip = now%element%slip - past%element%slip
+      last%multiple = multiple
+   end subroutine keep_step
+
    !> Let the moments of failed elements fade at one control displacement; further elements may fail meanwhile
    subroutine redistribute(model, pattern, control, start, moved, past, multiple, path, status)
       type(frame), intent(in) :: model
@@ -166,13 +217,16 @@ contains
       type(push_path), intent(inout) :: path
       integer(c_int), intent(out) :: status
       type(frame_state) :: now, from
+      type(last_step) :: last
       real(wp) :: part, trial, kept
+      logical :: goes_on
       integer :: failed, e, tries
       call frame_state_new(model, now, failed)
       if (failed == 0) call frame_state_new(model, from, failed)
       status = status_out_of_memory
       if (failed /= 0) return
       part = 0.25_wp
+      goes_on = .false.
       do tries = 1, most_parts
          call take_over(past, from)
          do e = 1, size(model%element)
@@ -184,8 +238,11 @@ contains
          end do
          call take_over(from, now)
          trial = multiple
+         if (goes_on) call go_on(last, part, now, trial)
          call equilibrate(model, 1.0_wp, from, pattern, control, start + moved, .true., now, trial, status)
          if (status /= status_ok) then
+            goes_on = .not. goes_on .and. last%length > 0.0_wp
+            if (.not. goes_on .and. last%length > 0.0_wp) cycle
             part = 0.5_wp * part
             if (part < 1.0e-3_wp) then
                if (now%lagged) return
@@ -194,6 +251,8 @@ contains
             end if
             cycle
          end if
+         goes_on = .true.
+         call keep_step(last, part, past, now, trial - multiple)
          multiple = trial
          call commit(model, now, failed)
          call take_over(now, past)

@@ -20,10 +20,10 @@ contains
 
    !> The x of least cost with a^T x >= b and low <= x <= high, and what the cost would grow by per unit of each bound.
    !>
-   !> It starts at the vertex of the box that the cost asks for, whose multipliers are not negative. Every step takes in
+   !> It starts at the vertex of the box that the cost requires, whose multipliers are not negative. Every step takes in
    !> the row that is broken most, and gives up the side whose multiplier vanishes first (Lemke 1954): the cost only
    !> grows, and where no row is broken it is least. Not solved where a row can be met by giving up no side (then no x
-   !> obeys all), or where rounding stands in the way: the caller asks another method.
+   !> obeys all), or where rounding prevents it: the caller uses another method.
    pure subroutine least_vertex(a, b, cost, low, high, x, rows, sides, solved, status)
       real(wp), intent(in) :: a(:, :)    !! (n, k) gradients of the rows
       real(wp), intent(in) :: b(:)       !! (k) least values

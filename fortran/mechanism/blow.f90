@@ -1,4 +1,4 @@
-!> The blow when open joints close: velocities after an impact without rebound at all joints of a section.
+!> The impact when open joints close: velocities after an impact without rebound at all joints of a section.
 !>
 !> Moreau 1988, "Unilateral contact and dry friction in finite freedom dynamics": of all velocities at which no joint
 !> overlaps or slides, the one after the impact is nearest, in kinetic energy, to that before. Impulses press and shear

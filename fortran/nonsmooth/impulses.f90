@@ -1,4 +1,4 @@
-!> Impulses at unilateral contacts with Coulomb friction: the velocities of rigid bodies after a time step or a blow, in
+!> Impulses at unilateral contacts with Coulomb friction: the velocities of rigid bodies after a time step or an impact, in
 !> the plane (three freedoms of a body, one direction of sliding) or in space (six, two).
 !>
 !> With masses M, velocities f that the bodies would have without contacts, and for each contact point the parting
@@ -36,7 +36,7 @@ module nonsmooth_impulses
    integer, parameter, public :: in_plane = 2, in_space = 3
    !> Friction of points that never slide, nor where they part: the cone is a half space (its square does not overflow)
    real(wp), parameter, public :: no_sliding = 1.0e100_wp
-   !> Weights over masses at the start, in the plane and in space, where the round cones ask for Newton's method anyway
+   !> Weights over masses at the start, in the plane and in space, where the round cones require Newton's method anyway
    real(wp), parameter :: heavy(in_plane:in_space) = [1.0e2_wp, 1.0e4_wp]
    real(wp), parameter :: growth = 10.0_wp       !! factor on the weights in the plane where impulses have far to go
    integer, parameter :: patience = 15           !! rounds before that
@@ -68,7 +68,7 @@ module nonsmooth_impulses
       real(wp), allocatable :: weight(:)            !! (points) r
       real(wp), allocatable :: raised(:)            !! (points) c [m/s]
       real(wp), allocatable :: asked(:, :)          !! (points, now and before) c by the sliding found [m/s]
-      real(wp), allocatable :: change(:, :)         !! (points, now and before) of c that was so asked for [m/s]
+      real(wp), allocatable :: change(:, :)         !! (points, now and before) of c that this requires [m/s]
       real(wp), allocatable :: rate_at(:, :)        !! (direction, points) w [m/s]
       real(wp), allocatable :: trial(:, :)          !! (direction, points) p - r (w_n + c, w_t)
       real(wp), allocatable :: near(:, :)           !! (direction, points) the points of the cones nearest to these
@@ -328,7 +328,7 @@ contains
          if (.not. whole) cycle
          exact = unchanged(problem)
          if (exact) return
-         ! Points on the verge of sliding may change sides for ever and move nothing. And no velocity is farther off
+         ! Points on the verge of sliding may change sides without end and move nothing. And no velocity is farther off
          ! than by the impulses that are missing: what slides on a round cone has turned little.
          if (maxval(abs(problem%load)) < close * tolerance) return
          if (maxval(abs(problem%missing / problem%mass)) < close * tolerance) return
@@ -411,7 +411,7 @@ contains
       end do
    end subroutine assemble_matrix
 
-   !> What the points of a pair resist with, unless it is what they did when last it was asked for
+   !> Forces with which the points of a pair resist, unless they are those of the last call
    pure subroutine assemble_pair(problem, first, last, pair)
       type(impulse_problem), intent(inout) :: problem
       integer, intent(in) :: first                  !! points

@@ -21,7 +21,7 @@ module rocking_block_rocker
    integer, parameter :: block_parameters = 9
    !> Terms of the series of the rate; the rotation has one more
    integer, parameter :: order = 8
-   !> Terms below this share of the tolerance end the series: chattering magnifies what is left out
+   !> Terms below this share of the tolerance end the series: chattering magnifies the neglected terms
    real(wp), parameter :: negligible = 1.0e-3_wp
    real(wp), parameter :: inverse(order + 1) = [1.0_wp, 1.0_wp / 2.0_wp, 1.0_wp / 3.0_wp, 1.0_wp / 4.0_wp, &
       1.0_wp / 5.0_wp, 1.0_wp / 6.0_wp, 1.0_wp / 7.0_wp, 1.0_wp / 8.0_wp, 1.0_wp / 9.0_wp]
@@ -157,7 +157,7 @@ contains
       step%cv(series%last + 1) = 0.0_wp
    end subroutine take_over
 
-   !> Sample after sample by the same series, with no more than the comparisons that tell where to stop
+   !> Sample after sample by the same series, with no more than the comparisons that decide where to stop
    pure subroutine glide_samples(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
                          step, stopped, demand)
       class(block_rocker), intent(in) :: model
@@ -197,7 +197,7 @@ contains
          call expand_series(model, i, sigma, h, q, v, value, slope, tolerance, series)
          q_end = series_end(series%x, series%last + 1)
          v_end = series_end(series%u, series%last) * (1.0_wp / h)
-         ! A turning point, an impact, a fall, or a step that is too long: for whoever looks closer
+         ! A turning point, an impact, a collapse, or a step that is too long: the general integrator resolves it
          stopped = series%error > series_short .or. q_end <= 0.0_wp .or. q_end >= model%limit(i) &
             .or. v * v_end <= 0.0_wp
          if (stopped) then
@@ -283,7 +283,7 @@ contains
             u(k + 1) = -inverse(k + 1) * (pull * s(k) + pull_slope * s(k - 1) + push * c(k) + push_slope * c(k - 1))
             x(k + 2) = inverse(k + 2) * u(k + 1)
             if (k < 2) cycle
-            ! The last two terms bound what is left out; what follows them is smaller by far.
+            ! The last two terms bound the neglected ones, which are much smaller.
             if (abs(u(k + 1)) + abs(u(k)) <= negligible * tolerance_u .and. &
                 abs(x(k + 2)) + abs(x(k + 1)) <= negligible * tolerance_q) then
                last = k + 1

@@ -46,7 +46,7 @@ module rocking_modes
    !> In the caller's arrays
    type :: mode_history
       integer :: points = 0
-      real(wp), pointer, contiguous :: time(:) => null()      !! asked for, ascending [s]
+      real(wp), pointer, contiguous :: time(:) => null()      !! requested, ascending [s]
       real(wp), pointer, contiguous :: state(:, :) => null()  !! (rows of the structure, points)
       integer :: events = 0
       integer(c_int), pointer, contiguous :: event_kind(:) => null()
@@ -55,7 +55,7 @@ module rocking_modes
       integer(c_int) :: impacts(2) = 0   !! at each contact or edge
       integer(c_int) :: half_cycles = 0  !! begun, of structures that count them
       integer(c_int) :: steps = 0
-      logical :: settled = .false.       !! came down, or can no longer fall after the motion
+      logical :: settled = .false.       !! collapsed, or can no longer collapse after the motion
       !> Least and greatest value of the first two numbers of the state, and of the second less the first
       real(wp) :: least(3) = 0.0_wp
       real(wp) :: most(3) = 0.0_wp
@@ -87,7 +87,7 @@ module rocking_modes
          type(mode_history), intent(inout) :: history
       end subroutine leave_mode
 
-      !> The place about which it has turned past recall, 0 where it stands
+      !> The place about which it has rotated beyond recovery, 0 where it stands
       pure function fallen(body, y) result(place)
          import :: mode_rocker, wp
          implicit none (type, external)
@@ -145,7 +145,7 @@ contains
       end associate
    end function resting
 
-   !> Can it no longer fall where the ground is quiet? Not while it moves, unless a structure says otherwise
+   !> Can the structure no longer collapse while the ground is quiet? Not while it moves, unless a structure says otherwise
    pure function upright(body, y) result(answer)
       class(mode_rocker), intent(in) :: body
       real(wp), intent(in) :: y(:)
@@ -155,7 +155,7 @@ contains
       end associate
    end function upright
 
-   !> Is all known that was asked for, the ground being quiet? Never, unless a structure says otherwise
+   !> Are all requested results known while the ground is quiet? Never, unless a structure says otherwise
    pure function known(body, y, history) result(answer)
       class(mode_rocker), intent(in) :: body
       real(wp), intent(in) :: y(:)

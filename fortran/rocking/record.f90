@@ -17,7 +17,7 @@ module rocking_record
    !> In the caller's arrays
    type :: response_history
       integer :: points = 0                        !! output times filled so far
-      real(wp), pointer, contiguous :: time(:) => null()      !! asked for, ascending [s]
+      real(wp), pointer, contiguous :: time(:) => null()      !! requested, ascending [s]
       !> (8 or more, points): rotation, rate, acceleration, ground horizontal and vertical,
       !> kinetic and potential energy, energy put in minus energy lost at impacts and in restraints; then the energy
       !> stored in restraints and the force of each, where the array has rows for them

@@ -77,7 +77,7 @@ contains
             end if
          end do
          body%critical(i) = low
-         ! pushed away from rest at once: what stands then is told by the motion alone
+         ! pushed away from rest at once: whether the structure is stable then follows from the motion alone
          if (low <= 0.0_wp) body%critical(i) = body%limit(i) / real(scan, wp)
          return
       end do

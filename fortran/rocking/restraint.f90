@@ -1,4 +1,4 @@
-!> What holds a rocking structure besides its weight: ties, springs, dampers, each on a path of one coordinate.
+!> Restraints of a rocking structure besides its weight: ties, springs, dampers, each on a path of one coordinate.
 !>
 !> Along its path u(q) a restraint pulls with the force f(u, u') against growing u, which enters the equation of motion
 !> as the moment f du/dq. The force is that of a spring between bounds,
@@ -417,7 +417,7 @@ contains
 
    !> Least work against the springs on the way from q to q_there [J]; the way to the other side leads over rest.
    !>
-   !> Dashpots, which only take more, are left out.
+   !> Dashpots, which only dissipate more, are not considered.
    pure function work_to(set, i, q, i_there, q_there, state) result(work)
       class(restraint_set), intent(in) :: set
       integer, intent(in) :: i

@@ -1,4 +1,4 @@
-!> What every rocking structure tells the one integrator (rocking_response) about itself.
+!> What every rocking structure provides to the one integrator (rocking_response).
 !>
 !> The coordinate q >= 0 is the rotation away from rest in the direction `side` (+1 rocks to +x,
 !> -1 to -x). All structures obey
@@ -30,7 +30,7 @@ module rocking_rocker
       logical :: free(2) = .true.
       real(wp) :: rebound(2) = 0.0_wp      !! rate after over rate before being thrown back to this side
       type(restraint_set), allocatable :: held  !! ties, springs and dampers, where there are any
-      type(joint_watch), allocatable :: watch   !! what the joints must carry, where it is asked for
+      type(joint_watch), allocatable :: watch   !! what the joints must carry, where it is required
    contains
       procedure(coefficients), deferred :: coefficients
       procedure(potential), deferred :: potential

@@ -59,7 +59,7 @@ contains
       call soft_base_new(parameters(:soft_base_parameters), body%block, status)
    end subroutine soft_base_body_new
 
-   !> One member of an ensemble: started turned and free to sink, its outcome alone
+   !> One member of an ensemble: started rotated and free to settle, its outcome alone
    subroutine soft_base_respond(body, motion, options, answer, status)
       type(soft_base_body), intent(in) :: body
       type(signal), intent(in) :: motion
@@ -109,7 +109,7 @@ contains
       call rock_block(rocker, motion, y, end_time, tolerance, history, status)
    end subroutine soft_base_rock
 
-   !> The same of a block that knows what is asked
+   !> The same of a rocker whose options are set
    subroutine rock_block(rocker, motion, y, end_time, tolerance, history, status)
       type(soft_base_rocker), intent(inout) :: rocker
       type(signal), intent(in) :: motion
@@ -247,7 +247,7 @@ contains
       end do
    end subroutine leave_mode
 
-   !> The edge over which it has turned past recall: -1, 1, 0 none
+   !> The edge over which it has rotated beyond recovery: -1, 1, 0 none
    pure function fallen(body, y) result(place)
       class(soft_base_rocker), intent(in) :: body
       real(wp), intent(in) :: y(:)

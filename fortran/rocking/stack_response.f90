@@ -67,7 +67,7 @@ contains
       call stack_new(parameters(:stack_parameters), body%blocks, status)
    end subroutine stack_body_new
 
-   !> One member of an ensemble: started with both blocks turned as one, its outcome alone. Half cycles: one per uplift
+   !> One member of an ensemble: started with both blocks rotated as one, its outcome alone. Half cycles: one per uplift
    !> from rest and per instant of impact
    subroutine stack_respond(body, motion, options, answer, status)
       type(stack_body), intent(in) :: body
@@ -196,7 +196,7 @@ contains
       if (body%s(2) == 0) y([2, 4]) = y([1, 3])
    end subroutine trim_state
 
-   !> The contact about which it has turned past recall
+   !> The contact about which it has rotated beyond recovery
    pure function fallen(body, y) result(place)
       class(stack_rocker), intent(in) :: body
       real(wp), intent(in) :: y(:)

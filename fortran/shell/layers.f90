@@ -59,7 +59,7 @@ contains
       end do
    end subroutine layers_new
 
-   !> Legendre's polynomial and its slope (0 at the ends, where it is not asked for)
+   !> Legendre's polynomial and its slope (0 at the ends, where it is not required)
    pure subroutine legendre(n, x, p, slope)
       integer, intent(in) :: n
       real(wp), intent(in) :: x

@@ -41,7 +41,8 @@ module sla_group
    public :: bound
    public :: scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
-      component, along, admitted, report_rows, state_rows, history_rows
+      component, along, admitted, report_rows, state_rows, history_rows, &
+      damage_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
    !> Freedoms of an element; vectors of an event, as many as the factor takes (extrados_most_changes)
@@ -50,6 +51,8 @@ module sla_group
    integer, parameter :: report_rows = 19
    !> Most rows of a point's history
    integer, parameter :: history_rows = 8
+   !> Rows, the first ones, that only grow: by them the point loses stiffness
+   integer, parameter :: damage_rows = 3
 
    !> A point of a model
    type :: point_place

@@ -19,15 +19,23 @@ module sla_iterations
    use sla_assembly, only : position
    use sla_c_bindings, only : extrados_sparse_again, extrados_sparse_indefinite
    use sla_coaxial, only : by_frozen, by_secant, by_tangent
-   use sla_group, only : element_group, friction_group, history_group, most_entries, unbounded
+   use sla_group, only : damage_rows, element_group, friction_group, history_group, most_entries, unbounded
    use sla_model, only : element_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
    public :: implicit_step, explicit_step, evaluate, is_driven, longest_step, loads_run_away, few, growth
 
-   !> Residual over the largest nodal force; of the convex problems
-   real(wp), parameter :: tolerance = 1.0e-4_wp, inner_tolerance = 1.0e-5_wp
+   !> Residual over the largest nodal force: of Newton's method, of staggered steps, which approach it slowly, of the
+   !> convex problems
+   real(wp), parameter :: tolerance = 1.0e-4_wp, staggered_tolerance = 1.0e-3_wp, inner_tolerance = 1.0e-5_wp
+   !> Iterations after which Newton's method gives up, if the residual is still far from the tolerance
+   integer, parameter :: enough = 7
+   real(wp), parameter :: far_off = 30.0_wp
+   !> Times the damage of a staggered loop by which damage goes on at most, and the ratio of residuals from which it does
+   real(wp), parameter :: most_ahead = 3.0_wp, slow = 0.5_wp
+   !> Loops before that: damage ahead of a snap that soon ends lowers the load by some per cent
+   integer, parameter :: many_loops = 16
    integer, parameter :: most_newton = 12, most_loops = 300, most_inner = 40, most_halvings = 4
    !> Loop of a staggered step after which Newton's method tries first, and then each time twice as many later
    integer, parameter :: first_try = 4
@@ -357,6 +365,7 @@ contains
          model%path%residual = ratio
          found = ratio < tolerance .and. iterations > 0
          if (found .or. .not. ratio <= unbounded) return
+         if (iterations >= enough .and. ratio > far_off * tolerance) return
          call correct(model, model%path%drive + length, status)
          if (status == status_not_positive_definite) then
             status = status_ok
@@ -392,7 +401,7 @@ contains
       real(wp), intent(inout) :: lost
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: tried(:)
-      real(wp) :: energy, scale, lambda
+      real(wp) :: energy, scale, lambda, before, ratio
       integer :: next_try, inner, info
       found = .false.
       carried = .true.
@@ -400,15 +409,17 @@ contains
       allocate (tried, mold=model%path%u, stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
+      before = 0.0_wp
       do iterations = 1, most_loops
          call frozen_solution(model, length, status)
          if (status /= status_ok) return
          carried = .not. has_run_away(model, length)
          if (.not. carried) return
+         call remember(model)
          call update_all(model, lost)
          call evaluate(model, by_frozen, .false., energy, scale)
          model%path%residual = residual_of(model, scale)
-         found = model%path%residual < tolerance
+         found = model%path%residual < staggered_tolerance
          if (found) return
          if (iterations == next_try) then
             next_try = 2 * next_try
@@ -425,8 +436,41 @@ contains
          end if
          if (cancel_requested()) status = status_cancelled
          if (status /= status_ok) return
+         ! Each second loop goes ahead: damage grows by a geometric series (Aitken)
+         ratio = 0.0_wp
+         if (before > 0.0_wp) ratio = model%path%residual / before
+         before = model%path%residual
+         if (ratio < slow .or. iterations < many_loops) cycle
+         call go_ahead(model, min(most_ahead, ratio / max(1.0_wp - ratio, 0.1_wp)))
+         before = 0.0_wp
       end do
    end subroutine staggered_step
+
+   !> Histories of this loop, from which `go_ahead` goes on
+   subroutine remember(model)
+      type(element_model), intent(inout) :: model
+      integer :: g
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            group%rate(:, :) = group%history
+         end select
+      end do
+   end subroutine remember
+
+   !> Damage goes on by a multiple of its growth since `remember`
+   subroutine go_ahead(model, times)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: times
+      integer :: g, rows
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            rows = min(size(group%history, 1), damage_rows)
+            group%history(1:rows, :) = group%history(1:rows, :) + times * (group%history(1:rows, :) - group%rate(1:rows, :))
+         end select
+      end do
+   end subroutine go_ahead
 
    !> The one equilibrium at the present damage: Newton's method on a convex energy
    subroutine frozen_solution(model, length, status)

@@ -135,8 +135,8 @@ contains
          b = vectors_of(group, e, p)
          energy = energy + group%area(p) * state%energy
          d = 0.0_wp
-         d(1, 1) = state%normal
-         d(2:3, 2:3) = state%along
+         d(1, 1) = state%matrix(1, 1)
+         d(2:3, 2:3) = state%matrix(2:3, 2:3)
          do i = 1, n
             f(i) = f(i) + group%area(p) * dot_product(b(i, :), state%stress)
             c(i, :) = group%area(p) * matmul(b(i, :), d)
@@ -154,22 +154,24 @@ contains
       real(wp), intent(in) :: local(:)
       real(wp), intent(out) :: k(:, :)
       logical, intent(out) :: couples
-      real(wp) :: b(most_entries, 3), along(most_entries)
+      real(wp) :: b(most_entries, 3), c(most_entries), g(most_entries)
       type(joint_state) :: state
+      type(joint_material) :: law
       integer :: p, i, n
       n = group%freedoms
       couples = .false.
+      law = law_of(group, e)
       do p = 2 * e - 1, 2 * e
          if (.not. group%area(p) > 0.0_wp) cycle
-         call joint_response(law_of(group, e), jumps(group, e, p, local), group%kept(:, p), group%history(:, p), &
-            by_tangent, state)
-         if (.not. any(abs(state%coupling) > 0.0_wp)) cycle
+         call joint_response(law, jumps(group, e, p, local), group%kept(:, p), group%history(:, p), by_tangent, state)
+         if (.not. any(abs([state%matrix(1, 2:3), state%matrix(2:3, 1)]) > 0.0_wp)) cycle
          if (.not. couples) k = 0.0_wp
          couples = .true.
          b = vectors_of(group, e, p)
-         along(1:n) = group%area(p) * (state%coupling(1) * b(1:n, 2) + state%coupling(2) * b(1:n, 3))
+         c(1:n) = group%area(p) * (state%matrix(2, 1) * b(1:n, 2) + state%matrix(3, 1) * b(1:n, 3))
+         g(1:n) = group%area(p) * (state%matrix(1, 2) * b(1:n, 2) + state%matrix(1, 3) * b(1:n, 3))
          do i = 1, n
-            k(1:n, i) = k(1:n, i) + along(1:n) * b(i, 1)
+            k(1:n, i) = k(1:n, i) + c(1:n) * b(i, 1) + b(1:n, 1) * g(i)
          end do
       end do
    end subroutine couple

@@ -14,7 +14,7 @@
 !> constant shear strength.
 module sla_joint_law
    use common_kinds, only : wp
-   use sla_coaxial, only : by_frozen, by_tangent
+   use sla_coaxial, only : by_frozen, by_secant, by_tangent
    use sla_sawtooth, only : softening
    implicit none
    private
@@ -26,6 +26,8 @@ module sla_joint_law
    integer, parameter :: joint_rows = 8
    !> Stiffness along a sliding point in the matrix, over that of one that sticks
    real(wp), parameter :: soft = 1.0e-5_wp
+   !> Jumps of a difference, over the greatest jump of the point
+   real(wp), parameter :: difference = 1.0e-6_wp
 
    !> The material of a point
    type :: joint_material
@@ -46,9 +48,7 @@ module sla_joint_law
    !> Response of a point
    type :: joint_state
       real(wp) :: stress(3) = 0.0_wp           !! sigma, tau in both directions [Pa]
-      real(wp) :: normal = 0.0_wp              !! stiffness across [Pa/m]
-      real(wp) :: along(2, 2) = 0.0_wp         !! and along [Pa/m]
-      real(wp) :: coupling(2) = 0.0_wp         !! of tau by the jump across [Pa/m]
+      real(wp) :: matrix(3, 3) = 0.0_wp        !! stress by the jumps [Pa/m]
       real(wp) :: energy = 0.0_wp              !! stored; of frozen histories the potential [J/m^2]
       real(wp) :: history(joint_rows) = 0.0_wp
    end type joint_state
@@ -65,7 +65,8 @@ contains
       if (law%coheres) x = max(x, law%cohesion%progress(history(3)))
    end function progress
 
-   !> Stress, stiffness and histories by the jumps
+   !> Stress, stiffness and histories by the jumps. The tangent of what slides, opens or crushes is that of differences
+   !> away from the last state: strength, pressure and bond change each other across and along
    pure subroutine joint_response(law, d, kept, history, how, state)
       type(joint_material), intent(in) :: law
       real(wp), intent(in) :: d(3)                  !! dn, s [m]
@@ -73,59 +74,88 @@ contains
       real(wp), intent(in) :: history(joint_rows)
       integer, intent(in) :: how                    !! by_... of sla_coaxial
       type(joint_state), intent(out) :: state
-      real(wp) :: pressure, rate
+      type(joint_state) :: beside
+      real(wp) :: step, away(3)
+      integer :: i
+      call respond_to(law, d, kept, history, how, state)
+      if (how /= by_tangent) return
+      if (.not. changes(law, d, kept, history, state)) return
+      away = d - [kept(8), kept(4:5)]
+      step = difference * max(maxval(abs(away)), maxval(abs(d)))
+      do i = 1, 3
+         if (i == 3 .and. .not. abs(away(3)) > 0.0_wp) cycle     ! in the plane
+         associate (h => sign(step, away(i)))
+            call respond_to(law, d + h * unit_of(i), kept, history, by_secant, beside)
+            state%matrix(:, i) = (beside%stress - state%stress) / h
+         end associate
+      end do
+      do i = 2, 3
+         state%matrix(i, i) = state%matrix(i, i) + soft * law%ks
+      end do
+   end subroutine joint_response
+
+   !> Is the tangent of a point another matrix than its secants: does it slide, or go on along a softening law?
+   pure function changes(law, d, kept, history, state) result(yes)
+      type(joint_material), intent(in) :: law
+      real(wp), intent(in) :: d(3)                  !! dn, s [m]
+      real(wp), intent(in) :: kept(joint_rows)
+      real(wp), intent(in) :: history(joint_rows)
+      type(joint_state), intent(in) :: state
+      logical :: yes
+      yes = any(abs(state%history(4:5) - kept(4:5)) > 0.0_wp)
+      if (law%cracks) yes = yes .or. d(1) >= max(history(1), law%tension%peak)
+      if (law%crushes) yes = yes .or. -d(1) >= max(history(2), law%compression%peak)
+   end function changes
+
+   !> Stress, histories and the matrix of secants, of frozen histories that of the potential
+   pure subroutine respond_to(law, d, kept, history, how, state)
+      type(joint_material), intent(in) :: law
+      real(wp), intent(in) :: d(3)                  !! dn, s [m]
+      real(wp), intent(in) :: kept(joint_rows)      !! at the start of the step
+      real(wp), intent(in) :: history(joint_rows)
+      integer, intent(in) :: how                    !! by_... of sla_coaxial
+      type(joint_state), intent(out) :: state
+      real(wp) :: pressure
       state%history = history
       state%history(7) = kept(7)
       if (how /= by_frozen) then
          state%history(1) = max(history(1), d(1))
          state%history(2) = max(history(2), -d(1))
       end if
-      call respond_across(law, d(1), history, how, state)
+      call respond_across(law, d(1), state)
       pressure = -state%stress(1)
       if (how == by_frozen) pressure = history(6)
       state%history(6) = pressure
       state%history(8) = d(1)
-      rate = state%normal
       if (law%friction < 0.0_wp) then
          state%stress(2:3) = law%ks * d(2:3)
-         state%along(:, :) = law%ks * identity()
+         state%matrix(2, 2) = law%ks
+         state%matrix(3, 3) = law%ks
          state%energy = state%energy + 0.5_wp * law%ks * dot_product(d(2:3), d(2:3))
          return
       end if
-      call respond_along(law, d(2:3), kept, pressure, rate, how, state)
+      call respond_along(law, d(2:3), kept, pressure, how, state)
       ! What slip takes from the bond, an open joint has no more
       if (d(1) > 0.0_wp .and. law%coheres .and. law%cracks .and. how /= by_frozen) then
-         call respond_across(law, d(1), state%history, how, state)
+         call respond_across(law, d(1), state)
       end if
       state%energy = state%energy + 0.5_wp * state%stress(1) * d(1)
       state%history(7) = state%history(7) + lost_across(law, d(1), kept, state%history)
-   end subroutine joint_response
+   end subroutine respond_to
 
-   !> Stress and stiffness across the joint
-   pure subroutine respond_across(law, opening, history, how, state)
+   !> Stress and secant stiffness across the joint
+   pure subroutine respond_across(law, opening, state)
       type(joint_material), intent(in) :: law
       real(wp), intent(in) :: opening               !! [m]
-      real(wp), intent(in) :: history(joint_rows)   !! before
-      integer, intent(in) :: how
       type(joint_state), intent(inout) :: state
       real(wp) :: secant
       if (opening <= 0.0_wp) then
          secant = law%kn
          if (law%crushes) secant = max(law%compression%secant(state%history(2)), law%floor * law%kn)
-         state%normal = secant
-         if (how == by_tangent .and. law%crushes .and. -opening > max(history(2), law%compression%peak)) then
-            if (secant > law%floor * law%kn) state%normal = law%compression%slope(-opening)
-         end if
       else
          secant = tensile_secant(law, state%history)
-         state%normal = secant
-         if (how == by_tangent .and. law%cracks .and. secant > law%floor * law%kn) then
-            if (opening > max(history(1), law%tension%peak) .and. &
-                law%tension%progress(opening) >= law%progress(state%history)) then
-               state%normal = law%tension%slope(opening)
-            end if
-         end if
       end if
+      state%matrix(1, 1) = secant
       state%stress(1) = secant * opening
    end subroutine respond_across
 
@@ -140,15 +170,15 @@ contains
    end function tensile_secant
 
    !> Stress and stiffness along the joint under a pressure, negative where it is pulled
-   pure subroutine respond_along(law, s, kept, pressure, rate, how, state)
+   pure subroutine respond_along(law, s, kept, pressure, how, state)
       type(joint_material), intent(in) :: law
       real(wp), intent(in) :: s(2)                  !! [m]
       real(wp), intent(in) :: kept(joint_rows)
       real(wp), intent(in) :: pressure              !! [Pa]
-      real(wp), intent(in) :: rate                  !! stiffness across [Pa/m]
       integer, intent(in) :: how
       type(joint_state), intent(inout) :: state
-      real(wp) :: e(2), n(2), way, limit, bond, slope, start, trial, other(2, 2)
+      real(wp) :: e(2), n(2), way, limit, bond, start, trial
+      integer :: i
       e = s - kept(4:5)
       way = norm2(e)
       bond = cohesion_left(law, law%progress(state%history))
@@ -156,11 +186,11 @@ contains
       if (law%ks * way <= limit) then
          state%history(4:5) = kept(4:5)
          state%stress(2:3) = law%ks * e
-         state%along(:, :) = law%ks * identity()
+         state%matrix(2, 2) = law%ks
+         state%matrix(3, 3) = law%ks
          state%energy = 0.5_wp * law%ks * way**2
          return
       end if
-      slope = 0.0_wp
       start = 0.0_wp
       if (how /= by_frozen .and. law%coheres) then
          ! The bond at the start of the step, with what tension has taken since
@@ -169,8 +199,6 @@ contains
          trial = way - law%friction * pressure / law%ks + start - law%cohesion%secant(start) * start / law%ks
          if (trial > state%history(3)) then
             state%history(3) = trial
-            if (law%cohesion%progress(trial) >= law%progress(state%history)) slope = law%cohesion%slope(trial)
-            if (slope > 0.0_wp) slope = 0.0_wp
             bond = cohesion_left(law, law%progress(state%history))
             limit = max(bond + law%friction * pressure, 0.0_wp)
          end if
@@ -179,15 +207,11 @@ contains
       n = e / way
       state%stress(2:3) = limit * n
       state%history(4:5) = s - state%stress(2:3) / law%ks
-      other(:, 1) = n * n(1)
-      other(:, 2) = n * n(2)
-      state%along(:, :) = limit / way * identity()
-      if (how == by_tangent) state%along(:, :) = limit / way * (identity() - other) + slope * other
-      if (how == by_frozen) state%along(:, :) = limit / way * (identity() - other)
-      state%along(:, :) = state%along + soft * law%ks * identity()
-      if (how == by_tangent .and. limit > 0.0_wp) then
-         state%coupling = -law%friction * (1.0_wp - slope / law%ks) * rate * n
-      end if
+      do i = 1, 2
+         state%matrix(1 + i, 1 + i) = limit / way
+         if (how == by_frozen) state%matrix(2:3, 1 + i) = state%matrix(2:3, 1 + i) - limit / way * n * n(i)
+         state%matrix(1 + i, 1 + i) = state%matrix(1 + i, 1 + i) + soft * law%ks
+      end do
       state%energy = 0.5_wp * limit**2 / law%ks
       if (how == by_frozen) state%energy = limit * way - 0.5_wp * limit**2 / law%ks
       way = norm2(state%history(4:5) - kept(4:5))
@@ -263,9 +287,12 @@ contains
       end associate
    end function lost_across
 
-   pure function identity() result(one)
-      real(wp) :: one(2, 2)
-      one = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
-   end function identity
+   !> Unit vector
+   pure function unit_of(i) result(one)
+      integer, intent(in) :: i
+      real(wp) :: one(3)
+      one = 0.0_wp
+      one(i) = 1.0_wp
+   end function unit_of
 
 end module sla_joint_law

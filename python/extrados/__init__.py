@@ -1,10 +1,10 @@
-"""extrados: masonry structures under earthquakes.
+"""extrados: assessment of masonry structures under earthquakes.
 
 >>> import extrados
 >>> run = extrados.run("deck.toml")
 >>> run["tilt"]["collapse_acceleration_g"]
 
-A deck may be a file, a dictionary of the same shape, or made of objects, one for each kind of table:
+A deck is a file, a dictionary of the same shape, or is made of objects, one for each table:
 
 >>> arch = extrados.Arch(radius=10.0, thickness="1.5 m", embrace=157.5, voussoirs=7)
 >>> run = extrados.run(extrados.deck(arch, [extrados.Tilt()]))
@@ -26,12 +26,12 @@ ERRORS = ("DeckError", "Refused", "StoreError")
 
 
 def deck(structure: Any = None, analysis: Any = None, *, folder: str | Path | None = None, **tables: Any) -> "Deck":
-    """A checked deck from objects: `extrados.deck(extrados.Arch(...), [extrados.Tilt()], motion=..., joints=...)`.
+    """Make a checked deck from objects: `extrados.deck(extrados.Arch(...), [extrados.Tilt()], motion=..., joints=...)`.
 
-    structure, analysis and the other tables are objects (`extrados.Arch`, `extrados.Rocking`, `extrados.Joints` ...) or
-    dictionaries of the same keys, numbers in SI, angles in degrees, or text with a unit: "20 cm"; `analysis` may be a list
-    of them, as may `ties`, `dampers` and `hinges`. folder: where files that the deck names are
-    looked for; default the current one. DeckError lists all that is wrong.
+    structure, analysis and the other tables: objects (`extrados.Arch`, `extrados.Rocking`, `extrados.Joints` ...) or
+    dictionaries of the same keys. Numbers are in SI, angles in degrees; text with a unit is accepted ("20 cm"). `analysis`,
+    `ties`, `dampers` and `hinges` may be lists. folder: where the program looks for files of the deck; default: the current
+    folder. DeckError lists all errors of the deck.
     """
     from extrados import objects
 
@@ -41,11 +41,11 @@ def deck(structure: Any = None, analysis: Any = None, *, folder: str | Path | No
 def run(
     deck: "str | Path | dict[str, Any] | Deck", out: str | Path | None = None, *, threads: int | None = None, figures: bool = False
 ) -> "Run":
-    """Run a deck (a file, a dictionary of the same shape, or what `extrados.deck` made) in memory and return its results.
+    """Run a deck (a file, a dictionary of the same shape, or the result of `extrados.deck`) in memory and return its results.
 
-    With `out`, a folder, they are also written there, with figures and report where `figures` asks for them, and a long sweep keeps its finished
-    batches beside that folder; `Run.write` does the same later. threads: of the core, default all that this process may
-    use. DeckError lists what is wrong with the deck, StoreError says why `out` cannot be written.
+    out: a folder to which the results are also written; a long run keeps its finished batches beside this folder. `Run.write`
+    writes the results later. figures: also draw figures and report. threads: number of threads; default: all cores of this
+    process. DeckError lists the errors of the deck; StoreError gives the reason if `out` cannot be written.
     """
     from extrados.analyses.context import Context, default_threads
     from extrados.running.run import compute, run_to
@@ -55,9 +55,9 @@ def run(
 
 
 def live(deck: "str | Path | dict[str, Any] | Deck", *, threads: int | None = None) -> "Live":
-    """A model of the deck (as `run` takes it) that answers anew when a value changes.
+    """Make a live model of the deck (as in `run`), which calculates results again when a value changes.
 
-    threads: of the core, default all that this process may use. DeckError lists what is wrong with the deck.
+    threads: number of threads; default: all cores of this process. DeckError lists the errors of the deck.
     """
     from extrados.running.live import Live
 
@@ -65,21 +65,22 @@ def live(deck: "str | Path | dict[str, Any] | Deck", *, threads: int | None = No
 
 
 def sweep(deck: "str | Path | dict[str, Any] | Deck", over: Any, **how: Any) -> "Sweep":
-    """Run a deck for many values of its keys, in memory: `extrados.sweep("deck.toml", over={"structure.thickness": [1.2, 1.5]})`.
+    """Run a deck for many values of its keys, in memory: `extrados.sweep("deck.toml", over={"structure.thickness": [1.2,
+    1.5]})`.
 
-    over: keys as `Live.update` takes them, each with its values (n) in SI or as text with a unit: every value with every
-    other. Or rows that belong together: a list of dictionaries, or a pandas.DataFrame whose columns are keys.
+    over: keys as in `Live.update`, each with a list of values in SI or as text with a unit; all combinations are run. To run
+    given combinations only: a list of dictionaries, or a pandas.DataFrame whose columns are keys.
 
-    workers: 1; a number of processes of this machine; or the address of a dask scheduler, `"tcp://..."`.
+    workers: 1; a number of processes on this machine; or the address of a dask scheduler, `"tcp://..."`.
 
-    threads: of the core within each process, default all of one process, 1 where there are several.
+    threads: number of threads in each process; default: all cores for one process, 1 for several.
 
-    progress: a bar, by default on a terminal; or a function of (done, total, text).
+    progress: True or False for a progress bar (default: on a terminal), or a function of (done, total, text).
 
-    resume: a folder beside which finished batches are kept, so that the same call goes on where it was stopped.
+    resume: a folder beside which finished batches are kept; the same call continues an interrupted sweep.
 
-    Returns a `Sweep`: `.frame()` for pandas, `.dataset()` for xarray, with units. DeckError lists what is wrong with the
-    deck or with a value; what a member is refused for stands in its row. Refused where no scheduler answers at an address.
+    Returns a `Sweep`: `.frame()` for pandas, `.dataset()` for xarray, with units. DeckError lists the errors of the deck or
+    of a value. The row of a refused member gives the reason. Refused if no scheduler responds at the address.
     """
     from extrados.running.sweep import sweep
 
@@ -87,10 +88,11 @@ def sweep(deck: "str | Path | dict[str, Any] | Deck", over: Any, **how: Any) -> 
 
 
 def export(deck: "str | Path | dict[str, Any] | Deck", form: str, path: str | Path | None = None) -> str:
-    """The building of a deck for another program; also written to `path`, where one is given, or beside what is there and
-    extrados did not write or was changed since, which is logged.
+    """Return the building of a deck as text for another program, and write it to `path` if given.
 
-    form: "compas", "udec", "3dec" or "opensees". Lengths in m, forces in N. Returns the text; DeckError where the building has no such view.
+    form: "compas", "udec", "3dec", "opensees", "opensees-frame" or "frame-tables". Lengths in m, forces in N. A file at
+    `path` that extrados did not write, or that was changed since, is kept: the text goes to another name, which is logged.
+    DeckError if the building has no such model.
     """
     from extrados.bridges import forms
     from extrados.results import written
@@ -102,24 +104,24 @@ def export(deck: "str | Path | dict[str, Any] | Deck", form: str, path: str | Pa
 
 
 def scene(deck: "str | Path | dict[str, Any] | Deck") -> Any:
-    """The stones of a deck as a pyvista.MultiBlock, one mesh a stone by its name, in m (pip install pyvista)."""
+    """Return the blocks of a deck as a pyvista.MultiBlock, one mesh per block under its name, in m (pip install pyvista)."""
     from extrados.bridges import forms
 
     return forms.scene(_checked(deck))
 
 
 def load(folder: str | Path) -> "Run":
-    """The results of an earlier run, from its `folder`; StoreError where it holds none."""
+    """Read the results of an earlier run from its `folder`; StoreError if the folder contains no results."""
     from extrados.running.run import Run
 
     return Run.read(folder)
 
 
 def widget(deck: "str | Path | dict[str, Any] | Deck | None" = None, *, height: int = 680) -> "Page":
-    """The interactive page as a widget of a notebook (needs anywidget: pip install "extrados[notebook]"), `height` in pixels.
+    """Return the interactive page as a widget of a notebook (pip install "extrados[notebook]"); `height` in pixels.
 
-    deck: as `run` takes it, default a new arch. `widget(...).deck` is the text of the deck as it stands in the page. DeckError
-    lists the errors of a dictionary; the page itself shows the errors of a file.
+    deck: as in `run`; default: a new arch. `widget(...).deck` is the present text of the deck on the page. DeckError lists
+    the errors of a dictionary; the page itself shows the errors of a file.
     """
     from extrados.explore.widget import Page
 

@@ -12,7 +12,7 @@ asked: list[int] = []
 
 
 def answer(handler: Callable[[int, Any], Any] | signal.Handlers) -> None:
-    """Have every signal that asks to stop answered so."""
+    """Install a handler for all signals that request a stop."""
     for number in STOPS:
         signal.signal(number, handler)
 
@@ -24,7 +24,7 @@ def leave(number: int, _: object) -> None:
 
 
 def stop(number: int, _: object) -> None:
-    """End what is being done by KeyboardInterrupt."""
+    """Stop the present work by KeyboardInterrupt."""
     asked.append(number)
     raise KeyboardInterrupt
 

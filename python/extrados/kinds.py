@@ -79,11 +79,11 @@ MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rod
 STRANDS = "views.solids.strands:strands_of"
 FRAME_OPTIONS = "views.frame.options:FrameOptions"
 MESH_OPTIONS, SHELL_OPTIONS = "views.mesh.options:MeshOptions", "views.shell.options:ShellOptions"
-NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` analyse its solids")
-NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")
-NO_PIERS = Lacks("only a wall, of the kinds panel and brickwork, has piers")
-NO_FRAME = Lacks("only a building on a plan, of the kind building, has piers and spandrels of a frame")
-NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists those that have")
+NO_SECTION = Lacks("this structure has no plane section; its solids can be analysed by `tilt` and `dem`")
+NO_STONES = Lacks("a mesh file contains elements, not blocks: describe the wall as `panel` or `blocks`")
+NO_PIERS = Lacks("only walls of the kinds panel and brickwork have piers")
+NO_FRAME = Lacks("only a building in plan (kind building) has a frame of piers and spandrels")
+NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists the kinds that have shells")
 
 
 def _stones(
@@ -146,14 +146,15 @@ STRUCTURES: dict[str, StructureKind] = {
     "building": StructureKind(
         "model.structures.plan:Plan",
         Lacks(
-            "a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "
-            "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`"
+            "a building in plan has walls, not blocks in a plane: draw one of its walls as `panel` or `blocks`. For the "
+            "whole building use `pushover`, with [analysis.frame] for its piers by codes, and `local-mechanism` for its "
+            "walls out of plane"
         ),
         NO_PIERS,
         SECTION,
         RIGID,
-        Lacks("a building on a plan does not rock as one body: draw one of its walls"),
-        Lacks("the walls of a building form a structure in space: its analysis is `pushover`; draw one of them as `panel`"),
+        Lacks("a building in plan does not rock as one body: draw one of its walls"),
+        Lacks("the walls of a building form a structure in space. Analyse it by `pushover`, or draw one of the walls as `panel`"),
         "views.shell.plan:shell_of_plan",
         "views.frame.plan:frame_of_plan",
         None,
@@ -203,7 +204,7 @@ def _analysis(
 
 ANALYSES: dict[str, AnalysisKind] = {
     "tilt": _analysis("limit", "Tilt", "tilt", "solids:draw_tilt", "tilt", "limit/oppenheim", ("tilt",), results="solids:Tilt"),
-    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "thrust", "vault/dejong-a"),
+    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "thrust", "vault/dejong-a", results="solids:Thrust"),
     "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "sweep", "vault/vezelay-sweep"),
     "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "survey", "limit/survey"),
     "imperfections": _analysis("limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "others", "limit/church"),

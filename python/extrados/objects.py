@@ -1,6 +1,6 @@
 """Tables of decks as Python objects: `extrados.Arch(radius=10.0, ...)` is the table `[structure] kind = "arch"`.
 
-There is no second definition: every name is that of a table class registered in `kinds`, loaded when it is first asked for.
+Every name is that of a table class registered in `kinds`, which is loaded at its first use.
 """
 
 import inspect
@@ -18,8 +18,8 @@ _NAMED = {place.split(":")[1]: (section, kind) for section, there in kinds.TABLE
 class Maker:
     """Makes the tables of one kind: call it with the keys of the table, as in a deck.
 
-    Numbers are in SI (angles in degrees), or text with a unit: "20 cm". A wrong key or value raises DeckError, which says what was expected.
-    `isinstance(x, extrados.Arch)` tells a table of this kind.
+    Numbers are in SI (angles in degrees), or text with a unit: "20 cm". A wrong key or value raises DeckError with the
+    expected form. `isinstance(x, extrados.Arch)` recognises a table of this kind.
     """
 
     def __init__(self, name: str, section: str, kind: str):
@@ -87,12 +87,12 @@ def maker(name: str) -> Maker:
 
 
 def names() -> list[str]:
-    """What `maker` knows."""
+    """The names that `maker` accepts."""
     return [*_NAMED, *_plain()]
 
 
 def as_deck(value: Any) -> Any:
-    """What a deck would hold: tables as dictionaries of the keys that were given, within lists and dictionaries too."""
+    """The content of a deck: tables as dictionaries of the given keys, also within lists and dictionaries."""
     from extrados.schema.quantities import mark_of
     from extrados.schema.table import Table
 

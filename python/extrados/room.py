@@ -48,6 +48,6 @@ def lacked(error: Exception) -> bool:
 
 
 def words(error: Exception) -> str:
-    """What is told of it; Python's own says nothing, numpy's only what it could not allocate."""
+    """The message on a lack of memory; the texts of Python and numpy do not suffice."""
     said = str(error)
     return said if "not enough memory" in said else ": ".join(filter(None, ("not enough memory", said)))

@@ -237,7 +237,7 @@ def test_the_line_follows_a_drag_from_the_stones_and_its_thrust_is_a_handle(page
     assert page.locator("[data-handle=thrust]").get_attribute("aria-valuetext").startswith(f"{middle / 1e3:.4g}"[:4])
 
 
-def test_what_was_asked_for_last_is_seen_last(page: Any) -> None:
+def test_what_was_requested_last_is_seen_last(page: Any) -> None:
     most = page.evaluate("window.extrados.scene.most_N")
     page.evaluate(
         """most => {
@@ -270,7 +270,7 @@ def test_what_stands_in_space_is_turned_and_pushed(page: Any) -> None:
     drag(page, ".stage-box .space", 60, -20)
     until(page, "seen => document.querySelector('.stage-box .space').getAttribute('aria-label') !== seen", arg=seen)
     until(page, "look => document.querySelector('.stage-box .space-canvas').toDataURL() !== look", arg=look)
-    page.click("text=Push it")
+    page.click("text=Calculate the capacity")
     page.wait_for_selector("[data-number=push]")
     run = extrados.run(CASES / "solid" / "column.toml")["tilt"]
     assert f"{run.collapse_acceleration_g:.4f} g" in page.locator("[data-number=push]").inner_text()
@@ -335,7 +335,7 @@ def test_what_is_needed_is_sized_and_put_in(page: Any) -> None:
     """The page sizes interventions for 1.3 times the capacity; each number is that of the analysis, and put in it is enough."""
     target = round(1.3 * capacity(page), 3)
     page.fill("#needed-g", str(target))
-    page.click("text=What is needed")
+    page.click("text=Find the interventions")
     page.wait_for_selector("[data-intervention]")
     told = page.locator("section.needed").inner_text()
     asked = {"kind": "strengthen", "acceleration": f"{target} g"}
@@ -353,5 +353,5 @@ def test_what_is_needed_is_sized_and_put_in(page: Any) -> None:
     assert capacity(page) >= target
     assert page.locator("[data-intervention]").count() == 0, "the sizes are those of the structure before"
     page.fill("#needed-g", "much")
-    page.click("text=What is needed")
+    page.click("text=Find the interventions")
     until(page, "document.querySelector('section.needed').innerText.includes('above 0')")

@@ -23,7 +23,7 @@ def test_a_class_from_both_sides(browser: Any, room: Served) -> None:
     link = re.search(r"Class:\s+(http://\S+)", printed)[1]
     until_printed(room)
     teacher_link = re.search(r"Teacher:\s+(http://\S+)", "".join(room.lines))[1]
-    assert "This machine alone reaches it" in "".join(room.lines)
+    assert "Only this machine can open the page of the class" in "".join(room.lines)
     context = browser.new_context(viewport={"width": 1366, "height": 768})
     teacher = context.new_page()
     teacher.goto(teacher_link)

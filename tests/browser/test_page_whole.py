@@ -30,7 +30,7 @@ def test_all_presets_open_or_say_why_not(page: Any) -> None:
     assert told == {}
 
 
-def test_a_dead_server_is_told_and_comes_back_with_the_state(page: Any, served: Served) -> None:
+def test_a_dead_server_is_reported_and_comes_back_with_the_state(page: Any, served: Served) -> None:
     drag(page, "[data-handle=thickness] .hit", 0, -15)
     text, shown = settled(page), capacity(page)
     (child,) = served.children()

@@ -277,6 +277,15 @@ LOADED = st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(0.2,
             2.0,
             False,
         ),
+        (
+            {
+                "structure": {"kind": "arch", "radius": 4.41, "thickness": 1.376, "embrace": 165.0, "voussoirs": 14},
+                "joints": {"friction": 0.6},
+            },
+            0.29,
+            1.61,
+            False,
+        ),
     ),
 )
 def even_loads_where_they_are_adverse(deck: Deck, share: float, factor: float, both: bool, within: float) -> None:

@@ -270,7 +270,7 @@ def every_key_has_an_effect(deck: Deck, within: float) -> None:
                     near(f"{table}.{key} of {kind}: {name}", number_, over.numbers[name], 1e-9, 1e-9)
 
 
-@relation("assess", st.just({}), 0.0, share=0.2)
+@relation("assess", st.just({}), 0.0, share=0.25)
 def a_survey_ranks_what_each_deck_says(deck: Deck, within: float) -> None:
     """Buildings of a folder are assessed as each by itself, with what common.toml adds, in the order of their margins, and written."""
     del deck, within
@@ -316,7 +316,7 @@ def a_survey_ranks_what_each_deck_says(deck: Deck, within: float) -> None:
         try:
             survey.decks_of(Path(name))
         except DeckError as error:
-            must("holds no decks" in str(error), str(error))
+            must("contains no decks" in str(error), str(error))
         else:
             must(False, "a folder without decks is surveyed")
         (Path(name) / "bad.toml").write_text("[structure]\nkind = 'block'\nwidth = -1.0\nheight = 2.0\n")

@@ -345,7 +345,7 @@ def keys_of_other_strategies(deck: Deck, motion: Deck, key: tuple, within: float
     }
     for kind, keys in calls.items():
         one, other = ask(deck, kind, **keys), ask(there, kind, **keys)
-        told = f" {table}.{name}: " in other.warnings and "not use it" in other.warnings
+        told = f" {table}.{name}: " in other.warnings and "not use this key" in other.warnings
         if other.answers and one.answers and told:
             must(one.numbers == other.numbers, f"{kind} says that it leaves out {table}.{name}, which changes its answer")
 

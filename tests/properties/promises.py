@@ -244,6 +244,9 @@ def an_assessment_is_whole(deck: Deck, motion: Deck, within: float) -> None:
     must(answer.status == "ok", f"{answer.status}: {answer.said}")
     rows = {row.strategy: row for row in answer.results.verdicts}
     must(set(rows) >= {"tilt", "rocking"}, f"rows of {sorted(rows)}")
+    for name, row in rows.items():
+        if row.outcome == "stands" and row.margin_below is None:
+            must((row.margin or 1.0) >= 1.0 <= (row.margin_at_least or 1.0), f"{name} stands, with a margin above {row.margin_at_least}")
     for name in ("tilt", "rocking"):
         alone = ask(changed(deck, motion=motion), name)
         if rows[name].status == "ok":

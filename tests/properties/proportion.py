@@ -119,15 +119,27 @@ def a_factor_on_the_motion(deck: Deck, motion: Deck, factor: float, within: floa
     must(at_one == plain.results.collapsed, f"{at_one} of a set at level 1 against {plain.results.collapsed} of the set")
 
 
-@relation("rocking", st.tuples(decks(*ROCKING), pulses(0.1, 1.2)), 1e-4)
+@relation(
+    "rocking",
+    st.tuples(decks(*ROCKING), pulses(0.1, 1.2)),
+    1e-4,
+    exception="blocks are handed over to rigid contacts at a step of the integrator: peaks after it are known within 5 %",
+    examples=(
+        (
+            {"structure": {"kind": "column", "width": 1.966, "height": 7.653, "drums": 2, "top_width": 1.573}, "joints": {"friction": 0.7}},
+            {"kind": "sine-pulse", "amplitude": "1.178 g", "period": 1.06},
+        ),
+    ),
+)
 def a_finer_integrator(deck: Deck, motion: Deck, within: float) -> None:
     """A hundredth of the tolerance changes nothing."""
-    one, other = (ask(changed(deck, motion=motion), "rocking", tolerance=t) for t in (1e-8, 1e-10))
-    ok(one, other)
-    if one.results.decided_by_last_digits or other.results.decided_by_last_digits:
-        reject()
-    same("finer", one, other)
-    near("peak rotation", one.results.peak_rotation_ratio, other.results.peak_rotation_ratio, within, 1e-4)
+    for hand_over, error in ((False, within), (True, 0.05)):
+        one, other = (ask(changed(deck, motion=motion), "rocking", tolerance=t, hand_over=hand_over) for t in (1e-8, 1e-10))
+        ok(one, other)
+        if one.results.decided_by_last_digits or other.results.decided_by_last_digits:
+            reject()
+        same("finer", one, other)
+        near("peak rotation", one.results.peak_rotation_ratio, other.results.peak_rotation_ratio, error, 1e-4)
 
 
 @relation("dem", st.tuples(decks("block", "column"), st.sampled_from([0.001, 0.002])), 0.01, share=0.15, exception=INTERVAL)

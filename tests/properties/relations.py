@@ -106,6 +106,8 @@ OF_THE_WAY = (
     "reactions",
     "required_friction",
 )
+#: The part of the joints that holds a thrust line is found within this [-], and its inverse, the geometric safety factor, so
+PART = 1e-3
 
 
 def alike(told: str, one: Answer, other: Answer, within: float) -> None:
@@ -113,6 +115,9 @@ def alike(told: str, one: Answer, other: Answer, within: float) -> None:
     same(told, one, other)
     a, b = ({k: v for k, v in _flat(x.numbers).items() if not any(word in k for word in OF_THE_WAY)} for x in (one, other))
     must(set(a) == set(b), f"{told}: other results: {sorted(set(a) ^ set(b))}")
+    for name in [name for name in a if "safety_factor" in name or "part_of_joints" in name]:
+        one, other = (None if v is None else 1.0 / v if "safety_factor" in name else v for v in (a.pop(name), b[name]))
+        must(abs((one or 0.0) - (other or 0.0)) <= PART + within, f"{told}: {name}: parts {one} and {other}")
     scale: dict[str, float] = {}  # of all numbers of one unit: one of them may be what is left of a sum
     for name, value in a.items():
         if isinstance(value, float):

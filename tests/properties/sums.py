@@ -20,7 +20,7 @@ from scipy.stats import binomtest
 import extrados
 from extrados.analyses.statistics import summaries
 from extrados.decks.reader import read_text
-from extrados.results.rocking import COLLAPSE, NO_HINGING
+from extrados.results.rocking import COLLAPSE, NO_HINGING, SLID
 
 STARTED = {"rotation_ratio": 0.2}
 
@@ -433,7 +433,7 @@ def curves_and_pockets_of_a_map(deck: Deck, pulse: str, period: float, within: f
     r, arrays = answer.results, {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
     pockets = 0
     for k, codes in enumerate(arrays["outcome"]):
-        fails = codes >= COLLAPSE
+        fails = (codes >= COLLAPSE) & (codes != SLID)
         least = r.mode_I.amplitudes_g[k]
         must((least is None) == (not fails.any()), f"{least}: {codes}")
         if least is not None:

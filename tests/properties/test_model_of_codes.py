@@ -42,6 +42,49 @@ def test_codes_say_what_their_checks_say(rules: dict[str, Check], bound: str | N
         assert verdict.outcome == ("open" if bound == "lower" else "collapses")
 
 
+@QUICK
+@given(checks(), BOUNDS, st.lists(st.just("It slides."), max_size=1), st.sampled_from(["NTC", "NZSEE", "EN1998"]), st.none() | FACTORS)
+def test_a_conclusion_names_what_governs(rules: dict, bound: str | None, violated: list, jurisdiction: str, dilatant: float | None) -> None:
+    """The first sentence of a report has margin, check and state of the check that governs; zeta_E and %NBS are margins; dilatant friction leaves a
+    check that fails without it open."""
+    states = {"NTC 2018": "SLV", "ASCE 41": "LS"}
+    rules = {n: c.model_copy(update={"limit_state": states.get(c.code, ""), "source": f"clause of {n}"}) for n, c in rules.items()}
+    found = Checked.model_construct(
+        checks=rules, confidence_factor=1.35, bound=bound, violated=violated, jurisdiction=jurisdiction, code="", margin_associated=dilatant
+    )
+    decided, verdict, more = governing(rules), found.overall(), found.concluded()
+    assert more["clause"] == (rules[decided[0][1]].source if decided else "")
+    at_slv = [margin for margin, name in decided if rules[name].limit_state == "SLV"]
+    assert more.get("zeta_E") == (min(at_slv, default=None) if jurisdiction == "NTC" else None)
+    assert more.get("nbs_percent") == (100.0 * decided[0][0] if decided and jurisdiction == "NZSEE" else None)
+    if decided and decided[0][0] <= 1.0 and dilatant is not None and bound != "lower":
+        assert verdict.outcome == ("open" if dilatant >= 1.0 else "collapses")
+    told = Checked.model_construct(**{**vars(found), "zeta_E": more.get("zeta_E"), "nbs_percent": more.get("nbs_percent")}).conclusion()
+    if not decided or verdict.outcome not in ("stands", "collapses"):
+        assert told == verdict.statement
+        return
+    margin, name = decided[0]
+    word = "satisfies" if margin > 1.0 else "does not satisfy"
+    assert f" {word} {rules[name].code}" in told and f"safety factor {margin:.3g} by {name}" in told
+    assert (f"zeta_E {min(at_slv, default=0.0):.3g}" in told) == (jurisdiction == "NTC" and bool(at_slv))
+    assert (f"{100.0 * margin:.0f} %NBS" in told) == (jurisdiction == "NZSEE")
+
+
+@QUICK
+@given(checks(), st.sampled_from(["NTC", "none"]))
+def test_rules_beyond_their_scope_are_named(rules: dict[str, Check], jurisdiction: str) -> None:
+    """Where no rule of a code applies the verdict names each of them with its reason, and no formula for comparison; without a code it names none."""
+    barred = {
+        name: check.model_copy(update={"verdict": "not-applicable", "reason": f"the reason of {name}"}) if check.code else check
+        for name, check in rules.items()
+    }
+    found = Checked.model_construct(checks=barred, confidence_factor=1.35, bound=None, violated=[], jurisdiction=jurisdiction).overall()
+    assert found.outcome == "not-applicable" and (found.demand, found.capacity) == (None, None)
+    for name, check in barred.items():
+        assert (f"{check.code}, {name}: {check.reason}" in found.statement) == (bool(check.code) and jurisdiction != "none")
+        assert check.code or f", {name}: " not in found.statement
+
+
 def row_of_margin(name: str, margin: float) -> StrategyVerdict:
     """A row of a strategy that has a verdict, by its margin."""
     strategy, outcome = strategies.of(name), "stands" if margin > 1.0 else "collapses"

@@ -355,20 +355,13 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
         **({"tension": 1e5, "cohesion": 2e5} if building.joints.tension else {}),
     )
     if tilt is not None and dem is not None:
+        # Without a state of no dilatancy the associated value decides
         ends = [
-            (None if joints else own, least, joints)
-            for own, least, joints in (
-                (tilt.collapse_acceleration_g, tilt.collapse_acceleration_non_associated_g, tilt.dilating_joints),
-                (
-                    tilt.collapse_acceleration_opposite_g,
-                    tilt.collapse_acceleration_non_associated_opposite_g,
-                    tilt.dilating_joints_opposite,
-                ),
-            )
+            (tilt.collapse_acceleration_g, tilt.dilating_joints),
+            (tilt.collapse_acceleration_opposite_g, tilt.dilating_joints_opposite),
         ]
-        upper = [tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g]
-        least = min(up if end[0] is None else end[0] for end, up in zip(ends, upper, strict=True))
-        slides = any(end[2] and end[0] == least for end in ends)
+        least = min(capacity for capacity, _ in ends)
+        slides = any(joints and capacity == least for capacity, joints in ends)
         told(
             reasons_of_statics.sliding_as_collapse,
             slides and not dem.decided_by_last_digits and dem.outcome != "collapse" and dem.peak_slip_m >= 0.5 * dem.peak_displacement_m,
@@ -392,7 +385,7 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
         else (None if (m := r.margin if r.margin is not None else r.margin_at_least) is None else m * facts.peak_g)
         for n, r in facts.rows.items()
     }
-    mine = [p for p in pairs if weaker(p, "code-checks") and set(p) & {"push-x", "push-y"}]
+    mine = [p for p in pairs if weaker(p, "code-checks") and set(p) & {"push-x", "push-y", "frame"}]
     pushes = {n: reached[n] for p in mine for n in p if n != "code-checks" and reached[n] is not None}
     first = codes.walls[0].multiplier if codes is not None and codes.walls else None
     told(

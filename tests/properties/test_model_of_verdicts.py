@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from extrados.analyses.assess import strategies
 from extrados.analyses.assess.asking import row_of
 from extrados.analyses.assess.hazard import Demanded
+from extrados.results.dem import DemDomain
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Result
 from extrados.results.rocking import AssessedImpulse, Assessment, Conditions, FailureDomain, ModeCurve, Rocking
-from extrados.results.statistics import Ensemble, OverDurations, OverLevels
+from extrados.results.statistics import Ensemble, HarmonicMap, OverDurations, OverLevels, Resonance, RockingSpectrum
 from extrados.results.verdict import KindResults, Verdict, judge
 
 
@@ -245,7 +246,7 @@ def test_shares_of_collapses_decide_where_all_agree(
     decided(found, agreed, conditions.violated if known else [])
     if known:
         assert f"{100.0 * min(known):.3g} % of the motions of" in found.statement
-        assert len(known) == 1 or f" {100.0 * max(known):.3g} % of those of" in found.statement
+        assert len(known) == 1 or f" {100.0 * max(known):.3g} % of the motions of" in found.statement
     share, count = shares[0], 4
     rules = None if by_rule is None else dict(zip(("energy-safe", "inelastic"), by_rule, strict=True))
     one = Ensemble.model_construct(
@@ -272,3 +273,82 @@ def test_shares_of_collapses_decide_where_all_agree(
     ).judged(DEMANDED)
     assert middle is not None or f"{100.0 * (0.5 if share is None else share):.3g} %" in levels.statement
     assert (levels.outcome, levels.capacity, levels.violated) == ("not-applicable", middle, conditions.violated)
+
+
+@QUICK
+@given(
+    FACTORS,
+    st.none() | FACTORS,
+    st.sampled_from([(None, None), (0.5, 1.5), (0.9, 0.95), (1.1, 2.0)]),
+    CONDITIONS,
+    st.sampled_from([Ensemble, OverLevels]),
+)
+def test_a_rate_is_compared_with_the_accepted_one(
+    rate: float, accepted: float | None, around: tuple, conditions: Conditions, of: type[Ensemble | OverLevels]
+) -> None:
+    """An annual rate stands below the accepted one, collapses above, and is open where its interval holds the accepted one."""
+    interval = [None if factor is None else factor * rate for factor in around]
+    shares = (
+        {"collapse_probability": 0.25, "collapsed": 1, "count": 4} if of is Ensemble else {"collapse_probability": [0.25], "count": [4]}
+    )
+    found = of.model_construct(
+        **shares,
+        annual_collapse_rate=rate,
+        annual_collapse_rate_interval=interval,
+        acceptable_annual_rate=accepted,
+        conditions=conditions,
+        collapse_probability_by_rule=None,
+        rule_band=None,
+    ).judged(DEMANDED)
+    assert (found.demand, found.capacity, found.unit) == (rate, accepted, "1/year") and f"{rate:.3g}" in found.statement
+    if accepted is None:
+        assert found.outcome not in ("stands", "collapses") and "accepts no rate" in found.statement
+        return
+    holds = interval[0] is not None and interval[0] < accepted <= interval[1]
+    decided(found, "open" if holds else "stands" if rate < accepted else "collapses", conditions.violated)
+    assert f"{accepted:.3g} is accepted" in found.statement and (f"between {interval[0] or 0.0:.2g} and" in found.statement) == holds
+
+
+@QUICK
+@given(st.sampled_from(["no-hinging", "recovery", "collapse"]), FACTORS, st.none() | FACTORS, CONDITIONS, st.integers(1, 20))
+def test_the_worst_motion_under_a_cap(outcome: str, cap: float, least: float | None, conditions: Conditions, cycles: int) -> None:
+    """A resonance collapses as its run does; it stands below the least cap that makes the rotation grow; else it is open."""
+    found = Resonance.model_construct(outcome=outcome, cap_g=cap, least_cap_g=least, conditions=conditions, half_cycles=cycles)
+    verdict = found.judged(DEMANDED)
+    want = "collapses" if outcome == "collapse" else "stands" if least is not None and cap < least else "open"
+    decided(verdict, want, conditions.violated)
+    assert (verdict.demand, verdict.capacity, verdict.unit) == (cap, least, "g")
+    assert ("does not cause collapse" in verdict.statement) == (want != "collapses")
+    assert (f"above {least or 0.0:.3g} g" in verdict.statement) == (least is not None)
+
+
+@QUICK
+@given(st.lists(st.none() | FACTORS, min_size=1, max_size=5), CONDITIONS, st.sampled_from(["sine", "step"]), st.integers(4, 80))
+def test_maps_name_their_least_amplitude_and_duration(cells: list, conditions: Conditions, pulse: str, place: int) -> None:
+    """A harmonic map, a spectrum and a domain of elements name the least value that causes collapse, or none; a domain compares the deck's own pulse
+    with its curve."""
+    least = min((a for a in cells if a is not None), default=None)
+    found = HarmonicMap.model_construct(lowest_overturning_amplitude_g=cells, conditions=conditions).judged(DEMANDED)
+    assert (found.demand, found.capacity, found.unit, found.violated) == (None, least, "g", conditions.violated)
+    assert (f"{least or 0.0:.3g} g" in found.statement) == (least is not None) and found.outcome not in ("stands", "collapses")
+
+    amplitudes = [float(k + 1) for k in range(len(cells))]
+    domain = DemDomain.model_construct(pulse=pulse, amplitudes_g=amplitudes, shortest_durations_s=cells)
+    asked = Demanded(0.2, "sine", 0.9, place / 16.0)
+    verdict = domain.judged(asked)
+    below = max((a for a in amplitudes if a <= asked.amplitude_g), default=None)
+    above = min((a for a in amplitudes if a >= asked.amplitude_g), default=None)
+    ends = [None if a is None else cells[amplitudes.index(a)] for a in (below, above)]
+    if pulse == "sine" and None not in ends:
+        at = float(np.interp(asked.amplitude_g, [below, above], ends)) if below != above else ends[0]
+        assert math.isclose(verdict.capacity, at) and verdict.demand == 0.9
+        assert verdict.outcome == ("stands" if at > 0.9 else "collapses")
+        assert ("at least as long" in verdict.statement) == (at <= 0.9)
+    else:
+        assert (verdict.demand, verdict.capacity) == (None, least) and verdict.outcome not in ("stands", "collapses")
+        assert (f"{least or 0.0:.3g} s" in verdict.statement) == (least is not None)
+
+    spectrum = RockingSpectrum.model_construct(
+        family=["a", "b"], overturned=[len(cells), 0], size_m=[1.0] * 5, conditions=[conditions, Conditions.model_construct(violated=[])]
+    ).judged(DEMANDED)
+    assert f"{len(cells)} of the 10 " in spectrum.statement and spectrum.violated == [f"a: {text}" for text in conditions.violated]

@@ -257,7 +257,6 @@ LONG = {
     "analyses/sla/events.py run_reference_loads": "the loop of events; divided with the step of the iterations",
     "analyses/sla/model.py _build": "fills the core's model in the order of its calls",
     "analyses/sla/stages.py run_stages": "one line above, of the same loop",
-    "analyses/shell/model.py _build": "one line above, fills the core's model",
 }
 MOST_LINES, MOST_PARAMETERS = 80, 12
 

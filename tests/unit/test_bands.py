@@ -43,7 +43,7 @@ def test_a_pivot_lost_in_rounding_is_refused() -> None:
 
 def test_shapes_and_types_are_refused() -> None:
     for wrong in (np.ones(3), np.ones((0, 2)), np.ones((3, 2), dtype=np.float32), np.ones((2, 3)).T):
-        with pytest.raises(ValueError, match="band of shape"):
+        with pytest.raises(ValueError, match="band matrix has shape"):
             BandFactor(wrong)
     with pytest.raises(ValueError, match="values for 12 equations"):
         BandFactor(np.tile([4.0, 1.0], (12, 1))).solve(np.ones(11))

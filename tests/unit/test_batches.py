@@ -94,7 +94,7 @@ def test_only_missing_batches_run_again(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("at", [0, 10, 40, 200, -200, -30, -1])
-def test_a_damaged_batch_is_told_and_computed_again(tmp_path: Path, at: int) -> None:
+def test_a_damaged_batch_is_reported_and_computed_again(tmp_path: Path, at: int) -> None:
     """Wherever a bit flipped: neither taken nor in the way."""
     out = tmp_path / "run"
     sweep(context(out), "t", Squares(), 3000, "squares")
@@ -159,7 +159,7 @@ def test_a_copied_batch_counts_for_no_other_place(tmp_path: Path) -> None:
     shutil.copy(first, last.with_name(f"{last.stem.partition('-')[0]}-{digest}.npz"))
     again = context(out, resume=True)
     s = sweep(again, "t", Squares(), n, "squares")
-    assert np.array_equal(s["value"], np.arange(n) ** 2) and "computed again" in again.warnings[0]
+    assert np.array_equal(s["value"], np.arange(n) ** 2) and "calculated again" in again.warnings[0]
     sweep(context(out, resume=True), "t", Squares(3), n, "cubes")
     (cubes,) = (f for f in folder_of(out).glob("t-*") if f != first.parent)
     for path in cubes.iterdir():
@@ -339,7 +339,7 @@ def test_cluster_gives_the_same_bytes_and_survives(cluster, tmp_path: Path) -> N
 
     c.progress = progress
     s = sweep(c, "t", Roots(), 30_000, "roots")
-    assert not s.complete and not s.interrupted and "is gone" in s.stopped and "--resume" in s.stopped
+    assert not s.complete and not s.interrupted and "does not respond any more" in s.stopped and "--resume" in s.stopped
     assert len(s.members) >= 60 and np.array_equal(s["value"], np.sqrt(s.members))
     kept = sorted(folder_of(out).glob("t-*/*.npz"))
     assert kept

@@ -305,7 +305,7 @@ def test_bad_properties(tables: dict, said: str) -> None:
     ("change", "said"),
     [
         ({"restitution": 0.9}, r"has moved to \[joints\] restitution"),
-        ({"mass": 100.0}, "give one of the two"),
+        ({"mass": 100.0}, "give only one of the two"),
         ({"width": None, "height": None, "mass": 10.0}, "missing"),
         ({"width": 0.0}, "greater than 0"),
     ],

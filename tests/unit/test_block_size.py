@@ -46,4 +46,4 @@ def test_a_row_is_the_capacity_of_that_deck() -> None:
 def test_blocks_without_a_rule_are_refused() -> None:
     square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
     found = tilt({"kind": "blocks", "block": [{"points": square}]}, block_size=True)
-    assert found.status == "refused" and "no key of their size" in found.reason
+    assert found.status == "refused" and "no key for their size" in found.reason

@@ -101,18 +101,18 @@ def test_bond_and_cut_units() -> None:
     assert len(make_brickwork(Bond(0.25, 0.12, least_unit=0.05), 1.02, 0.12).mass) == 5
 
 
-def test_lintels_bear_and_share_piers() -> None:
+def test_lintels_rest_on_piers_and_share_them() -> None:
     bond = Bond(0.25, 0.12)
     wall = make_brickwork(bond, 3.0, 2.4, [(0.5, 1.0, 0.0, 1.2), (1.1, 1.6, 0.6, 1.2), (2.2, 2.6, 0.0, 2.4)])
     box = {n: o for n, o in zip(wall.block_names, wall.outlines, strict=True) if n.startswith("lintel")}
     assert set(box) == {"lintel 1", "lintel 2"}  # the third opening reaches the top
     assert box["lintel 1"][[0, 2]] == pytest.approx(np.array([[0.375, 1.2], [1.05, 1.32]]))
     assert box["lintel 2"][[0, 2]] == pytest.approx(np.array([[1.05, 1.2], [1.725, 1.32]]))
-    with pytest.raises(BadGeometry, match="no place for its lintel"):
+    with pytest.raises(BadGeometry, match="a lintel has no place"):
         make_brickwork(bond, 3.0, 2.4, [(0.5, 1.0, 0.0, 1.2), (0.8, 1.6, 1.0, 1.8)])
-    with pytest.raises(BadGeometry, match="nothing of the wall"):
+    with pytest.raises(BadGeometry, match="occupy the whole wall"):
         make_brickwork(bond, 3.0, 2.4, [(0.0, 3.0, 0.0, 2.4)])
-    with pytest.raises(BadGeometry, match="too many"):
+    with pytest.raises(BadGeometry, match="are allowed"):
         make_brickwork(Bond(0.01, 0.01), 3.0, 2.4)
 
 
@@ -161,7 +161,7 @@ def test_panel_as_stones() -> None:
     tilt, thrust = run({**PANEL, **UNIT, "openings": [WINDOW]}, {"kind": "tilt"}, {"kind": "thrust", "gamma": 0.1})
     assert tilt.status == "ok" and 0.2 < tilt["collapse_acceleration_g"] < 0.7
     assert "thrusts" not in tilt.results
-    assert thrust["chain"] is None and "no chain has a least and a greatest thrust" in thrust.answer
+    assert thrust["chain"] is None and "no least and greatest thrust are given" in thrust.answer
     up = sum(r["vertical_N"] for r in thrust["central"]["reactions"])
     side = sum(r["horizontal_N"] for r in thrust["central"]["reactions"])
     assert up == pytest.approx(thrust["weight_N"], rel=1e-6) and side == pytest.approx(-0.1 * up, rel=1e-5)
@@ -210,7 +210,7 @@ def test_macro_blocks() -> None:
     # Two slender piers and a beam, hinged at their toes: a parallelogram falls at its piers' width over height.
     portal = make_piers(3.0, 3.0, [(0.3, 2.7, 0.0, 2.4)], 2000.0, 0.25)
     assert LimitAnalysis(portal).collapse()[0].gamma == pytest.approx(0.3 / 2.4, rel=1e-9)
-    with pytest.raises(BadGeometry, match="no masonry is left there"):
+    with pytest.raises(BadGeometry, match="no masonry remains there"):
         make_piers(3.0, 3.0, [(0.0, 3.0, 0.0, 1.0)], 2000.0, 0.25)
 
 
@@ -315,10 +315,10 @@ def test_a_wall_without_its_most_central_line_keeps_its_bounds(monkeypatch: pyte
     whole = asked(0.1).results[0]
 
     def gives_up(*_: object, **__: object) -> None:
-        raise NoAnswer("the most central thrust line did not settle")
+        raise NoAnswer("the iteration for the most central thrust line did not converge")
 
     monkeypatch.setattr(LimitAnalysis, "central", gives_up)
     found = asked(0.1).results[0]
-    assert found.status == "ok" and any("did not settle" in w for w in found.warnings) and found.results.central is None
+    assert found.status == "ok" and any("did not converge" in w for w in found.warnings) and found.results.central is None
     assert found.results.admissible_interval_g == whole.results.admissible_interval_g and "admissible" in found.answer
     assert asked(0.8).results[0].status == "refused"

@@ -81,7 +81,7 @@ def test_components_must_fit(tmp_path: Path, three: list[Path]) -> None:
     with pytest.raises(RecordError, match="two components"):
         deck_motion(tmp_path, kind="record", file="first.at2", vertical="first.at2")
     for keys in ({"second": "second.at2"}, {"angle": 30.0}):
-        with pytest.raises(DeckError, match="angle goes together"):
+        with pytest.raises(DeckError, match="angle requires second"):
             deck_motion(tmp_path, kind="record", file="first.at2", **keys)
 
 
@@ -156,5 +156,5 @@ def test_a_missing_partner_stays_its_own(tmp_path: Path) -> None:
     up = result.tables["ensemble"].columns["vertical_pga_g"]
     assert up[:2] == pytest.approx([0.4, 0.4], rel=1e-2) and np.isnan(up[2])
     assert "rotd50_pga_g" not in result.tables["ensemble"].columns
-    with pytest.raises(DeckError, match="give one of files"):
+    with pytest.raises(DeckError, match="give only one of files"):
         make_deck({"motion": {**suite(tmp_path), "pattern": "*"}, "analysis": {"kind": "motion"}}, tmp_path)

@@ -104,9 +104,9 @@ def test_a_reason_comes_back_with_its_key() -> None:
 @pytest.mark.parametrize(
     ("reader", "words"),
     [
-        ("fill", "takes more than 300 MB to be read"),
-        ("spin", "takes more than 1 s to be read"),
-        ("sleep", "in the time that is left to it"),
+        ("fill", "more than 300 MB of memory to read"),
+        ("spin", "takes more than 1 s to read"),
+        ("sleep", "in the remaining time"),
         ("die", "its reader ended with code -11"),
         ("missing", "its reader ended with code 1"),
     ],

@@ -65,16 +65,16 @@ def test_good_deck() -> None:
         ("embrace = 157.5", "embrace = 157.5\nfloat = 1", 7, ["unknown key"]),
         ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'energy-safe' or 'inelastic', or", "number"]),
         ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
-        ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound needs abutting_wall"]),
+        ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound requires abutting_wall"]),
         (
             "voussoirs = 7",
             "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]",
             9,
-            ["expected as many coordinates at all points of a tie"],
+            ["expected the same number of coordinates for all points of a tie"],
         ),
         ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
-        ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),
+        ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["number without a unit", "g"]),
         ('kind = "step-pulse"', 'kind = "step-puls"', 9, ["did you mean 'step-pulse'"]),
         ('kind = "tilt"', 'kind = "tlit"', 13, ["did you mean 'tilt'"]),
         ('kind = "tilt"', "", 12, ["kind is missing"]),
@@ -103,8 +103,8 @@ def test_all_complaints_at_once() -> None:
 
 
 def test_missing_motion_and_structure() -> None:
-    assert any("needs a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"'))
-    assert any("needs a [structure]" in c for c in complaints('[analysis]\nkind = "tilt"'))
+    assert any("requires a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"'))
+    assert any("requires a [structure]" in c for c in complaints('[analysis]\nkind = "tilt"'))
     assert any("no [analysis]" in c for c in complaints('title = "x"'))
 
 
@@ -233,12 +233,12 @@ def test_decks_from_python() -> None:
     [
         (
             {"joints": {"friction_rule": "non-associated"}, "analysis": {"kind": "tilt"}},
-            "joints.friction_rule: unknown key; it belongs in the [[analysis]] table",
+            "joints.friction_rule: unknown key; this key belongs in the [[analysis]] table",
         ),
-        ({"analysis": {"kind": "moving-load", "dynamic": 1.4}}, "analysis.dynamic: unknown key; it belongs in analysis.factors"),
+        ({"analysis": {"kind": "moving-load", "dynamic": 1.4}}, "analysis.dynamic: unknown key; this key belongs in analysis.factors"),
     ],
 )
-def test_a_key_at_the_wrong_place_is_told_its_own(tables: dict, words: str) -> None:
+def test_a_key_at_the_wrong_place_is_reported_with_its_right_place(tables: dict, words: str) -> None:
     arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
     with pytest.raises(DeckError, match=re.escape(words)):
         make_deck({"structure": arch, **tables})
@@ -247,9 +247,9 @@ def test_a_key_at_the_wrong_place_is_told_its_own(tables: dict, words: str) -> N
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("piers = { width = 1.0, height = 2.0 }", "expected a list of tables, [{ ... }], even for one"),
+        ("piers = { width = 1.0, height = 2.0 }", "expected a list of tables, [{ ... }], also for a single table"),
         ("piers = 2", "piers: 2: expected a list, [ ... ]"),
-        ("piers = [{ width = 1.0, height = 2.0 }]", "1 span needs no piers; there is 1"),
+        ("piers = [{ width = 1.0, height = 2.0 }]", "1 span needs no piers; found 1"),
         ('title = "x"', "unknown key"),
     ],
 )

@@ -67,7 +67,7 @@ def test_a_block_settles_as_far_as_its_joint_gives() -> None:
 
 
 @pytest.mark.parametrize("sides", [48, 96])
-def test_round_drums_bear_on_all_of_their_faces(sides: int) -> None:
+def test_round_drums_are_in_contact_over_all_of_their_faces(sides: int) -> None:
     """Two drums settle level, by what the whole polygons give."""
     angle = 2.0 * np.pi * np.arange(sides) / sides
     ring = 0.5 * np.column_stack([np.cos(angle), np.sin(angle)])
@@ -210,7 +210,7 @@ def test_two_components_are_one_along_their_sum() -> None:
     for run in (along_x, along_y):
         assert run.place == pytest.approx(whole.place, abs=1e-9) and run.residual < 1e-2
     with dem3.Model(block, given) as model, as_motion_set(part[:2]) as motions:
-        with pytest.raises(IndexError, match="motion 5 is not in the set of 2"):
+        with pytest.raises(IndexError, match="motion number 5 does not exist: the set has 2"):
             model.run(motions, across=5)
 
 
@@ -380,7 +380,7 @@ def test_wrong_models_are_refused() -> None:
         dem3.run(solids([prism(np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 1.0)], Law(1e9, 1e9, 0.6)), options)
     with pytest.raises(ValueError, match="stiffnesses"):
         Law(0.0, 1e9, 0.6)
-    with pytest.raises(ValueError, match="law that is not there"):
+    with pytest.raises(ValueError, match="law that does not exist"):
         dem3.run(replace(good, joints={(0, 1): 3}), options)
     with pytest.raises(IndexError, match="joints names 7"):
         dem3.run(replace(good, joints={(0, 7): 0}), options)
@@ -400,7 +400,7 @@ def hanging(law: Law) -> Solids:
 
 
 @pytest.mark.parametrize("share", [0.95, 1.6])
-def test_mortar_bears_the_weight_that_hangs_on_it(share: float) -> None:
+def test_mortar_carries_the_weight_that_hangs_on_it(share: float) -> None:
     """Below its strength a cube hangs, drawn out by weight over stiffness; above it falls freely and the ledger closes."""
     weight, stiffness = DENSITY * GRAVITY, 1e9
     law = Law(stiffness, stiffness, 0.5, damping=2e-3, cohesion=weight, tension=share * weight)
@@ -414,7 +414,7 @@ def test_mortar_bears_the_weight_that_hangs_on_it(share: float) -> None:
 
 
 @pytest.mark.parametrize("share", [0.95, 1.05])
-def test_settling_asks_of_mortar_the_weight_at_rest(share: float) -> None:
+def test_mortar_must_carry_the_weight_at_rest_after_settling(share: float) -> None:
     """Not the overshoot of a weight that comes at once, which without dashpots is twice as much."""
     weight, stiffness = DENSITY * GRAVITY, 1e9
     law = Law(stiffness, stiffness, 0.5, damping=0.0, cohesion=weight, tension=share * weight)
@@ -427,7 +427,7 @@ def test_settling_asks_of_mortar_the_weight_at_rest(share: float) -> None:
 
 @pytest.mark.parametrize("gap", [0.0, 1e-9, 1e-4])
 @pytest.mark.parametrize("share", [0.9, 2.5])
-def test_mortar_bears_shear_by_cohesion(share: float, gap: float) -> None:
+def test_mortar_carries_shear_by_cohesion(share: float, gap: float) -> None:
     """On a slope without enough friction a cube sticks by cohesion; once that is broken for good, friction alone brakes it."""
     weight, mu, slope = DENSITY * GRAVITY, 0.2, np.radians(35.0)
     pull = GRAVITY * np.array([np.sin(slope), 0.0, -np.cos(slope)])
@@ -475,7 +475,7 @@ def doweled_cube(strength: float, reach: float = np.inf, stiffness: float = 1e9)
 
 
 @pytest.mark.parametrize("way", [0.0, 50.0, 200.0])
-def test_a_dowel_bears_shear_in_any_direction(way: float) -> None:
+def test_a_dowel_carries_shear_in_any_direction(way: float) -> None:
     """On a slope: an unbroken dowel holds what friction does not, drawn out by that over its stiffness; one that gives way
     brakes with its strength."""
     weight, mu, slope = DENSITY * GRAVITY, 0.2, np.radians(35.0)
@@ -603,7 +603,7 @@ def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) ->
         dem3.Model(model, replace(options, rigid=True))
 
 
-def test_a_contact_that_comes_to_be_deep_gives_no_energy() -> None:
+def test_a_contact_that_becomes_deep_gives_no_energy() -> None:
     """Two cubes overlap in a sliver along an edge, too narrow to be a contact, and one moves on over the other: as the contact
     comes to be, half a millimetre deep, it must not throw the cube up."""
     over = [box((0.0, 0.0, -1.0), (1.0, 1.0, 0.0)), box((1.0 - 3e-4, 0.0, -4e-4), (2.0 - 3e-4, 1.0, 1.0 - 4e-4))]

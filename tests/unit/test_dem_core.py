@@ -111,7 +111,7 @@ def test_leapfrog_is_second_order() -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.5, 3.0])
-def test_dashpots_damp_as_asked(ratio: float) -> None:
+def test_dashpots_damp_as_requested(ratio: float) -> None:
     """A bonded block, let go with a velocity, against the damped oscillator: both its points share the damping."""
     omega = np.sqrt(1e7 / 2000.0)
     law = dem.Law(1e7, 1e7, 1.0, cohesion=1e9, tension=1e9, damping=2.0 * ratio / omega)
@@ -203,7 +203,7 @@ def test_mortar_holds_until_its_strength() -> None:
 
 
 @pytest.mark.parametrize("share", [0.95, 1.05])
-def test_settling_asks_of_mortar_the_weight_at_rest(share: float) -> None:
+def test_mortar_must_carry_the_weight_at_rest_after_settling(share: float) -> None:
     """Not the overshoot of a weight that comes at once, which without dashpots is twice as much."""
     weight, stiffness = 2000.0 * G, 1e9
     law = dem.Law(stiffness, stiffness, 0.6, cohesion=1e6, tension=share * weight)
@@ -226,7 +226,7 @@ def test_support_settles() -> None:
     assert np.abs(run.place[:, 1, 1] - run.settled[1, 1] - way).max() < 1e-8
 
 
-def test_step_above_the_critical_one_is_told() -> None:
+def test_step_above_the_critical_one_is_reported() -> None:
     bodies = block_on_floor(1.0, 4.0, STIFF)
     run = dem.run(bodies, dem.Options(1.0, 0.1, step=1.0))
     assert run.reason == "step" and 0.0 < run.critical_step < 1.0
@@ -285,7 +285,7 @@ def test_a_run_pauses_and_goes_on_from_any_state_to_the_same_bits(threads: int, 
         with dem.Model(bodies, options) as other:
             with pytest.raises(ValueError, match="damaged"):
                 other.run(motions, state=broken)
-            with pytest.raises(ValueError, match="of other times"):
+            with pytest.raises(ValueError, match="to other times"):
                 other.run(motions, state=states[0][1], times=[0.0, 0.1])
 
 

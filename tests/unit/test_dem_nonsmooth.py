@@ -79,7 +79,7 @@ def test_a_flat_fall_rebounds_as_newton_says(rebound: float) -> None:
 
 
 @pytest.mark.parametrize(("embrace", "voussoirs"), [(157.5, 7), (170.0, 17)])
-def test_the_blow_is_that_of_the_rocking_arch(embrace: float, voussoirs: int) -> None:
+def test_the_impact_is_that_of_the_rocking_arch(embrace: float, voussoirs: int) -> None:
     """Without gravity one step of closed joints that hardly slide is Moreau's blow, which the rocking arch uses."""
     arch = make_arch(10.0, 1.5, embrace, voussoirs)
     rigid = rigid_bodies(arch)
@@ -203,12 +203,12 @@ def test_effort_is_kept_in_rows() -> None:
     assert found.effort.steps > 50
 
 
-def test_what_does_not_converge_is_told() -> None:
+def test_a_run_that_does_not_converge_is_reported() -> None:
     from extrados.analyses.dem.model import unconverged
 
     assert unconverged(dem_run.Effort(100, 300, 20, 0, 1e-6, 0.7)) == []
     (told,) = unconverged(dem_run.Effort(100, 300, 200, 3, 0.02, 0.7))
-    assert "did not converge in 3 of 100 steps: at the worst, at 0.7 s" in told and "0.02" in told
+    assert "did not converge in 3 of 100 steps. The greatest error, at 0.7 s" in told and "0.02" in told
 
 
 @pytest.mark.parametrize(("limit", "warned"), [(1.01, True), (0.5, False)])

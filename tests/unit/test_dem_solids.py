@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.dem.solid_model import SolidModel, SolidValues
+from extrados.analyses.dem.impact_rules import ContactValues
+from extrados.analyses.dem.solid_model import SolidModel
 from extrados.decks.reader import DeckError
 from extrados.model.geometry.solids.assembly import Stone, assemble
 from extrados.model.geometry.solids.columns import doweled, drums
@@ -99,7 +100,7 @@ def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: flo
 
 
 @pytest.mark.verify
-def test_dowels_bear_as_in_limit_analysis(tmp_path) -> None:
+def test_dowels_carry_the_force_of_limit_analysis(tmp_path) -> None:
     """A drum that slides on a dowel: friction plus the dowel's strength over the weight, within 1 % by both."""
     structure = 'kind = "column"\nsection = "round"\nsides = 16\nwidth = 1.0\nheight = 1.2\ndrums = 2\ndowels = "2 kN"'
     structure += '\n[[joints.types]]\njoints = ["ground"]\nfriction = 1.0'  # the lower drum does not slide first
@@ -130,7 +131,7 @@ def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
     text = '[structure]\nkind = "blocks"\nfile = "stones.obj"\nunit = "m"\n[joints]\nnormal_stiffness = 1e8\n[[analysis]]\nkind = "dem"\n'
     stands = answered(tmp_path, text)
     assert stands.status == "ok" and stands.results.outcome == "at-rest"
-    assert stands.answer.startswith("It stands under its own weight; nothing moves it.")
+    assert stands.answer.startswith("The structure stands under its own weight. No motion acts on it.")
     leaning = "\n".join(f"v {x + 1.1 * z} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
     (tmp_path / "stones.obj").write_text(f"o slab\n{leaning}\n{CUBE}")
     falls = answered(tmp_path, text)
@@ -146,7 +147,7 @@ def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
         ("[initial]\nrotation_ratio = 0.5\n", "", "rotation_ratio"),
         ("cohesion = 1e5\n", 'solver = "nonsmooth"', "have no mortar"),
         ("worn_corners = 0.01\n", "", "worn corners"),
-        ("", 'track = ["drum 9"]', "names no block 'drum 9'"),
+        ("", 'track = ["drum 9"]', "no block has the name 'drum 9'"),
     ],
 )
 def test_what_solids_do_not_know_is_refused_by_name(tmp_path, more: str, of_dem: str, told: str) -> None:
@@ -158,7 +159,7 @@ def test_dowels_stand_in_the_lower_drum(tmp_path) -> None:
     """And reach into the one above it, whatever the order in which stones and their contact are named."""
     made = doweled(drums(1.0, [0.5, 0.5, 0.5], None, 8, 0.0, 2000.0), 1e3, 0.1)
     turned = replace(made, a=made.b, b=made.a, normal=-made.normal, polygon=[p[::-1] for p in made.polygon])
-    values = SolidValues(*(np.ones(len(made.a)) for _ in range(5)), 1e-3, None)
+    values = ContactValues(*(np.ones(len(made.a)) for _ in range(5)), 1e-3, None)
     for one in (made, turned):
         dowels = SolidModel(one, supports_of(made), values).bodies().dowels
         assert dowels.body.tolist() == [[0, 1], [1, 2]]
@@ -243,7 +244,7 @@ def test_rigid_contacts_find_what_falls(tmp_path) -> None:
     """Under its own weight; and a push without inertia ends as limit analysis says."""
     (tmp_path / "stones.obj").write_text(f"o cube\n{OBJ}\n{CUBE}")
     text = f'[structure]\nkind = "blocks"\nfile = "stones.obj"\nunit = "m"\n[[analysis]]\nkind = "dem"\n{RIGID}'
-    assert answered(tmp_path, text).answer.startswith("It stands under its own weight; nothing moves it.")
+    assert answered(tmp_path, text).answer.startswith("The structure stands under its own weight. No motion acts on it.")
     leaning = "\n".join(f"v {x + 1.1 * z} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
     (tmp_path / "stones.obj").write_text(f"o slab\n{leaning}\n{CUBE}")
     falls = answered(tmp_path, text)

@@ -176,7 +176,7 @@ def test_a_state_with_ties_goes_on_with_the_same_bits(rigid: bool) -> None:
         again = other.run(motions, state=states[len(states) // 2])
     assert np.array_equal(again.tension, whole.tension) and np.array_equal(again.place, whole.place)
     bare = replace(shaken, ties=None)
-    with dem.Model(bare, options) as third, as_motion_set([STILL]) as motions, pytest.raises(ValueError, match="of a run of another model"):
+    with dem.Model(bare, options) as third, as_motion_set([STILL]) as motions, pytest.raises(ValueError, match="to a run of another model"):
         third.run(motions, state=states[0])
 
 
@@ -236,3 +236,77 @@ def test_a_tied_block_in_space(solver: str) -> None:
     assert exact["collapse_acceleration_g"] == pytest.approx((0.4 * weight + 1e4 * 2.9) / (1.5 * weight), rel=1e-6)
     assert exact["collapse_acceleration_g"] > found["collapse_acceleration_g"] > 0.985 * exact["collapse_acceleration_g"]
     assert found["ties"][0]["state"] == "yielded"
+
+
+@pytest.mark.parametrize("rigid", [False, True])
+@pytest.mark.parametrize(("power", "damping"), [(1.0, 4e3), (2.0, 1.5e4), (0.5, 800.0)])
+def test_a_dashpot_slows_a_block(power: float, damping: float, rigid: bool) -> None:
+    """m dv/dt = -c v^n in closed form, in the plane and in space; what it loses is the energy of motion."""
+    line = ties(TO_THE_SIDE, stiffness=0.0, least=0.0, most=0.0)
+    dash = replace(line, damping=np.array([damping]), power=np.array([power]))
+    start = np.array([[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    run = dem.run(free_block(dash), replace(FLOATING, rigid=rigid), shift=np.zeros((2, 3)), rate=start)
+    k, v, t = damping / MASS, 0.5, run.time
+    exact = v * np.exp(-k * t) if power == 1.0 else np.maximum(v ** (1.0 - power) - (1.0 - power) * k * t, 0.0) ** (1.0 / (1.0 - power))
+    assert run.rate[:, 0, 0] == pytest.approx(exact, abs=2e-4)
+    assert run.energy["damping"][-1] == pytest.approx(0.5 * MASS * (v**2 - exact[-1] ** 2), rel=2e-3)
+    assert run.residual < 1e-4
+    assert run.tension[-1, 0] == pytest.approx(damping * exact[-1] ** power, rel=1e-2)
+    high = replace(dash, place=np.array([[0.0, 0.0, 5.0], [-3.0, 0.0, 5.0]]))
+    body = replace(solids([box((-0.5, -0.5, 4.5), (0.5, 0.5, 5.5))], LAW), ties=high)
+    rates = np.zeros((2, 6))
+    rates[0, 0] = 0.5
+    there = dem3.run(body, dem3.Options(0.6, 0.01, step=2e-4, gravity=(0.0, 0.0, 0.0), rigid=rigid), rate=rates)
+    assert there.rate[:, 0, 0] == pytest.approx(exact, abs=2e-4)
+
+
+def test_a_stiff_dashpot_shortens_the_step_and_stops_the_block() -> None:
+    dash = replace(ties(TO_THE_SIDE, stiffness=0.0, least=0.0, most=0.0), damping=np.array([1e8]), power=np.array([1.0]))
+    start = np.array([[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    run = dem.run(free_block(dash), replace(FLOATING, end_time=0.01, step=0.0), shift=np.zeros((2, 3)), rate=start)
+    assert run.critical_step == pytest.approx(MASS / 1e8, rel=0.05)
+    assert abs(run.rate[-1, 0, 0]) < 1e-3 and run.reason == "end"
+
+
+def shaken(analysis: dict[str, Any], dampers: list[dict[str, Any]]) -> tuple[np.ndarray, np.ndarray, Any]:
+    """Times, greatest displacement of the centroid and results of a block under a sine pulse."""
+    kind = str(analysis["kind"])
+    deck = {
+        "structure": {"kind": "block", "width": 1.0, "height": 4.0},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.8},
+        "dampers": dampers,
+        "analysis": {"end_time": 3.0, **analysis},
+    }
+    run = extrados.run(deck)
+    results, arrays = run[kind], run.arrays[kind]
+    if "turn" in arrays:  # in space, about y
+        return arrays["time"].numbers, arrays["turn"].numbers[:, 0, 1], results
+    rotation = arrays["rotation"].numbers
+    return arrays["time"].numbers, rotation if rotation.ndim == 1 else rotation[:, 0], results
+
+
+VISCOUS: dict[str, Any] = {"start": [0.5, 3.5], "ground": [3.5, 3.5], "damping": "8 kN*s/m"}
+SLIDING: dict[str, Any] = {"start": [0.5, 3.5], "ground": [3.5, 3.5], "slip_force": "3 kN", "stiffness": "5 MN/m"}
+
+
+@pytest.mark.parametrize("solver", ["nonsmooth", "compliant", "space"])
+@pytest.mark.parametrize("damper", [VISCOUS, SLIDING])
+def test_a_damped_block_rocks_as_by_the_equation_of_rocking(damper: dict[str, Any], solver: str) -> None:
+    """Elements against the one degree of freedom with Housner's impacts and the law of the damper."""
+    if solver == "space":
+        high = {**damper, "start": [0.5, 0.0, 3.5], "ground": [3.5, 0.0, 3.5]}
+        time, rotation, results = shaken({"kind": "dem", "solver": "nonsmooth", "direction": 0.0}, [high])
+    else:
+        time, rotation, results = shaken({"kind": "dem", "solver": solver}, [damper])
+    by_equation, free = (np.interp(time, *shaken({"kind": "rocking"}, dampers)[:2]) for dampers in ([damper], []))
+    most = float(np.abs(by_equation).max())
+    assert np.abs(by_equation - free).max() > 0.2 * most  # the damper matters
+    assert rotation == pytest.approx(by_equation, abs=0.06 * most)
+    assert results.ties[0].state == ("viscous" if "damping" in damper else "yielded")
+
+
+def test_dampers_in_space_need_three_coordinates() -> None:
+    with pytest.raises(Exception, match=r"blocks in space need \[x, y, z\] of both ends of a damper"):
+        shaken({"kind": "dem", "direction": 0.0}, [VISCOUS])
+    with pytest.raises(Exception, match=r"takes a plane section, where the points of a damper are"):
+        shaken({"kind": "dem"}, [{**VISCOUS, "start": [0.5, 0.0, 3.5], "ground": [3.5, 0.0, 3.5]}])

@@ -66,7 +66,7 @@ def test_every_key_of_a_table_says_what_it_is_and_how_many() -> None:
 
 
 @pytest.mark.parametrize("file", sorted((PACKAGE / "core").glob("*.py")), ids=lambda p: p.stem)
-def test_calls_of_the_core_tell_shapes(file: Path) -> None:
+def test_calls_of_the_core_report_shapes(file: Path) -> None:
     """The one layer where every array is handed over: each parameter that is one is named, and shapes are told."""
 
     def look(nodes: list[ast.stmt], beside: str) -> typing.Iterator[str]:

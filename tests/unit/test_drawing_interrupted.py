@@ -154,7 +154,7 @@ def test_a_process_that_draws_is_killed(tmp_path, number) -> None:
     process, (first, *_) = drawing(tmp_path, "out/summary.json", "run", "deck.toml", "--out", "out")
     os.kill(first, number)
     text = gone(process)
-    assert process.returncode == 3 and f"ended with code -{int(number)}" in text and "the results are kept" in text
+    assert process.returncode == 3 and f"ended with exit code -{int(number)}" in text and "The results are kept" in text
     assert (tmp_path / "out" / "summary.json").exists()
     again = subprocess.run([sys.executable, "-m", "extrados", "report", "out"], cwd=tmp_path, timeout=300, check=False)
     assert again.returncode == 0 and (tmp_path / "out" / "report.html").exists()

@@ -58,12 +58,12 @@ STRATEGIES = {
 PULSE = '[motion]\nkind = "sine-pulse"\namplitude = "1 g"\nperiod = 0.5'
 EARTHQUAKES = '[motion]\nkind = "generated"\nmmi = 9\nduration = 2.0'
 
-PRESSED = "no load of this kind causes collapse of the {}: such a load only compresses the joints"
+PRESSED = "no load of this kind causes collapse of the {}, because such loads only compress the joints"
 TWO = (
-    "two stacked blocks rock in two coordinates, which `rocking`, `fragility`, `failure-domain`, `failure-curves`, `harmonic-map` and `dem` "
-    "follow"
+    "two stacked blocks rock in two coordinates. Only `rocking`, `fragility`, `failure-domain`, `failure-curves`, `harmonic-map` and `dem` "
+    "can follow them"
 )
-UNKNOWN = "the stones of the panel are not known: give unit_length and unit_height"
+UNKNOWN = "the units of the panel are not known: give unit_length and unit_height"
 REFUSED = {
     # Stone does not crush here, and a load on a body that stands on all its width, or on a lintel, finds its way down.
     ("block", "moving-load"): PRESSED.format("block"),
@@ -150,4 +150,4 @@ def test_a_wall_whose_spandrel_lifts_off_a_pier_says_why_it_does_not_rock(stones
     deck.write_text(f'[structure]\n{structure}\n{PULSE}\n[[analysis]]\nkind = "rocking"')
     (told,) = extrados.run(deck).analyses
     assert told["status"] == "refused"
-    assert told["reason"].endswith("they do not move as one, for it parts all along spandrel 1 on pier 1")
+    assert told["reason"].endswith("degrees of freedom instead of one, because it opens along the whole of spandrel 1 on pier 1")

@@ -337,7 +337,7 @@ def test_what_a_page_never_sends_is_no_fault_of_the_program(folder: Path, tmp_pa
     *_, reply = session.answer(message)
     words, _ = unpack(reply.pack())
     told = words.get("bad") or " ".join(words["complaints"])
-    assert told and "fault of the program" not in told
+    assert told and "fault of extrados" not in told
 
 
 def test_there_are_sixty_hostile_requests_and_more() -> None:
@@ -424,7 +424,7 @@ def test_a_page_that_goes_amid_long_work_holds_up_nobody(folder: Path, monkeypat
         page.close()
 
 
-def test_what_fails_at_the_end_of_a_page_is_told_on_the_log(
+def test_what_fails_at_the_end_of_a_page_is_reported_on_the_log(
     folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """And a session is closed under the same rules for files as all that its page asked for."""
@@ -442,9 +442,9 @@ def test_what_fails_at_the_end_of_a_page_is_told_on_the_log(
     finally:
         page.close()
     (record,) = caplog.records
-    assert record.getMessage() == "the end of a page failed"
+    assert record.getMessage() == "a page could not be closed"
     assert record.exc_info is not None
-    assert "only files beside the deck are read here" in str(record.exc_info[1])
+    assert "Only files in the folder of the deck can be read here" in str(record.exc_info[1])
 
 
 def test_the_work_of_a_page_is_closed_before_its_session_and_whatever_fails() -> None:

@@ -149,10 +149,10 @@ def test_sections_of_a_survey_stand_by_their_capacity() -> None:
     assert [row[1] for row in table["rows"]] == [*stand.tolist(), *[None] * (12 - len(stand))]
 
 
-def test_of_a_run_without_a_name_the_words_are_told_and_an_unknown_one_is_refused() -> None:
+def test_of_a_run_without_a_name_the_words_are_reported_and_an_unknown_one_is_refused() -> None:
     words, arrays = shown(run_of("mechanism"), None)
     assert arrays == {} and [row["name"] for row in words["analyses"]] == ["local-mechanism"]
-    with pytest.raises(StoreError, match="no analysis 'tilt'"):
+    with pytest.raises(StoreError, match="no analysis has the name 'tilt'"):
         shown(run_of("mechanism"), "tilt")
 
 

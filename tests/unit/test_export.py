@@ -189,7 +189,7 @@ def recorded(script: str, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[tup
     return ops.calls
 
 
-def test_opensees_is_told_the_weight_and_the_contacts_of_the_stones(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_opensees_script_has_the_weight_and_the_contacts_of_the_stones(monkeypatch: pytest.MonkeyPatch) -> None:
     """The script run with a recorder in place of OpenSees: loads are the weight, elements the volume, contacts the joints."""
     calls = recorded(extrados.export(DECK, "opensees"), monkeypatch)
     section = DECK.building.blocks()

@@ -74,7 +74,7 @@ def test_a_rigid_floor_moves_as_one():
     assert out_of_rigid(mesh, moved, 3.0)[0] > 0.5
 
 
-def test_the_load_of_a_floor_goes_to_the_walls_that_bear_it():
+def test_the_load_of_a_floor_goes_to_the_walls_that_carry_it():
     """Weights on the walls that bear, by the length along which they do, and on no other."""
     mesh, *_ = solved(box(kind="none", bears_on=["1", "2"]), size=1.0)
     top = np.isclose(mesh.xyz[:, 2], 3.0)
@@ -181,7 +181,7 @@ def test_a_propped_wall_is_a_propped_cantilever():
     assert np.abs(moved[np.isclose(mesh.xyz[:, 2], 3.0), 1]).max() == 0.0
 
 
-def test_soft_ground_lets_a_wall_sink_and_turn():
+def test_a_wall_on_a_compliant_base_settles_and_rotates():
     """Under its weight by the pressure over the stiffness of the ground, evenly."""
     wall = {"name": "a", "start": [0.0, 0.0], "end": [2.0, 0.0], "thickness": 0.3}
     mesh, _, rest, moved = solved({"storeys": [3.0], "walls": [wall], "foundation_stiffness": 1e7})

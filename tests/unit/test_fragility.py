@@ -199,9 +199,9 @@ def test_durations() -> None:
         ({"count": -3}, "greater than or equal to 1"),
         ({"levels": [0.1, 0.0]}, "above zero"),
         ({"levels": [0.1], "durations": [1.0]}, "not both"),
-        ({"levels": [0.1], "intensity": "sa"}, "go together"),
+        ({"levels": [0.1], "intensity": "sa"}, "requires sa_period"),
         ({"uncertain": {"widht": 0.1}}, "unknown"),
-        ({"sensitivity": 64}, "needs uncertain"),
+        ({"sensitivity": 64}, "requires uncertain"),
         ({"uncertain": {"width": 0.1}, "sensitivity": 100}, "power of 2"),
         ({"uncertain": {"width": 2.0}}, "at most 0.5"),
         ({"uncertain": {"width": 0.1, "friction": 0.1}, "sensitivity": 64}, "remove uncertain.friction or sensitivity"),
@@ -215,7 +215,7 @@ def test_bad_questions(analysis: dict, said: str) -> None:
 
 def test_refusals() -> None:
     outside = run({"kind": "fragility", "count": 2}, motion={**GENERATED, "mmi": 11})
-    assert outside.status == "refused" and "outside the spectrum" in outside.reason
+    assert outside.status == "refused" and "outside the range of the spectrum" in outside.reason
     pulse = {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}
     assert "expected at most 1" in run({"kind": "fragility", "count": 2}, motion=pulse).reason
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.15, "embrace": 157.5, "voussoirs": 7}

@@ -126,7 +126,7 @@ def test_a_history_does_not_hang_on_its_step():
     assert peaks[0] == pytest.approx(peaks[1], rel=0.05)
 
 
-def test_a_wall_that_nothing_joins_and_bad_plans_are_told():
+def test_a_wall_that_nothing_joins_and_bad_plans_are_reported():
     walls = [{"name": "a", "start": [0, 0], "end": [4, 0], "thickness": 0.3}]
     given = deck(PUSH | {"directions": [0.0]})
     given["structure"] |= {"walls": walls, "corners": [], "floors": []}

@@ -34,7 +34,7 @@ def test_strength_in_shear_of_a_pier(shear, least, most):
 
 
 @pytest.mark.parametrize("form", ["opensees-frame", "frame-tables"])
-def test_tie_rods_are_left_out_in_so_many_words(form, caplog):
+def test_tie_rods_are_neglected_in_so_many_words(form, caplog):
     floor = {"storey": 1, "young": 5e7, "thickness": 0.05, "load": 4e3}
     data = deck({"kind": "frame-pushover"}, floors=[floor])
     data["structure"]["rods"] = [{"start": [0, 0, 3], "end": [6, 4, 3], "area": 5e-4, "material": "steel"}]

@@ -152,7 +152,7 @@ def test_envelopes() -> None:
         ({"mmi": 3.9}, "expected 4 to 9"),
         ({"lines": [0.1, 1.0]}, "expected 0.4 to 13"),
         ({"lines": 1}, "at least 2"),
-        ({"step": 0.05}, "needs a time step below"),
+        ({"step": 0.05}, "requires a time step below"),
         ({"duration": 0.0}, "above zero"),
         ({"lines": [2.0, 1.0]}, "ascending"),
         ({"spectrum": "nowhere.csv"}, "no such file"),
@@ -167,12 +167,12 @@ def test_refusals(keys, words) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("mmi,f,a\n", ":1: header"),
+        ("mmi,f,a\n", ":1: the header"),
         ("mmi,frequency_Hz,amplitude_cm_s\n6,1\n", ":2: expected three numbers"),
         ("mmi,frequency_Hz,amplitude_cm_s\n6,1,nan\n", ":2: expected intensity"),
-        ("mmi,frequency_Hz,amplitude_cm_s\n6,1,2\n6,1,2\n", ":3: .*stands twice"),
-        ("mmi,frequency_Hz,amplitude_cm_s\n6,1,2\n7,2,2\n", "all at the same"),
-        ("", ":1: header"),
+        ("mmi,frequency_Hz,amplitude_cm_s\n6,1,2\n6,1,2\n", ":3: .*occurs twice"),
+        ("mmi,frequency_Hz,amplitude_cm_s\n6,1,2\n7,2,2\n", "all of them at the same"),
+        ("", ":1: the header"),
     ],
 )
 def test_bad_spectrum_files(tmp_path, text, words) -> None:
@@ -236,7 +236,7 @@ def test_compatible_motions(target, damping, band) -> None:
 
 def test_impossible_targets_are_refused() -> None:
     made = CompatibleSet(code_spectra.en1998(1, "A", 2.0), 0.05, 0.2, 1.0, 0.001, 3.0, 0.02, 1)
-    with pytest.raises(NotMatched, match="widen the tolerance"):
+    with pytest.raises(NotMatched, match="Increase the tolerance"):
         made.motion(0)
 
 
@@ -246,7 +246,11 @@ def test_spectrum_tables(tmp_path) -> None:
     assert code_spectra.read_table(path)(np.array([0.5]))[0] == pytest.approx(0.2 * G)
     with pytest.raises(ValueError, match="ends at 1 s"):
         code_spectra.read_table(path)(np.array([1.5]))
-    for text, words in (("a,b\n", ":1: header"), ("period_s,sa_g\n1,2\n1,3\n", ":3: expected ascending"), ("period_s,sa_g\n1,x\n", ":2:")):
+    for text, words in (
+        ("a,b\n", ":1: the header"),
+        ("period_s,sa_g\n1,2\n1,3\n", ":3: the periods must increase"),
+        ("period_s,sa_g\n1,x\n", ":2:"),
+    ):
         path.write_text(text)
         with pytest.raises(ValueError, match=words):
             code_spectra.read_table(path)

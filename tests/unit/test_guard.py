@@ -12,4 +12,4 @@ def objection(length: bytes) -> tuple[int, str] | None:
 def test_a_length_that_is_none_or_beyond_all_bounds_is_answered() -> None:
     assert objection(b"12") is None
     for length in (str(LARGEST_BODY + 1).encode(), b"9" * 5000, b"-1", b"\xb2", b""):
-        assert objection(length) == (413, "too much is sent")
+        assert objection(length) == (413, "the request is too large")

@@ -33,7 +33,7 @@ def test_a_signal_amid_a_finaliser_is_not_lost(number: signal.Signals) -> None:
     assert not run.stderr
 
 
-def test_other_errors_amid_a_finaliser_are_told_as_ever() -> None:
+def test_other_errors_amid_a_finaliser_are_reported_as_ever() -> None:
     raising = "class Held:\n    def __del__(self):\n        raise ValueError('of its own')\nheld = Held()\ndel held\n"
     run = subprocess.run(
         [sys.executable, "-c", "from extrados import interrupts\ninterrupts.insist()\n" + raising], capture_output=True, text=True

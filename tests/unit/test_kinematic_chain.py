@@ -302,7 +302,7 @@ def test_e_star_by_links_is_said_where_it_differs_from_that_by_stones() -> None:
     assert part == pytest.approx(1.0) and not warnings
 
 
-def test_a_verdict_that_hangs_on_how_a_link_is_drawn_is_open(tmp_path: Path) -> None:
+def test_a_verdict_that_depends_on_how_a_link_is_drawn_is_open(tmp_path: Path) -> None:
     """A block cut in two glued pieces has e* 0.8 by stones and 1 by rigid links: between their a_0* the verdict is open."""
     whole = {"kind": "blocks", "block": [rectangle("shaft", 0.0, 0.0, 0.4, 2.0)]}
     cut = {"kind": "blocks", "block": [rectangle("foot", 0.0, 0.0, 0.4, 1.0), rectangle("head", 0.0, 1.0, 0.4, 1.0)]}

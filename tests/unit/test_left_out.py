@@ -188,7 +188,7 @@ def test_no_property_is_silently_without_effect(name: str) -> None:
     assert not set(silent) - ({"material.density"} if name in WEIGHTLESS else set()), silent
 
 
-def test_what_is_told_to_be_left_out_has_no_effect() -> None:
+def test_a_property_reported_as_neglected_has_no_effect() -> None:
     """The other way round, where it takes no time: the remark is true."""
     for name in ("tilt", "supports", "dem-parameters", "arch by codes", "pier"):
         for key, (one, other, *more) in VALUES.items():
@@ -221,27 +221,27 @@ worn_corners = "1 cm"
 """
 
 
-def test_it_is_told_once_with_file_and_line() -> None:
+def test_it_is_reported_once_with_file_and_line() -> None:
     remarks = left_out(read_text(TOLD.encode()))
     assert [remark.text.partition(";")[0] for remark in remarks] == [
-        "deck.toml:8: joints.cohesion: tilt, thrust do not use it",
-        "deck.toml:11: joints.types.tension: tilt, thrust do not use it",
-        "deck.toml:13: materials.tuff.young: tilt, thrust do not use it",
-        "deck.toml:19: analysis.joints.worn_corners: thrust does not use it",
+        "deck.toml:8: joints.cohesion: tilt, thrust do not use this key",
+        "deck.toml:11: joints.types.tension: tilt, thrust do not use this key",
+        "deck.toml:13: materials.tuff.young: tilt, thrust do not use this key",
+        "deck.toml:19: analysis.joints.worn_corners: thrust does not use this key",
     ]
     assert "dem" in remarks[0].text.partition(";")[2]
     run = compute(Context(read_text(TOLD.encode())))
-    assert [w for r in run.results for w in r.warnings if "not use it" in w] == [remark.text for remark in remarks]
-    assert [sum("not use it" in w for w in r.warnings) for r in run.results] == [3, 1]
+    assert [w for r in run.results for w in r.warnings if "not use this key" in w] == [remark.text for remark in remarks]
+    assert [sum("not use this key" in w for w in r.warnings) for r in run.results] == [3, 1]
 
 
-def test_check_tells_it_too_and_passes(tmp_path) -> None:
+def test_check_reports_it_too_and_passes(tmp_path) -> None:
     (tmp_path / "deck.toml").write_text(TOLD)
     answer = CliRunner().invoke(app, ["check", str(tmp_path / "deck.toml")])
     assert answer.exit_code == 0 and answer.output.count("warning: ") == 4 and answer.output.endswith("ok\n")
 
 
-def test_what_some_analyses_leave_out_is_told_of_what_bears_on_standing_alone() -> None:
+def test_a_property_that_only_some_analyses_neglect_is_reported_if_it_affects_stability() -> None:
     """Cohesion that dem has and tilt has not; not the restitution that statics never asks for."""
     deck = {
         "structure": ARCH,
@@ -250,18 +250,18 @@ def test_what_some_analyses_leave_out_is_told_of_what_bears_on_standing_alone() 
         "analysis": [{"kind": "tilt"}, {"kind": "rocking"}, {"kind": "dem"}],
     }
     remarks = left_out(make_deck(deck))
-    assert [(remark.text, remark.analysis) for remark in remarks] == [("deck: joints.cohesion: dem uses it, tilt, rocking do not", 0)]
+    assert [(remark.text, remark.analysis) for remark in remarks] == [("deck: joints.cohesion: dem uses this key; tilt, rocking do not", 0)]
     deck["analysis"][0]["joints"] = {"cohesion": 0.0}
     deck["analysis"][1]["joints"] = {"cohesion": 0.0}
     assert left_out(make_deck(deck)) == [], "who overrides it for itself knows"
 
 
-def test_defaults_are_not_told() -> None:
+def test_defaults_are_not_reported() -> None:
     same = {"cohesion": 0.0, "friction": 0.7, "restitution": "inelastic", "types": []}
     assert left_out(make_deck({"structure": ARCH, "joints": same, "analysis": {"kind": "tilt"}})) == []
 
 
-def test_a_building_that_cannot_be_made_is_told_by_its_analysis(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_building_that_cannot_be_made_is_reported_by_its_analysis(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever goes wrong with it: the other analyses of the deck still count."""
 
     def fails(*_: object) -> None:
@@ -278,5 +278,5 @@ def test_an_analysis_that_does_not_use_it_is_not_named_among_those_that_can() ->
     deck = {"structure": ARCH, "motion": SINE, "material": {"young": 7e9}, "analysis": [{"kind": "dem", "solver": "nonsmooth"}]}
     (remark,) = left_out(make_deck(deck))
     words, _, others = remark.text.partition(";")
-    assert words == "deck: material.young: dem does not use it"
+    assert words == "deck: material.young: dem does not use this key"
     assert others == " local-mechanism, sla, pushover and others can use it"

@@ -170,7 +170,7 @@ def test_a_joint_that_carries_nothing_needs_no_friction() -> None:
     assert few.friction == pytest.approx([100.0, 0.65])
 
 
-def test_the_bound_without_friction_is_told_without_a_sign() -> None:
+def test_the_bound_without_friction_is_reported_without_a_sign() -> None:
     data = {
         "structure": {"kind": "brickwork", "units": 4, "courses": 3, "unit_length": 0.5, "unit_height": 0.25},
         "joints": {"friction": 0.65},
@@ -191,7 +191,7 @@ def test_certificate_obeys_virtual_work() -> None:
     motion = (system.matrix[:, :-1].T @ twist.ravel()).reshape(-1, 3)
     assert (motion[:, :2].min(axis=1) >= 0.7 * np.abs(motion[:, 2]) - 1e-9).all()
     assert LimitAnalysis(make_arch(1.0, 0.12, 180.0, 27), 0.7).certificate() is None
-    with pytest.raises(CannotStand, match="certificate: a motion"):
+    with pytest.raises(CannotStand, match="certificate: a mechanism"):
         assess(leaning, 0.7)
 
 
@@ -204,7 +204,7 @@ def test_no_verdict_without_proof(monkeypatch: pytest.MonkeyPatch) -> None:
         raise NoEquilibrium
 
     monkeypatch.setattr(limit, "collapse", fails)
-    with pytest.raises(NoAnswer, match="no motion proves"):
+    with pytest.raises(NoAnswer, match="no mechanism proves"):
         assess(column, limit=limit)
 
 
@@ -217,7 +217,7 @@ def test_a_load_may_pull_down_what_stands() -> None:
     assert LimitAnalysis(column, 0.7, loads=pushed).certificate() is not None
 
 
-def test_a_stone_held_by_friction_alone_bears_nothing() -> None:
+def test_a_stone_held_by_friction_alone_carries_nothing() -> None:
     """A stone between two piers, with nothing below it: it stands with dilatancy, which wedges it, and slides out without."""
     names = {"left": (0.0, 0.0, 1.0, 1.0), "right": (1.5, 0.0, 1.0, 1.0), "held": (1.0, 0.5, 0.5, 0.4)}
     stones = [{"name": name, "points": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]} for name, (x, y, w, h) in names.items()]
@@ -231,4 +231,4 @@ def test_a_stone_held_by_friction_alone_bears_nothing() -> None:
     assert sliding.status == "ok" and sliding.results.collapse_acceleration_g == 0.0
     assert sliding.results.non_dilatant.complementarity_residual < 1e-12
     assert sliding.results.non_dilatant.work_residual < 1e-9
-    assert any("held hangs between its neighbours by friction alone" in w for w in sliding.warnings)
+    assert any("held is carried only by friction between its neighbours" in w for w in sliding.warnings)

@@ -58,9 +58,9 @@ def test_spread_over_many_stones() -> None:
     assert whole != pytest.approx(capacity([], structure=arch), rel=1e-2)
 
 
-def test_wrong_loads_are_told() -> None:
+def test_wrong_loads_are_reported() -> None:
     result = tilt([{"x": 7.0, "force": 1e3}])
-    assert result.status == "refused" and "lies beside the structure" in result.reason
+    assert result.status == "refused" and "lies outside the structure" in result.reason
     result = tilt([{"x": 0.0, "y": 9.0, "force": 1e3}])
     assert result.status == "refused" and "acts on no block" in result.reason
 

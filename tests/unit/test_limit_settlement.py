@@ -88,7 +88,7 @@ def test_driver_and_refusals() -> None:
     spread = run(None, vault)
     assert [o.name for o in spread.results.openings] and spread.results.movement_at_fall_m is None
     column = {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4}
-    assert "has one support" in run(None, column).reason
+    assert "has only one support" in run(None, column).reason
     assert run(None, {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}).status == "ok"
 
 
@@ -139,4 +139,4 @@ def test_stones_wedged_without_sliding_follow_where_they_can() -> None:
     assert sum(r.vertical_N for r in apart.results.reactions) == pytest.approx(weight)
     assert max(abs(r.horizontal_N) for r in apart.results.reactions) < weight
     together = run(dx=-0.02)
-    assert together.status == "refused" and "would have to be crushed" in together.reason
+    assert together.status == "refused" and "without crushing" in together.reason

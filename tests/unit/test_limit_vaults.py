@@ -252,9 +252,9 @@ def test_a_section_that_nothing_crosses_has_no_place() -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"face": 5.0}, "buttress: the face stands 5 m"),
+        ({"face": 5.0}, "buttress: the face is 5 m"),
         ({"face": 9.5}, "must lie between"),
-        ({"buttress_width": 0.2}, "does not reach behind the springing"),
+        ({"buttress_width": 0.2}, "must be behind the springing"),
         ({"height": 0.1}, "ground"),
         ({"thickness": 25.0}, "thickness"),
     ],

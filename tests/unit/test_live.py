@@ -50,7 +50,7 @@ def calls(monkeypatch) -> Counter:
     return counted
 
 
-def test_nothing_runs_before_it_is_asked_for(calls) -> None:
+def test_nothing_runs_before_a_result_is_requested(calls) -> None:
     live = extrados.live(deck("tilt", "rocking"))
     assert not calls
     first = live["tilt"]["collapse_acceleration_g"]
@@ -126,7 +126,7 @@ def test_overrides_of_one_analysis_leave_the_other(calls) -> None:
         ("structure.thickness", -1.0, "structure.thickness"),
         ("structure.thikness", 0.2, "did you mean 'thickness'"),
         ("structure.thickness", "20 s", "is not a unit of m"),
-        ("analysis.dem.end_time", 3.0, "no analysis 'dem'; there are tilt"),
+        ("analysis.dem.end_time", 3.0, "no analysis 'dem'; its analyses are tilt"),
         ("analysis", 3.0, "expected a table"),
         ("structure.radius.inner", 3.0, "'radius' is not a table"),
         ("joints.types.3.friction", 0.2, "joints.types"),
@@ -158,11 +158,11 @@ def test_a_refusal_is_an_answer_and_gives_way_to_the_next(calls) -> None:
 
 def test_what_there_is_not_is_named() -> None:
     live = extrados.live(deck("tilt"))
-    with pytest.raises(KeyError, match=r"tilt has no array 'gama'; there are .*outline"):
+    with pytest.raises(KeyError, match=r"tilt has no array 'gama'; its arrays are .*outline"):
         live.array("tilt", "gama")
 
 
-def test_a_refusal_tells_what_it_assumed_and_a_fault_in_a_verdict_is_no_traceback(monkeypatch) -> None:
+def test_a_refusal_reports_what_it_assumed_and_a_fault_in_a_verdict_is_no_traceback(monkeypatch) -> None:
     live = extrados.live(deck("tilt"))
     live.set("structure.thickness", 0.02)
     assert live.result("tilt").assumptions["joints.friction"].value == 0.7

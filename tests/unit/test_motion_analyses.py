@@ -17,7 +17,7 @@ from extrados.motions import processing, pulses
 from extrados.motions.from_deck import generated_set, make_motion, suite_motions
 from extrados.motions.impulse import primary_impulses
 from extrados.motions.shake_table import Table, fit, make_drive
-from extrados.motions.wavelet_pulse import classify
+from extrados.motions.wavelet_pulse import classify, classify_directions
 
 G = 9.80665
 
@@ -103,6 +103,26 @@ def test_classification() -> None:
     late = classify(np.concatenate([12.0 * noise, quiet]), 0.01)
     assert late.period == pytest.approx(2.0, rel=0.1) and not late.early and not late.pulse_like
     assert classify(np.zeros(100), 0.01).indicator == 0.0
+
+
+@pytest.mark.parametrize("degrees", [0.0, 35.0, 90.0, -60.0])
+def test_a_pulse_is_found_in_its_direction(degrees: float) -> None:
+    """Of two components: direction, period and class of a pulse in noise; the same noise without it, or a weak pulse, is none."""
+    _, a = pulses.velocity_pulse(0.8, 2.0, 1.5, 90.0).series(0.01)
+    noise = np.random.default_rng(2).standard_normal((2, 2000)) * np.sin(np.linspace(0, np.pi, 2000)) ** 2
+    noise = np.array([processing.band_pass(row, 0.01, 1.0, 20.0) for row in noise])
+    way = np.array([[np.cos(np.radians(degrees))], [np.sin(np.radians(degrees))]])
+    quiet = np.zeros(2000)
+    quiet[300 : 300 + len(a)] = a
+    first = classify_directions(way * quiet + noise, 0.01)[0]
+    apart = np.degrees(first.angle) - degrees
+    assert abs((apart + 90.0) % 180.0 - 90.0) < 3.0 and first.pulse_like
+    assert first.period == pytest.approx(2.0, rel=0.1) and first.pgv == pytest.approx(0.8, rel=0.25)
+    assert not any(one.pulse_like for one in classify_directions(10.0 * noise, 0.01))
+    assert not any(one.pulse_like for one in classify_directions(0.1 * way * quiet, 0.01))
+    late = classify_directions(np.concatenate([12.0 * noise, way * quiet], axis=1), 0.01)[0]
+    assert late.before > 0.17 and not late.pulse_like
+    assert classify_directions(np.zeros((2, 100)), 0.01) == []
 
 
 # --- shake table
@@ -221,10 +241,10 @@ def test_exported_record_is_the_motion(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("deck", "words"),
     [
-        ('kind = "record"\nfile = "x"\npga = 0.3', "motion.pga: a bare number is ambiguous"),
-        ('kind = "record"\nfile = "x"\npga = "0.3 g"\npgv = 0.1', "give one of pga"),
+        ('kind = "record"\nfile = "x"\npga = 0.3', "motion.pga: a number without a unit is ambiguous"),
+        ('kind = "record"\nfile = "x"\npga = "0.3 g"\npgv = 0.1', "give only one of pga"),
         ('kind = "record"\nfile = "x"\nsa = "0.3 g"', "sa and sa_period go together"),
-        ('kind = "suite"', "give one of files, pattern, folder and records"),
+        ('kind = "suite"', "give only one of files, pattern, folder and records"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nscaling = "sokolov"', "'thesis', 'fourier' or 'energy'"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nlines = [1.0]', "expected 2 to 2000"),
         ('kind = "compatible"\ncode = "ASCE7"\nsds = "1 g"', "needs sd1"),
@@ -247,7 +267,7 @@ def test_wrong_decks(deck, words) -> None:
         ({"kind": "generated", "mmi": 11, "duration": 3.0}, "expected 4 to 9"),
         ({"kind": "generated", "mmi": 6, "duration": 3.0, "spectrum": "../s.csv"}, "out of the deck's folder"),
         ({"kind": "compatible", "code": "table", "table": "t.csv"}, "no such file"),
-        ({"kind": "record", "file": "r.at2", "high_cut": 500.0}, "half the sampling rate"),
+        ({"kind": "record", "file": "r.at2", "high_cut": 500.0}, "half of the sampling rate"),
     ],
 )
 def test_refused_with_a_reason(tmp_path, motion, words) -> None:

@@ -135,16 +135,16 @@ def test_wrong_number_of_points(tmp_path, name, change) -> None:
         (b"", "is empty"),
         (b" \r\n\t\n", "is empty"),
         ("0.1\n0.2\n".encode("utf-16"), "UTF-16"),
-        (b"0.1\n0.2\n\0\0\1\n", ":3: is a binary file"),
+        (b"0.1\n0.2\n\0\0\1\n", ":3: this file is binary"),
         (bytes(range(1, 256)) * 40, "no numbers|not a number|binary"),
         (b"0.0 0.1\n0.01 0.2\n0.02 0.1\n0.05 0.0\n0.06 0.1\n0.07 0.1\n", ":4: the time step is 0.03"),
-        (b"0.0 0.1\n0.01 0.2\n0.01 0.3\n0.02 0.1\n", "time step is 0 s here|does not ascend"),
+        (b"0.0 0.1\n0.01 0.2\n0.01 0.3\n0.02 0.1\n", "time step is 0 s here|do not increase"),
         (b"0,00 0,1\n0,01 0,2\n0,02 0,3\n", "decimal commas"),
         (b"0,1\n0,2\n0,3\n", "decimal commas"),
-        (b"time\n" * 100, "no numbers in the first"),
+        (b"time\n" * 100, "lines contain no numbers"),
         (files.cosmos([[("raw accel.", "counts (50)", A)]]).encode(), "raw counts"),
         (files.smc(A, rate=1.7e38).encode(), "no sampling rate"),
-        (files.knet(COUNTS, scale="3920(gal)/0").encode(), "divides by zero"),
+        (files.knet(COUNTS, scale="3920(gal)/0").encode(), "divisor of the scale factor is zero"),
     ],
 )
 def test_hostile_files(tmp_path, raw, words) -> None:
@@ -185,10 +185,10 @@ def test_no_such_file_folder_or_name(tmp_path) -> None:
 def test_channels(tmp_path) -> None:
     text = files.cosmos([[("acceleration", "cm/sec2(04)", A)], [("acceleration", "g(02)", G)]])
     path = put(tmp_path, "two.v2c", text)
-    with pytest.raises(RecordError, match="2 channels; name one"):
+    with pytest.raises(RecordError, match=r"2 channels\. Select one"):
         read_record(path)
     assert read_record(path, 2).unit == "g" and read_record(path, "180 Deg").unit == "g"
-    with pytest.raises(RecordError, match="no channel 3"):
+    with pytest.raises(RecordError, match="channel 3 does not exist"):
         read_record(path, 3)
     three = read_records(put(tmp_path, "three.v2", files.csmip_v2(A, channels=3)))
     assert [r.quantity for r in three] == ["acceleration", "velocity", "displacement"] * 3
@@ -251,13 +251,13 @@ def test_suites_stay_in_the_folder(tmp_path) -> None:
             list_suite(None, bad, None, tmp_path)
     inner = ["a**"] if sys.version_info < (3, 13) else []  # from then on "**" may stand anywhere
     for bad in ("", ".", "./", *inner):
-        with pytest.raises(RecordError, match="is no pattern"):
+        with pytest.raises(RecordError, match=r"names no file|not a valid pattern"):
             list_suite(None, bad, None, tmp_path)
     for pattern, folder in (("x" * 300, None), (None, "x" * 300)):  # longer than a name may be
         with pytest.raises(RecordError, match=r"cannot be searched|no such folder|no records match"):
             list_suite(None, pattern, folder, tmp_path)
     tmp_path.joinpath(*["deep"] * 25).mkdir(parents=True)  # eight of them looked for minutes
-    with pytest.raises(RecordError, match=r"says .. 8 times, at most 2"):
+    with pytest.raises(RecordError, match=r"contains .. 8 times; at most 2"):
         list_suite(None, "**/" * 8 + "*.at2", None, tmp_path)
     assert [p.name for p in list_suite(None, "**/**/b.at2", None, tmp_path)] == ["b.at2"]
     with pytest.raises(RecordError, match="no records match"):
@@ -286,7 +286,7 @@ def test_components_are_kept_together(tmp_path) -> None:
     np.testing.assert_allclose(vertical, 0.5 * horizontal, rtol=1e-5)
     assert np.abs(horizontal).max() == pytest.approx(2.0)
     other = put(tmp_path, "other.at2", files.at2(A, 0.01))
-    with pytest.raises(RecordError, match="steps of"):
+    with pytest.raises(RecordError, match="different time steps"):
         record_motion(read_record(ns), vertical=read_record(other))
 
 

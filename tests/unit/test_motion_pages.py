@@ -71,10 +71,10 @@ def test_times_rounded_at_128_hz(tmp_path: Path) -> None:
     path = column_file(tmp_path / "rounded.csv", "time (s)", [f"{k / 128:.3f}" for k in range(1000)])
     record = read_record(path)
     assert record.step == pytest.approx(1 / 128, rel=2e-4) and record.rounded == pytest.approx(1e-3)
-    assert any("are rounded to 1 ms; their mean step is taken" in w for w in study(path).warnings)
+    assert any("are rounded to 1 ms; the program uses their mean step" in w for w in study(path).warnings)
     given = study(path, time_step=1 / 128)
     assert given["time_step_s"] == 1 / 128
-    assert any("time_step of the deck is taken" in w for w in given.warnings)
+    assert any("time_step of the deck is used" in w for w in given.warnings)
     assert not any("mean step" in w for w in given.warnings)
     wrong = study(path, time_step=0.0079)
     assert wrong.status == "refused" and "the deck 0.0079 s" in wrong.reason
@@ -84,7 +84,7 @@ def test_times_rounded_at_128_hz(tmp_path: Path) -> None:
     assert read_record(tmp_path / "two.txt", 2).values[0] == pytest.approx(0.1)
     # A step that is lost is no rounding.
     lost = [k / 128 for k in range(1000) if k != 500]
-    with pytest.raises(RecordError, match="resample to equal steps"):
+    with pytest.raises(RecordError, match="resample the record to equal steps"):
         read_record(column_file(tmp_path / "lost.csv", "time (s)", [f"{t:.3f}" for t in lost]))
 
 
@@ -99,10 +99,10 @@ def test_why_a_motion_is_not_pulse_like() -> None:
     assert strong.pulse_like and strong.fails == ()
     assert not weak.pulse_like and len(weak.fails) == 1 and weak.fails[0].startswith("the peak velocity of 20")
     noise = classify(np.random.default_rng(1).normal(0.0, 3.0, 4000), step)
-    assert any("the indicator" in why and "not above 0.85" in why for why in noise.fails)
+    assert any("the pulse indicator" in why and "not above 0.85" in why for why in noise.fails)
     assert late.pulse_like == (late.fails == ())
     over = classify(pulse[:2000], 1e-12)
-    assert not over.pulse_like and over.fails == ("the motion is over within 2e-09 s, much before any pulse",)
+    assert not over.pulse_like and over.fails == ("the motion ends after 2e-09 s, which is too early for a pulse",)
 
 
 def test_a_motion_too_slow_for_its_spectra_is_refused() -> None:

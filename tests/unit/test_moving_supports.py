@@ -74,8 +74,8 @@ def test_what_is_not_followed_is_refused_by_name() -> None:
     assert told()[0] == "ok"
     arch = 'kind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7'
     status, reason = told(structure=arch, joint="joint 0")
-    assert status == "refused" and "joint 7 do not move with the others" in reason
+    assert status == "refused" and "joint 7 do not move with the other supports" in reason
     assert "rotates" in told(turn="turn = 2.0")[1]
-    assert "names no joint 'head'" in told(joint="head")[1]
+    assert "joint 'head' does not exist" in told(joint="head")[1]
     for kind in ("failure-domain", "assessment"):
-        assert "followed by `rocking` and `dem`" in told(kind=kind)[1]
+        assert "only `rocking` and `dem` can follow" in told(kind=kind)[1]

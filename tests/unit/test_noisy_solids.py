@@ -127,23 +127,23 @@ def test_noise_that_is_much_for_the_stones_is_said() -> None:
         remarks = read(obj(corner(), noise, 3), 4.0 * noise).remarks
         assert any("capacities are uncertain by about" in remark for remark in remarks) == said, remarks
     (said_so,) = [remark for remark in remarks if "uncertain" in remark]
-    assert "from their common plane (stone" in said_so and "The thinnest block measures 24" in said_so
+    assert "from their common plane (stone" in said_so and "The thinnest block has a thickness of 24" in said_so
 
 
 def test_a_stone_on_slivers_alone_is_refused_by_name() -> None:
     base = Stone("base", [box((0, 0, 0), (1, 1, 1))], 2000.0)
     slab = Stone("slab", [box((0.999, 0, 1), (2, 1, 1.3))], 2000.0)
-    with pytest.raises(BadGeometry, match=r"slab touches no other stone.*: its widest contact measures 1 mm, less than 2 mm"):
+    with pytest.raises(BadGeometry, match=r"slab touches neither another block.*: the width of its widest contact is 1 mm, less than 2 mm"):
         assemble([base, slab], 2e-3)
     assert len(assemble([base, slab], 1e-4).a) == 2
 
 
-def test_the_tolerance_that_is_told_closes_the_gap() -> None:
+def test_the_tolerance_that_is_reported_closes_the_gap() -> None:
     """A slab that lies askew by noise: the hint counts its slant, too."""
     askew = box((0, 0, 1), (1, 1, 1.3))
     tilt = np.array([[1, 0, 0], [0, 1, 0], [4e-3, 0, 1]])
     stones = [Stone("base", [box((0, 0, 0), (1, 1, 1))], 1.0), Stone("slab", [askew.moved(tilt)], 1.0)]
-    with pytest.raises(BadGeometry, match="slab touches no other stone and no ground; its nearest face is 2 mm away"):
+    with pytest.raises(BadGeometry, match="slab touches neither another block nor the ground; the nearest face is 2 mm away"):
         assemble(stones, 5e-4)
     made = assemble(stones, 2.01e-3)
     (across,) = [n for n, b in zip(made.normal, made.b, strict=True) if b >= 0]
@@ -170,7 +170,7 @@ def test_what_is_concave_by_less_than_the_tolerance_is_read() -> None:
     faces += [(a, b, 8) for a, b in zip(ring, (*ring[1:], ring[0]), strict=True)]
     text = obj([Stone("dented", [Polyhedron(points, tuple(faces))], 2000.0)])
     assert len(read(text, 2e-3).parts[0].faces) == 6
-    with pytest.raises(BadGeometry, match="is not convex: its hull has"):
+    with pytest.raises(BadGeometry, match="is not convex: its convex hull has"):
         read(text, 1e-4)
 
 
@@ -204,6 +204,6 @@ def test_measured_stones_settle(tmp_path: Path, seed: int) -> None:
 def test_parts_of_a_stone_that_lie_in_each_other_are_refused() -> None:
     """A body drawn twice under one name weighed twice as much."""
     cube, foot = box((0, 0, 0), (1, 1, 1)), box((0, 0, 1), (1, 1, 2))
-    with pytest.raises(BadGeometry, match=r"pier: two of its parts overlap by 1e\+03 mm"):
+    with pytest.raises(BadGeometry, match=r"pier: two parts of the block overlap by 1e\+03 mm"):
         read(obj([Stone("pier", [cube, cube], 2000.0)]), 1e-4)
     assert read(obj([Stone("pier", [cube, foot], 2000.0)], 2e-5), 1e-4).mass == pytest.approx([4000.0], rel=1e-3)

@@ -124,20 +124,20 @@ def test_springs_of_the_ground_are_those_of_the_soles():
         ({"walls": [{**WALLS[0], "openings": [{"storey": 1, "x": [5.0, 7.0], "z": [0.0, 2.0]}]}]}, "6 m long"),
         ({"walls": [{**WALLS[0], "openings": [{"storey": 1, "x": [1.0, 2.0], "z": [0.0, 3.0]}]}]}, "does not fit"),
         ({"walls": [{**WALLS[0], "openings": [{"storey": 3, "x": [1.0, 2.0], "z": [0.0, 2.0]}]}]}, "no storey 3"),
-        ({"walls": [WALLS[0], WALLS[0]]}, "stands twice"),
+        ({"walls": [WALLS[0], WALLS[0]]}, "occurs twice"),
         ({"walls": [{**WALLS[1], "thicknesses": [0.3]}]}, "either thickness or thicknesses"),
         ({"walls": [{"name": "a", "start": [0.0, 0.0], "end": [1.0, 0.0], "thicknesses": [0.3]}]}, "1 thicknesses for 2"),
         ({"corners": [{"walls": ["front", "nowhere"], "bond": "open"}]}, "no wall 'nowhere'"),
-        ({"floors": [{"storey": 3, "kind": "none"}]}, "no storey 3"),
+        ({"floors": [{"storey": 3, "kind": "none"}]}, "storey 3 does not exist"),
         ({"floors": [{"storey": 1, "kind": "flexible"}]}, "needs young"),
     ],
 )
-def test_wrong_plans_are_told(change, words):
+def test_wrong_plans_are_reported(change, words):
     with pytest.raises(ValidationError, match=words):
         plan(**{"walls": WALLS, **change})
 
 
-def test_what_does_not_fit_together_is_told():
+def test_parts_that_do_not_fit_together_are_reported():
     with pytest.raises(BadGeometry, match="ring"):
         meshed(plan([WALLS[0], WALLS[1], WALLS[2]], floors=[FLOOR]))
     with pytest.raises(BadGeometry, match="each other"):
@@ -152,17 +152,17 @@ def test_what_does_not_fit_together_is_told():
 def test_walls_that_lie_on_each_other_are_refused(start, end):
     """Whichever of them is longer, and whether or not they have an end in common; end to end they meet."""
     beside = {"name": "same", "start": [float(start), 0.0], "end": [float(end), 0.0], "thickness": 0.3}
-    with pytest.raises(BadGeometry, match="'front' and 'same' lie on each other"):
+    with pytest.raises(BadGeometry, match="'front' and 'same' overlap in plan"):
         meshed(plan([WALLS[0], beside]))
     beside |= {"start": [6.0, 0.0], "end": [9.0, 0.0]}
     assert not meshed(plan([WALLS[0], beside])).warnings
 
 
-def test_walls_that_end_short_of_each_other_are_told():
+def test_walls_that_end_short_of_each_other_are_reported():
     for gap, told in ((0.0, False), (0.05, True), (0.29, True), (0.31, False)):
         side = {"name": "side", "start": [6.0 + gap, 0.0], "end": [6.0 + gap, 5.0], "thickness": 0.3}
         warnings = meshed(plan([WALLS[0], side])).warnings
-        assert any("end 0." in w and "nothing joins them" in w for w in warnings) == told, (gap, warnings)
+        assert any("end 0." in w and "are not connected" in w for w in warnings) == told, (gap, warnings)
 
 
 def test_meeting_points():

@@ -107,11 +107,11 @@ def test_assumed_masonry_and_short_pieces_are_stated(tmp_path):
     assumed = " ".join(deck.structure.assumed)
     assert "compressive strength 3 MPa" in assumed and "diagonal strength 50 kPa" in assumed
     assert deck.building.material.density == 1800 and deck.building.joints.cohesion == 1e5
-    assert "the longest 0.50 m" in assumed
+    assert "the longest measures 0.50 m" in assumed
 
 
 def test_too_many_walls_are_refused_before_they_are_joined(tmp_path, monkeypatch):
     monkeypatch.setattr("extrados.bridges.plan_drawing.MOST_WALLS", 4)
     monkeypatch.setattr("extrados.bridges.plan_drawing.joined", lambda _: pytest.fail("joined"))
-    with pytest.raises(BadGeometry, match="5 walls, at most 4"):
+    with pytest.raises(BadGeometry, match="has 5 walls, more than the 4"):
         deck_of_plan(drawn(tmp_path), ["A-WALL"], ["A-GLAZ"], None, [3.0])

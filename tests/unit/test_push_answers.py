@@ -226,4 +226,4 @@ def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
     arch.write_text('[structure]\nkind = "arch"\nradius = 10\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n[analysis]\nkind = "tilt"\n')
     extrados.run(arch).write(tmp_path / "arch", figures=False)
     refused = call(tmp_path / "arch", "--together", tmp_path / "none.png")
-    assert refused.exit_code == 3 and "no analysis of it has a capacity curve" in refused.output
+    assert refused.exit_code == 3 and "the run has no analysis with a capacity curve" in refused.output

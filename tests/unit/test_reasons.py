@@ -508,6 +508,6 @@ def test_elements_that_slide_explain_the_stones_of_statics_and_of_the_mesh_alike
     assert slides.explains == [["tilt", "dem"], ["sla", "dem"]]
 
 
-def test_a_pair_without_a_reason_is_told_as_unexplained() -> None:
+def test_a_pair_without_a_reason_is_reported_as_unexplained() -> None:
     f = facts([FALLS, STANDS], {"rocking": rocking()}, needed_s=lambda a: 0.1)
     assert explained(f) == ([], [("tilt", "rocking")])

@@ -191,7 +191,7 @@ def test_none_of_many_layouts_is_read_wrong(tmp_path) -> None:
     assert not wrong, wrong
     assert len(right) >= 60 and len(refused) >= 60, (len(right), len(refused))
     plain = {seed for seed in range(LAYOUTS) if layout(seed).made[0] in ("one", "timed") and len(layout(seed).made) == 3}
-    over = [r for r in refused if r[0] in plain and "channels; name one" not in r[1]]
+    over = [r for r in refused if r[0] in plain and "channels. Select one" not in r[1]]
     assert not over, over  # what has no defect is read
 
 
@@ -201,22 +201,22 @@ COLUMN = "".join(f"{v:.2f}\n" for v in N)
 THREE = "".join(f"{v:.2f} {0.5 * v:.2f} {0.2 * v:.2f}\n" for v in N)
 TIMED = "".join(f"{0.01 * k:.2f} {v:.2f} {0.5 * v:.2f}\n" for k, v in enumerate(N))
 REFUSED = {
-    "three columns": (THREE, {}, ':1: the row holds 3 columns.*channel = 1 to 3.*columns = "series"'),
+    "three columns": (THREE, {}, ':1: the row has 3 columns.*channel = 1 to 3.*columns = "series"'),
     "three and time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {}, "time step is"),
     "channel of a time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {"channel": 1}, "time step is"),
-    "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' holds whole numbers.*put #"),
+    "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' contains whole numbers.*put #"),
     "whole numbers below a title": ("Some quake\n300\n0\n" + COLUMN, {}, ":2: '300'"),
     "count": (f"{len(N)}.0\n{len(N)}\n" + COLUMN, {}, "count of the values that follow|exceeds twice"),
-    "real numbers": ("-999.00\n-999.00\n" + COLUMN, {}, "exceeds twice all values"),
-    "counts in other columns": ("400 0.01\n" + COLUMN, {}, ":2: 1 columns where 2 stood before; put #"),
-    "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "every value 2 further on"),
-    "only times": ("".join(f"{0.01 * k:.2f}\n" for k in range(400)), {}, "ascend as a time does"),
-    "time last": ("".join(f"{v:.2f} {0.01 * k:.2f}\n" for k, v in enumerate(N)), {"channel": 2}, "put the time first"),
-    "fewer than stated": ("402 points in cm/s2\n" + COLUMN, {}, "400 values follow where the header says 402"),
-    "two steps": ("dt = 0.02 s\n" + TIMED, {}, "says a step of 0.02 s, the times 0.01 s"),
-    "factor": ("scale factor: 0.01\n" + COLUMN, {}, "applies no factor from a header"),
+    "real numbers": ("-999.00\n-999.00\n" + COLUMN, {}, "exceeds twice the greatest value"),
+    "counts in other columns": ("400 0.01\n" + COLUMN, {}, ":2: this line has 1 columns, but the lines above have 2; put #"),
+    "pairs": ("".join(f"{0.01 * k:.2f} {v:.2f}\n" for k, v in enumerate(N)), {"columns": "series"}, "every value 2 places further"),
+    "only times": ("".join(f"{0.01 * k:.2f}\n" for k in range(400)), {}, "increase like times"),
+    "time last": ("".join(f"{v:.2f} {0.01 * k:.2f}\n" for k, v in enumerate(N)), {"channel": 2}, "put the times in the first column"),
+    "fewer than stated": ("402 points in cm/s2\n" + COLUMN, {}, "the header states 402 values, but 400 follow"),
+    "two steps": ("dt = 0.02 s\n" + TIMED, {}, "states a time step of 0.02 s, but the times have a step of 0.01 s"),
+    "factor": ("scale factor: 0.01\n" + COLUMN, {}, "does not apply a factor from a header"),
     "two quantities": ("acceleration and velocity\n" + COLUMN, {}, "acceleration and velocity"),
-    "sample numbers": ("".join(f"{k + 1} {v:.2f}\n" for k, v in enumerate(N)), {}, "column holds sample numbers"),
+    "sample numbers": ("".join(f"{k + 1} {v:.2f}\n" for k, v in enumerate(N)), {}, "column contains sample numbers"),
     "cut": (THREE.rstrip("\n").rpartition(" ")[0], {"columns": "components"}, "cut off"),
 }
 
@@ -234,7 +234,7 @@ def test_columns_says_what_they_are(tmp_path) -> None:
     np.testing.assert_allclose(read_record(tmp_path / "r.txt", 2).values, np.round(0.5 * N, 2), atol=0.011)
     assert len(read_record(tmp_path / "r.txt", columns="series").values) == 1200
     (tmp_path / "r.txt").write_text("NS EW UD\n" + THREE)
-    with pytest.raises(RecordError, match=r"3 channels; name one.*1 'NS', 2 'EW', 3 'UD'"):
+    with pytest.raises(RecordError, match=r"3 channels. Select one.*1 'NS', 2 'EW', 3 'UD'"):
         read_record(tmp_path / "r.txt")
     np.testing.assert_allclose(read_record(tmp_path / "r.txt", "UD").values, np.round(0.2 * N, 2), atol=0.011)
 
@@ -261,7 +261,7 @@ def test_what_a_header_says(tmp_path, header, quantity, unit) -> None:
     assert (record.quantity, record.unit) == (quantity, unit)
 
 
-@pytest.mark.parametrize(("size", "hint"), [(1e-5, "below 0.0001 g"), (0.981, "above 5 g.*; in m/s.2")])
+@pytest.mark.parametrize(("size", "hint"), [(1e-5, "below 0.0001 g"), (0.981, "above 5 g.*; with the unit m/s.2")])
 def test_a_peak_that_no_earthquake_has(tmp_path, size, hint) -> None:
     (tmp_path / "r.txt").write_text("".join(f"{size * v / 10.0:.8f}\n" for v in N))
     with pytest.raises(RecordError, match=hint):
@@ -278,7 +278,7 @@ def test_a_step_that_no_record_has(tmp_path, step) -> None:
 def test_a_suffix_against_its_header(tmp_path) -> None:
     text = "PEER\nQ\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 3, DT= .01 SEC\n.1 .2 .3\n"
     (tmp_path / "r.at2").write_text(text)
-    with pytest.raises(RecordError, match="the header names velocity, the suffix"):
+    with pytest.raises(RecordError, match="the header names velocity, but the suffix"):
         read_record(tmp_path / "r.at2")
     (tmp_path / "r.vt2").write_text(text.replace("TIME SERIES IN UNITS OF ", ""))
     assert read_record(tmp_path / "r.vt2").quantity == "velocity"
@@ -324,7 +324,7 @@ def test_a_file_that_is_cut_inside_its_last_number_is_refused(layout: str, tmp_p
         assert read_records(path, columns)[0].values.size == 60
     for lost in (2, 4):
         path.write_text(text[:-lost], newline="")
-        with pytest.raises(RecordError, match="fewer decimals than those above it: the file is cut off"):
+        with pytest.raises(RecordError, match="fewer decimals than the numbers above, so the file is cut off"):
             read_records(path, columns)
 
 

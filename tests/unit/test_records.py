@@ -31,7 +31,7 @@ def test_at2(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (AT2[: AT2.index("   .6E-02")], ":5: ends after 5 of 8"),
+        (AT2[: AT2.index("   .6E-02")], ":5: the file ends after 5 of 8"),
         (AT2.replace("NPTS=     8", "NPTS=    80"), "ends after 8 of 80"),
         (AT2.replace("-.31E+00", "NaN"), ":5: 'NaN' is not a number"),
         (AT2.replace("-.31E+00", "1e999"), ":5:"),
@@ -43,12 +43,12 @@ def test_at2(tmp_path) -> None:
         ("\n\n  \n", "is empty"),
         (b"\x7fELF\x00\x00\x01", "binary"),
         ("0.1 0.2\n0.3 0.4\n".encode("utf-16"), "UTF-16"),
-        ("0.00 0.1\n0.02 0.2\n0.04\n0.06 0.1\n", ":3: 1 columns where 2"),
+        ("0.00 0.1\n0.02 0.2\n0.04\n0.06 0.1\n", ":3: this line has 1 columns, but the lines above have 2"),
         ("0,00;0,1\n0,02;0,2\n", "decimal commas"),
         ("0.00 0.1\n0.02 0.2\n0.10 0.3\n0.12 0.1\n0.14 0.1\n", "time step is 0.08"),
         ("0.1\n0.2\nabc\n", ":3: 'abc' is not a number"),
         ("0.00,0.1\n0.02,inf\n0.04,0.1\n", ":2: 'inf'"),
-        ("words only\nno numbers\n", "holds no numbers"),
+        ("words only\nno numbers\n", "contains no numbers"),
     ],
 )
 def test_bad_records(tmp_path, text, words) -> None:
@@ -67,7 +67,7 @@ def test_truncation_at_every_byte(tmp_path) -> None:
             continue
 
 
-def test_units_and_steps_are_asked_for(tmp_path) -> None:
+def test_units_and_steps_are_required(tmp_path) -> None:
     bare = read_record(write(tmp_path, "0.01\n-0.2\n0.03\n0.0\n"))
     with pytest.raises(RecordError, match="no time step"):
         record_motion(bare, Treatment(unit="g"))
@@ -85,10 +85,10 @@ def test_units_and_steps_are_asked_for(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("treatment", "words"),
     [
-        ({"time_step": 10.0}, r"3000 samples every 10 s last 29990 s, at most 10800 s"),
-        ({"time_scale": 1e9}, "last 2.999e.10 s, at most"),
-        ({"resample": 1e-7}, r"1e-07 s for 29.99 s are 3e.08 samples, at most 5,000,000"),
-        ({"low_cut": 1e-6}, r"a filter at 1e-06 Hz and its run-in take 6e.08 samples, at most 5,000,000"),
+        ({"time_step": 10.0}, r"3000 samples with a step of 10 s last 29990 s; at most 10800 s"),
+        ({"time_scale": 1e9}, "last 2.999e.10 s; at most"),
+        ({"resample": 1e-7}, r"a step of 1e-07 s for 29.99 s requires 3e.08 samples, at most 5,000,000"),
+        ({"low_cut": 1e-6}, r"a filter at 1e-06 Hz with its run-in requires 6e.08 samples, at most 5,000,000"),
         ({"high_cut": 1e-6}, "a filter at 1e-06 Hz"),
     ],
 )

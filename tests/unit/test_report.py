@@ -242,7 +242,7 @@ def test_the_template_of_an_office_orders_and_chooses(folder: Path, tmp_path: Pa
         ('logo = "../logo.png"', "logo.png"),
         ('logo = "/etc/passwd"', "inside the template's folder"),
         ('logo = "logo.svg"', "ends in"),
-        ('logo = "text.png"', "is no PNG"),
+        ('logo = "text.png"', "is not a PNG"),
         ('logo = "large.png"', "at most 1 MB"),
         ('colour = "red); #panic()"', "colour"),
         ('sections = ["answer", "answer"]', "each section once"),
@@ -355,10 +355,10 @@ def test_a_surveyed_intrados_carries_what_the_curve_carries_that_it_was_measured
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        ({"intrados": [[0, 0], [2, 1], [1, 1], [4, 0]]}, "x that grows"),
+        ({"intrados": [[0, 0], [2, 1], [1, 1], [4, 0]]}, "x must increase"),
         ({"intrados": [[0, 0], [1, 1], [3, 1], [4, 0.5]]}, "one level"),
-        ({"span": 4.0}, "leave it out"),
-        ({"shape": "segmental", "span": 4.0, "rise": 1.0}, "belongs to the shape surveyed"),
+        ({"span": 4.0}, "remove it"),
+        ({"shape": "segmental", "span": 4.0, "rise": 1.0}, "belongs to shape"),
         ({"intrados": [[0, 0], [1, 1]]}, "intrados"),
         ({"intrados": [[0, 0], [1], [3, 1], [4, 0]]}, "points"),
     ],

@@ -257,7 +257,7 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     assert status == "refused" and "requires its stiffness" in reason
 
 
-def test_wrong_dampers_and_hinges_are_told_with_their_line() -> None:
+def test_wrong_dampers_and_hinges_are_reported_with_their_line() -> None:
     for text, said in (
         ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]", "expected either damping"),
         ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]\nslip_force = 2.0", "go together"),
@@ -268,10 +268,10 @@ def test_wrong_dampers_and_hinges_are_told_with_their_line() -> None:
             read_text((text + DECK).encode())
         assert said in str(error.value)
     ((_, reason),) = told("[[hinges]]\njoints = ['sole']\ndamping = 1.0\n" + DECK)
-    assert "hinges.joints: hinge 1: there is no joint 'sole'" in reason
+    assert "hinges.joints: hinge 1: joint 'sole' does not exist" in reason
 
 
-def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
+def test_impacts_at_one_corner_after_the_other_end_at_the_wall() -> None:
     """A blow without rebound at each corner that approaches, in turn: the far toe, the top at the wall, the near toe, again and
     again, until nothing moves. The default rebound takes the first two as they are, then Housner's back to the near toe, which
     leaves more than all of them."""

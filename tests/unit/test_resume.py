@@ -491,7 +491,7 @@ def test_two_runs_do_not_share_their_batches(tmp_path) -> None:
     words = [sys.executable, "-m", "extrados", "run", str(path), "--no-figures", "--out", str(out)]
     for more in ([], ["--resume"]):
         run = subprocess.run([*words, *more], capture_output=True, text=True)
-        assert run.returncode == 3 and "another run keeps its unfinished batches there" in run.stdout + run.stderr
+        assert run.returncode == 3 and "another run is writing its unfinished batches" in run.stdout + run.stderr
         assert "internal error" not in run.stdout + run.stderr
         assert kept.exists()
     let_go(out)

@@ -55,7 +55,7 @@ def test_a_library_leaves_the_import_and_the_environment_of_its_host_alone() -> 
     ],
     ids=str,
 )
-def test_what_is_told_as_memory_that_lacked(monkeypatch, error: Exception, when_short: bool, else_: bool) -> None:
+def test_what_is_reported_as_memory_that_lacked(monkeypatch, error: Exception, when_short: bool, else_: bool) -> None:
     for has, wanted in ((False, when_short), (True, else_)):
         monkeypatch.setattr(room, "has", lambda _, has=has: has)
         assert room.lacked(error) is wanted
@@ -73,7 +73,7 @@ def ended(monkeypatch, error: Exception, started: bool = True):
     return result
 
 
-def test_lack_of_memory_is_told_and_where_it_was_met_is_kept(monkeypatch) -> None:
+def test_lack_of_memory_is_reported_and_where_it_was_met_is_kept(monkeypatch) -> None:
     result = ended(monkeypatch, SystemError("of a library"))
     assert result.status == "failed"
     assert result.reason == "not enough memory: SystemError: of a library (internal-error-tilt.txt says where)"

@@ -35,6 +35,18 @@ def test_fragility_over_levels_has_the_probabilities_by_each_rule() -> None:
     assert found.arrays["stripe_rule_most"].data == pytest.approx(every.max(axis=0))
 
 
+@pytest.mark.verify
+def test_the_band_of_runs_that_are_handed_over_is_that_of_each_rule() -> None:
+    """Impacts before the hand-over follow the rule, those after it are plastic: each probability is that of a deck with this rule."""
+    sine = {"kind": "sine-pulse", "amplitude": "0.4 g", "period": 0.25}
+    levels = {"kind": "fragility", "count": 1, "levels": [0.25, 0.4, 0.6], "intensity": "pga", "bootstrap": 0, "hand_over": True}
+    r = result_of(ARCH, sine, levels).results
+    assert r.handed_over == 3 and len(r.collapse_by_rule) == 3
+    for one in r.collapse_by_rule:
+        assert one.collapse_probability == pytest.approx(result_of(ARCH, sine, levels, one.rule).results.collapse_probability)
+    assert result_of(ARCH, sine, levels | {"hand_over": False}).results.rule_band > r.rule_band
+
+
 def test_a_spectrum_of_arches_has_the_sizes_that_each_rule_overturns() -> None:
     """Each count is that of a deck with this rule; a rule that keeps more overturns no fewer of these sizes."""
     found = result_of(ARCH, RECORD, SPECTRUM)

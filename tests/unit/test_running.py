@@ -58,7 +58,7 @@ def test_a_run_reads_alike_in_memory_and_from_its_folder(tmp_path) -> None:
     xarray.testing.assert_equal(again.dataset("rocking"), run.dataset("rocking"))
     with xarray.open_dataset(tmp_path / "run" / "results.h5", group="rocking", engine="h5netcdf") as stored:
         assert set(run.dataset("rocking").coords) == set(stored.coords) >= set(stored.sizes)
-    with pytest.raises(KeyError, match="no analysis 'dem'; there are tilt, rocking, tilt-2"):
+    with pytest.raises(KeyError, match="no analysis has the name 'dem'; the names are: tilt, rocking, tilt-2"):
         run["dem"]
 
 

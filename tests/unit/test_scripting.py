@@ -70,15 +70,15 @@ def test_an_object_is_what_a_deck_says() -> None:
         (lambda: extrados.StepPulse(amplitude=0.5, duration=0.1), 'write "0.5 g"'),
         (lambda: extrados.Arch(radius=math.nan, thickness=1.0, embrace=90, voussoirs=7), "radius: nan: input should be a finite number$"),
         (lambda: extrados.Joints(frction=0.5), "joints.frction: unknown key; did you mean 'friction'"),
-        (lambda: extrados.deck(ARCH, extrados.Rocking()), r"rocking needs a \[motion\]"),
+        (lambda: extrados.deck(ARCH, extrados.Rocking()), r"rocking requires a \[motion\]"),
         (lambda: extrados.sweep(DECK, over={"structure.thickness": [1.2, -1.0]}), "structure.thickness: -1.0: input should"),
         (lambda: extrados.sweep(DECK, over={"structure.thicknes": [1.2]}), "did you mean 'thickness'"),
         (lambda: extrados.sweep(DECK, over={"structure.thickness": 1.2}), "structure.thickness: expected a list"),
         (
             lambda: extrados.sweep(DECK, over={f"structure.k{k}": [1.0] * 1000 for k in range(5)}),
-            "every value with every other is 1,000,000,000,000,000 members, at most 1,000,000",
+            "all combinations of the values are 1,000,000,000,000,000 members, more than the 1,000,000 allowed",
         ),
-        (lambda: extrados.sweep(DECK, over={"analysis.sla.events": [1]}), "no analysis 'sla'; there are tilt, rocking"),
+        (lambda: extrados.sweep(DECK, over={"analysis.sla.events": [1]}), "no analysis 'sla'; its analyses are tilt, rocking"),
     ],
 )
 def test_errors_from_python_are_those_of_decks(wrong, words: str) -> None:
@@ -203,7 +203,7 @@ def test_rows_that_belong_together_and_what_is_refused() -> None:
     assert swept.rows[0]["tilt.status"] == "ok" and swept.rows[1]["tilt.status"] != "ok" and swept.rows[1]["tilt.reason"]
     assert swept.shape is None and swept.dataset()["structure.radius"].dims == ("member",) and told[-1] == 2
     assert np.isnan(swept.column("tilt.collapse_acceleration_g")[1]) and "2 of 2 members" in repr(swept)
-    with pytest.raises(KeyError, match=r"there are structure\.radius, structure\.thickness"):
+    with pytest.raises(KeyError, match=r"its columns are structure\.radius, structure\.thickness"):
         swept.column("raduis")
 
 
@@ -263,7 +263,7 @@ def test_a_cluster_gives_the_bits_of_one(cluster) -> None:
     assert one.rows == two.rows and len(two) == 3
 
 
-def test_a_process_that_dies_is_told(tmp_path: Path) -> None:
+def test_a_process_that_dies_is_reported(tmp_path: Path) -> None:
     """A member that ends its process, as one for which there is no memory would."""
     from extrados.analyses import workers
 

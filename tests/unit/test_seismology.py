@@ -61,5 +61,5 @@ def test_without_obspy(monkeypatch) -> None:
 def test_what_is_no_record_is_refused_with_its_file(tmp_path) -> None:
     path = tmp_path / "x.mseed"
     path.write_bytes(b"000001D ABC" + bytes(500))
-    with pytest.raises(RecordError, match=r"x\.mseed: (miniSEED and SAC need obspy|obspy cannot read it)"):
+    with pytest.raises(RecordError, match=r"x\.mseed: (miniSEED and SAC require obspy|obspy cannot read this file)"):
         read_record(path)

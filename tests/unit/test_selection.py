@@ -114,7 +114,7 @@ def members_of(folder: Path, **keys: object) -> list:
 def test_a_selection_of_no_record_is_refused_with_the_first_reason(suite: Path) -> None:
     for k in range(6):
         (suite / "records" / f"r{k}.AT2").write_text("no numbers\n")
-    with pytest.raises(RecordError, match=r"\[motion.selection\]: none of the 6 records can be read; the first: .*r0.AT2"):
+    with pytest.raises(RecordError, match=r"\[motion.selection\]: none of the 6 records can be read. First reason: .*r0.AT2"):
         members_of(suite)
 
 
@@ -124,7 +124,7 @@ def test_a_record_that_cannot_be_read_and_a_count_not_reached_are_stated(suite: 
     assert len(members) == 5
     deck = make_deck({"motion": motion(count=6), "analysis": {"kind": "motion"}}, suite)
     stated = " ".join(run_analyses(Context(deck))[0].warnings)
-    assert "5 of 6 requested records are selected; 1 cannot be read: " in stated and "r0.AT2" in stated
+    assert "6 records were requested, and 5 are selected; 1 record(s) cannot be read: " in stated and "r0.AT2" in stated
     assert not any("requested" in note for note in members_of(suite, count=5)[1].notes)
 
 
@@ -140,7 +140,7 @@ def test_a_flatfile_is_matched_by_path_and_by_base_name_if_unique(suite: Path) -
     (suite / "flat.csv").write_text("file,magnitude\nrecords/r0.AT2,5\n./records/other/r0.AT2,6.5\n")
     assert [m.file for m in suite_members(deck.motion, suite)] == ["records/other/r0.AT2"]
     (suite / "flat.csv").write_text("file,magnitude\nx/r1.AT2,6.5\ny/r1.AT2,5\n")
-    with pytest.raises(RecordError, match=r"flat.csv:3: x/r1.AT2 \(line 2\) and y/r1.AT2 both fit the record records/r1.AT2"):
+    with pytest.raises(RecordError, match=r"flat.csv:3: x/r1.AT2 \(line 2\) and y/r1.AT2 both match the record records/r1.AT2"):
         members_of(suite, **keys)
 
 
@@ -165,6 +165,22 @@ def test_the_factor_refers_to_the_ground_also_under_a_floor(suite: Path) -> None
     assert [(m.file, m.factor) for m in above] == [(m.file, m.factor) for m in ground]
     amplified = spectrum_of(suite_motion(deck.motion, above[0], suite), np.array([0.5]), 0.05)[0]
     assert amplified > 2.0 * 0.4 * GRAVITY
+
+
+@pytest.mark.parametrize("kind", ["suite", "generated", "compatible"])
+def test_the_motions_of_a_floor_are_compared_with_no_target_of_the_ground(suite: Path, kind: str) -> None:
+    """The sets have targets (or an intensity) of the ground; above it they are many times as strong at its period."""
+    sets = {
+        "suite": motion(),
+        "generated": {"kind": "generated", "mmi": 7.0, "duration": 10.0, "lines": 20},
+        "compatible": {"kind": "compatible", "code": "EN1998-1", "acceleration": "0.2 g", "duration": 10.0},
+    }
+    floor = {"height": 9.0, "building_height": 9.0, "building_period": 0.5, "building_damping": 0.02}
+    deck = make_deck({"motion": sets[kind] | {"floor": floor}, "analysis": {"kind": "motion", "count": 2}}, suite)
+    result = run_analyses(Context(deck))[0]
+    r = result.results
+    assert "target" not in result.arrays and "line" not in result.arrays and r.shortest_s is None and r.expected_pga_g is None
+    assert "motions of a floor" in result.answer and any("not compared" in text for text in result.warnings)
 
 
 def test_a_changed_file_changes_the_selection(suite: Path) -> None:

@@ -102,7 +102,7 @@ def test_groups_say_what_elements_are(tmp_path, form):
     assert [foot.name for foot in mesh.feet] == [ground] and mesh.feet[0].nodes.tolist() == low.tolist()
 
 
-def test_a_file_bears_as_the_plan_does(tmp_path):
+def test_a_file_carries_as_the_plan_does(tmp_path):
     """The same corner of two walls from a file and on a plan: the same weight, stiffness and first crack."""
     written(tmp_path, "msh")
     material = """
@@ -135,7 +135,7 @@ def test_a_file_bears_as_the_plan_does(tmp_path):
         path.write_text(textwrap.dedent(text) + textwrap.dedent(material) + more)
         result = extrados.run(path).results[0]
         found.append(result.results)
-        where = {"file": "it cracks first in group side at x", "plan": "it cracks first in wall"}[name]
+        where = {"file": "the first crack forms in group side at x", "plan": "the first crack forms in wall"}[name]
         assert where in result.answer
     of_file, of_plan = found
     assert of_file.weight_N == pytest.approx(of_plan.weight_N, rel=1e-12) == pytest.approx(2 * 4 * 0.3 * 2000 * GRAVITY)
@@ -169,7 +169,7 @@ def test_a_thicker_variant_is_thicker_in_all_groups(tmp_path):
         path.write_text(textwrap.dedent(deck).format(default=default, front=front, more=more))
         result = extrados.run(path).results[0]
         found.append(result.results)
-        assert "it cracks first in the shell at x" in result.answer  # in no group
+        assert "the first crack forms in the shell at x" in result.answer  # in no group
     told, varied = found
     (thick,) = varied.variants
     assert thick.greatest_base_shear_N == pytest.approx(told.greatest_load_N, rel=1e-9)
@@ -205,28 +205,28 @@ def test_a_membrane_is_a_floor(tmp_path):
 @pytest.mark.parametrize(
     "groups, words",
     [
-        ([{"name": "back", "support": "fixed"}], "'back': there is none in the file; there are front, ground, side"),
-        ([{"name": "front", "thickness": 0.2}], "it has no support: give a group `support`"),
-        ([{"name": "ground", "thickness": 0.2}], "group 'ground': thickness is of elements"),
-        ([{"name": "ground"}], "nothing is said of it"),
+        ([{"name": "back", "support": "fixed"}], "'back': the file has no such group; its groups are front, ground, side"),
+        ([{"name": "front", "thickness": 0.2}], "the structure has no support: give a group `support`"),
+        ([{"name": "ground", "thickness": 0.2}], "group 'ground': thickness belongs to elements"),
+        ([{"name": "ground"}], "this group has no properties"),
         ([{"name": "front", "material": "steel"}, {"name": "ground", "support": "fixed"}], r"no \[materials.steel\]"),
-        ([{"name": "front", "membrane": True}, {"name": "ground", "support": "fixed"}], "a membrane is level"),
+        ([{"name": "front", "membrane": True}, {"name": "ground", "support": "fixed"}], "a membrane must be horizontal"),
     ],
 )
-def test_groups_that_do_not_fit_are_told(tmp_path, groups, words):
+def test_groups_that_do_not_fit_are_reported(tmp_path, groups, words):
     with pytest.raises(BadGeometry, match=words) as told:
         read(written(tmp_path, "msh"), groups)
     assert str(told.value).startswith("corner.msh")
 
 
-def test_files_that_do_not_fit_are_told(tmp_path):
+def test_files_that_do_not_fit_are_reported(tmp_path):
     xyz, one, _, _, _ = corner()
     ground = [{"name": "7", "support": "fixed"}]
     for cells, words in (
         ([("quad8", np.array([[0, 1, 2, 3, 4, 5, 6, 7]]))], "cells of kind 'quad8'; expected triangle and quad"),
-        ([("line", np.array([[0, 1]]))], "holds no shells"),
-        ([("quad", np.array([[0, 1, 1, 0]])), ("line", np.array([[0, 1]]))], "names a node twice"),
-        ([("quad", one), ("line", np.array([[44, 43]]))], "no node of a shell"),
+        ([("line", np.array([[0, 1]]))], "contains no shells"),
+        ([("quad", np.array([[0, 1, 1, 0]])), ("line", np.array([[0, 1]]))], "the same node twice"),
+        ([("quad", one), ("line", np.array([[44, 43]]))], "not a node of a shell"),
     ):
         path = tmp_path / "bad.vtu"
         group = [np.full(len(data), 7) if kind == "line" else np.full(len(data), 1) for kind, data in cells]
@@ -234,12 +234,12 @@ def test_files_that_do_not_fit_are_told(tmp_path):
         with pytest.raises(BadGeometry, match=words):
             read(path, ground)
     (tmp_path / "no.msh").write_text("nothing of a mesh")
-    with pytest.raises(BadGeometry, match=r"no\.msh: is not a mesh"):
+    with pytest.raises(BadGeometry, match=r"no\.msh: this is not a mesh"):
         read(tmp_path / "no.msh", ground)
     flat = written(tmp_path, "vtu")
-    with pytest.raises(BadGeometry, match="groups are of shells"):
+    with pytest.raises(BadGeometry, match="groups belong to shells"):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).mesh()
-    with pytest.raises(BadGeometry, match=r"leave mesh\.size out"):
+    with pytest.raises(BadGeometry, match=r"remove mesh\.size"):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).shell(ShellOptions(size=0.5))
 
 
@@ -247,27 +247,22 @@ WORD = {2: "line", 3: "triangle", 4: "quad", 8: "quad8"}
 TETRAHEDRON = ("tetra", [[0, 1, 5, 30]])
 #: What is wrong with a file, the words of the complaint; nodes that lie elsewhere, more nodes and cells
 WRONG = {
-    "nowhere": ("node 13 has no finite place", {12: [np.nan, 0, 1]}, [], []),
-    "infinitely far": ("node 13 has no finite place", {12: [np.inf, 0, 1]}, [], []),
-    "beyond reason": ("node 13 lies 1e[+]308 m from the origin; expected places within", {12: [1e308, 0, 1]}, [], []),
-    "an orphan nowhere": ("node 46 has no finite place", {}, [[0, 0, np.nan]], []),
-    "a node twice": ("quadrilateral of nodes 1, 2, 2, 7, .* names a node twice; expected 4", {}, [], [[0, 1, 1, 6]]),
+    "nowhere": ("the coordinates of node 13 are not finite", {12: [np.nan, 0, 1]}, [], []),
+    "infinitely far": ("the coordinates of node 13 are not finite", {12: [np.inf, 0, 1]}, [], []),
+    "beyond reason": ("node 13 lies 1e[+]308 m from the origin; expected at most", {12: [1e308, 0, 1]}, [], []),
+    "an orphan nowhere": ("the coordinates of node 46 are not finite", {}, [[0, 0, np.nan]], []),
+    "a node twice": ("quadrilateral of nodes 1, 2, 2, 7, .* has the same node twice; expected 4", {}, [], [[0, 1, 1, 6]]),
     "no area": ("quadrilateral of nodes 1, 2, 3, 4, .* has no area", {}, [], [[0, 1, 2, 3]]),
     "a triangle without area": ("triangle of nodes 1, 2, 3, .* has no area", {}, [], [[0, 1, 2]]),
-    "crossed sides": ("folds over itself", {}, [[5, 0, 0], [6, 0, 0], [5.2, 0, 1], [6, 0, 2]], [[45, 46, 47, 48]]),
+    "crossed sides": ("overlaps itself", {}, [[5, 0, 0], [6, 0, 0], [5.2, 0, 1], [6, 0, 2]], [[45, 46, 47, 48]]),
     "a corner inward": (
         "nodes 7, 12, 13, 8, .* at a corner; expected its corners in order, all convex .2 such",
         {12: [0.2, 0, 0.6]},
         [],
         [],
     ),
-    "an element twice": (
-        "two elements lie on each other at the edge of nodes 1, 6, .* expected each place covered once",
-        {},
-        [],
-        [[1, 6, 5, 0]],
-    ),
-    "a triangle on a quadrilateral": ("two elements lie on each other", {}, [], [[0, 5, 6]]),
+    "an element twice": ("two elements overlap at the edge of nodes 1, 6, .* expected one element at each place", {}, [], [[1, 6, 5, 0]]),
+    "a triangle on a quadrilateral": ("two elements overlap", {}, [], [[0, 5, 6]]),
     "an island": (
         "4 nodes around x 5.5, y 0, z 1 m are not supported",
         {},
@@ -295,7 +290,7 @@ def corner_with(folder, elsewhere, nodes, cells):
 
 
 @pytest.mark.parametrize("wrong", WRONG)
-def test_elements_that_are_none_are_told(tmp_path, wrong):
+def test_elements_that_are_none_are_reported(tmp_path, wrong):
     """With the line of the deck that names the file, by `check` as by a run."""
     words, *change = WRONG[wrong]
     corner_with(tmp_path, *change)
@@ -310,7 +305,7 @@ def test_elements_that_are_none_are_told(tmp_path, wrong):
     assert compute(Context(read_deck(deck))).results[0].reason == said
 
 
-def test_what_is_not_joined_is_told(tmp_path):
+def test_unjoined_parts_are_reported(tmp_path):
     """Nodes at one place, a node on the edge of an element: a warning, since a joint may be open. Orphans count for nothing."""
     support = [{"name": "7", "support": "fixed"}]
     whole = read(written(tmp_path, "vtu"), support)
@@ -332,7 +327,7 @@ def test_what_is_not_joined_is_told(tmp_path):
         ),
     )
     (told,) = read(path, support).warnings
-    assert "are two nodes at one place (5 such): nothing joins the elements there" in told
+    assert "are two nodes at the same position (5 such): the elements are not connected there" in told
 
 
 @pytest.mark.parametrize(
@@ -346,18 +341,18 @@ def test_what_is_not_joined_is_told(tmp_path):
         lambda text: "\x00\x01" + text,
     ],
 )
-def test_damaged_files_are_told(tmp_path, change, capfd):
+def test_damaged_files_are_reported(tmp_path, change, capfd):
     """And what meshio prints of them is not."""
     path = written(tmp_path, "msh")
     before = path.read_text()
     path.write_text(change(before))
     assert path.read_text() != before
-    with pytest.raises(BadGeometry, match=r"corner\.msh: is not a mesh that meshio reads.*; expected a complete file"):
+    with pytest.raises(BadGeometry, match=r"corner\.msh: this is not a mesh that meshio can read.*; expected a complete file"):
         read(path, [{"name": "ground", "support": "fixed"}])
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_negative_count_of_nodes_is_told_or_changes_nothing(tmp_path):
+def test_a_negative_count_of_nodes_is_reported_or_changes_nothing(tmp_path):
     """Older numpy takes it for all numbers that follow, which are those of the file."""
     path, support = written(tmp_path, "msh"), [{"name": "ground", "support": "fixed"}]
     whole = read(path, support)
@@ -366,6 +361,6 @@ def test_a_negative_count_of_nodes_is_told_or_changes_nothing(tmp_path):
     try:
         found = read(path, support)
     except BadGeometry as error:
-        assert "is not a mesh that meshio reads" in str(error)
+        assert "this is not a mesh that meshio can read" in str(error)
     else:
         assert np.array_equal(found.xyz, whole.xyz) and found.elements() == whole.elements()

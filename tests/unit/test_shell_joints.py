@@ -123,14 +123,14 @@ def test_a_flange_behind_a_joint(tmp_path):
         ("tension = TENSION", "tension = 0", "joints.tension", "joint 'bed 1' has no tension"),
         ("shear_energy = 10", "", "joints.shear_energy", "joint 'bed 1' has a cohesion but no shear_energy"),
         ("beds = [{ z = HEIGHT }]", "beds = [{ z = 1.0 }]", "structure", "is not below the top of a storey"),
-        ("beds = [{ z = HEIGHT }]", "beds = [{}, {}]", "structure", "bed 1 lies at the same height"),
+        ("beds = [{ z = HEIGHT }]", "beds = [{}, {}]", "structure", "bed 1 has the same height"),
         ("beds = [{ z = HEIGHT }]", 'beds = [{ walls = ["b"] }]', "structure", "there is no wall 'b'"),
         ("ripple = 0.1", 'without_equilibrium = "force-release"', "without_equilibrium", "can follow"),
         (
             "friction = 0.4",
             'friction = 0.4\ntypes = [{ joints = ["x"], friction = 0.2 }]',
             "joints.types",
-            "names no joint 'x'; there are bed 1",
+            "joint 'x' does not exist; the joints are bed 1",
         ),
     ],
 )
@@ -151,10 +151,10 @@ def test_a_wall_that_passes_through_another_has_no_joint_with_it(tmp_path):
     assert told.exit_code == 2 and "wall 'flange' passes through 'web'" in told.output
 
 
-def test_joints_without_a_bond_along_them_are_told(tmp_path):
+def test_joints_without_a_bond_along_them_are_reported(tmp_path):
     text = BED.replace('cohesion = "30 kPa"', "").replace("shear_energy = 10", "")
     _, _, warnings = run(tmp_path, text, "events = 3".replace("events", "#"), HEIGHT=0.0, TENSION=2e4, ENERGY=10, LAYERS=3)
-    assert any("joints have no cohesion" in warning for warning in warnings)
+    assert any("joints without cohesion" in warning for warning in warnings)
 
 
 def test_check_draws_the_joints_on_their_walls(tmp_path):

@@ -179,7 +179,7 @@ def lune(n, out):
     return -thrust[0] / -load[:, 2].sum()
 
 
-def test_a_lune_that_spreads_comes_down_to_its_least_thrust():
+def test_a_lune_that_spreads_reaches_its_least_thrust():
     """What holds a dome up when its springing gives way: the least thrust of a lune, by moments about the intrados at the joint
     where it is greatest and the extrados at the crown. Nothing slides in it, so that a shell must come to it; and it does on
     any mesh."""

@@ -44,7 +44,7 @@ def bar(start: float, end: float, height: float = 0.05, **more) -> dict:
     return {"start": [start, height], "end": [end, height], "area": AREA, "material": "steel"} | more
 
 
-def test_teeth_of_steel_never_bear_more_than_its_yield_strength() -> None:
+def test_teeth_of_steel_never_carry_more_than_its_yield_strength() -> None:
     """They end at it; the last at the ultimate strain, their energy that of the plateau less the ripple."""
     young, ultimate, ripple = 200e9, 0.02, 0.05
     law = Softening(YIELD, YIELD * (ultimate - 0.5 * YIELD / young), "yielding", ripple)
@@ -116,7 +116,7 @@ def test_ties_as_limit_analysis_has_them(structure: dict, tie: dict) -> None:
         assert capacity("sla", structure, tie | {"yield_force": 1.0}).results["peak_acceleration_g"] < 0.99 * limit
 
 
-def test_bars_that_make_no_sense_are_told() -> None:
+def test_bars_that_make_no_sense_are_reported() -> None:
     assert "ultimate_strain" in run_deck(prism([bar(0, 1, yield_strength=YIELD, ultimate_strain=1e-4)])).reason
     assert "runs through no element" in run_deck(prism([bar(2, 3, bonded=True)])).reason
     tie = {"start": [0.1, 3.5], "ground": [-3.0, 0.0], "prestress": 1e3}

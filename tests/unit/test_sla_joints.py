@@ -267,7 +267,7 @@ def test_friction_that_falls_to_what_is_asked(monkeypatch) -> None:
     assert not direct.warnings and not falling.warnings
     assert falling.results["peak_acceleration_g"] == pytest.approx(direct.results["peak_acceleration_g"], rel=1e-4)
     monkeypatch.setattr("extrados.analyses.sla.contact.MORE_FRICTION", ())
-    assert any("no set of dry joints" in text for text in capacity(STRUCTURES["arch"], 0.25, "sla", events=5).warnings)
+    assert any("no consistent set of dry joints" in text for text in capacity(STRUCTURES["arch"], 0.25, "sla", events=5).warnings)
 
 
 @pytest.mark.parametrize(("friction", "events"), [("no-sliding", 150), (0.7, 150)])
@@ -321,7 +321,7 @@ def test_bad_joints_are_refused() -> None:
         ({"cohesion": 1e5}, "no shear_energy"),
         ({"tension": 1e5}, "no fracture_energy"),
         ({"compressive_strength": 1e6}, "go together"),
-        ({"cohesion": 1e6, "shear_energy": 1e-3, "normal_stiffness": 1e9}, "snap back"),
+        ({"cohesion": 1e6, "shear_energy": 1e-3, "normal_stiffness": 1e9}, "snaps back"),
     ):
         data = {"structure": arch, "joints": joints, "analysis": {"kind": "sla"}}
         assert word in run_analyses(Context(make_deck(data)))[0].reason

@@ -173,26 +173,26 @@ def test_a_stage_without_an_end_ends_the_run() -> None:
 @pytest.mark.parametrize(
     ("stage", "words"),
     [
-        ({"reference": []}, "a load that grows"),
-        ({"free": [TOP], "reference": middle_force(1.0)}, "take two stages"),
-        ({"free": [TOP]}, "is not held"),
-        ({"reference": [{"kind": "spread", "edge": "bottom", "fx": 1.0}]}, "held nodes only"),
-        ({**move(1e-4), "target_displacement": 0.0}, "at the start already"),
+        ({"reference": []}, "a load that increases"),
+        ({"free": [TOP], "reference": middle_force(1.0)}, "give two stages"),
+        ({"free": [TOP]}, "is not restrained"),
+        ({"reference": [{"kind": "spread", "edge": "bottom", "fx": 1.0}]}, "only on nodes that are restrained"),
+        ({**move(1e-4), "target_displacement": 0.0}, "at the start of this stage"),
     ],
 )
-def test_stages_that_make_no_sense_are_told(stage, words) -> None:
+def test_stages_that_make_no_sense_are_reported(stage, words) -> None:
     try:
         assert words in run_deck(wall([stage])).reason
     except DeckError as error:
         assert words in str(error)
 
 
-def test_what_stands_beside_stages_is_told() -> None:
-    with pytest.raises(DeckError, match="directions cannot stand beside stages"):
+def test_what_stands_beside_stages_is_reported() -> None:
+    with pytest.raises(DeckError, match="directions cannot be used together with stages"):
         make_deck(wall([PRESS], directions=["+", "-"]))
-    with pytest.raises(DeckError, match="a name stands twice"):
+    with pytest.raises(DeckError, match="a name occurs twice"):
         make_deck(wall([PRESS, PRESS]))
-    with pytest.raises(DeckError, match="there is no stage 'pull'"):
+    with pytest.raises(DeckError, match="stage 'pull' does not exist"):
         make_deck(wall([PRESS], main_stage="pull"))
     with pytest.raises(DeckError, match=r"stages: .*expected at least 1"):
         make_deck({**(deck := wall([])), "analysis": [{**deck["analysis"][0], "stages": []}]})

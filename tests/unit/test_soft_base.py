@@ -178,7 +178,7 @@ def test_statics_of_two_springs() -> None:
     assert model.critical(-1) == pytest.approx(-np.arctan(0.6 / 1.5), rel=1e-9)
 
 
-def test_unlike_edges_sink_unlike() -> None:
+def test_unlike_edges_settle_unlike() -> None:
     structure = Block(kind="block", mass=4000.0, inertia=3000.0, centre_height=1.2, toe_right=0.5, toe_left=0.3)
     model = soft_base_model(Building(structure, supports=Supports(stiffness=3e7)))
     assert model.rest < 0.0
@@ -192,7 +192,7 @@ def test_unlike_edges_sink_unlike() -> None:
 
 @pytest.mark.parametrize("edges", [WINKLER, SPRINGS])
 @pytest.mark.parametrize("linear", [False, True])
-def test_it_sinks_until_the_base_carries_its_weight(edges: bool, linear: bool) -> None:
+def test_it_settles_until_the_base_carries_its_weight(edges: bool, linear: bool) -> None:
     base = replace(block(1.0, 3.0, 4e6, edges=edges, linear=linear), toe_left=0.4, toe_right=0.6)
     turned = np.array([-0.3, -0.01, -1e-9, 0.0, 0.002, 0.05, 0.4])
     for q, z, energy, moment in zip(turned, *base_held(base, turned), strict=True):
@@ -374,7 +374,7 @@ def test_the_turn_at_the_start_counts(ratio: float) -> None:
 GENERATED = {"kind": "generated", "mmi": 8, "duration": 4.0, "seed": 4}
 
 
-def test_fragility_and_curves_on_a_base_that_gives_way() -> None:
+def test_fragility_and_curves_on_a_compliant_base() -> None:
     """It falls under weaker motions than on rigid ground; its stiffness is uncertain; half cycles make the modes."""
     soft = {"stiffness": 6e7, "damping_ratio": 0.3}
     levels = {"kind": "fragility", "count": 16, "seed": 1, "levels": [0.6, 0.9, 1.3], "bootstrap": 0}
@@ -431,7 +431,7 @@ def test_what_is_not_uncertain_of_it(name: str, word: str) -> None:
     assert f"uncertain.{name}" in reason
 
 
-def test_keys_of_the_base_are_asked_for_together() -> None:
+def test_keys_of_the_base_are_required_together() -> None:
     with pytest.raises(ValueError, match="damping_ratio needs stiffness"):
         Supports(damping_ratio=0.1)
     status, reason = answer(deck(BLOCK, "tilt", supports={"stiffness": 2e8, "damping_ratio": 0.1}), "tilt")

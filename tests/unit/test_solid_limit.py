@@ -71,7 +71,7 @@ def test_plane_structures_in_space_are_the_plane_ones(name: str, friction: Any) 
     assert space.results["weight_N"] == pytest.approx(plane.results["weight_N"], rel=1e-12)
 
 
-def test_a_barrel_in_bond_bears_what_its_section_does() -> None:
+def test_a_barrel_in_bond_carries_what_its_section_does() -> None:
     plane = run(ARCH).results["collapse_acceleration_g"]
     assert pushed(limit_of({**ARCH, "depth": 4.0, "stones_across": 3})).gamma == pytest.approx(plane, abs=1e-7)
 
@@ -126,7 +126,7 @@ def test_a_free_wall_falls_out_of_its_plane_at_thickness_over_height() -> None:
     assert 0.2 / 2.4 < slippery < held.gamma
 
 
-def test_dowels_bear_their_shear() -> None:
+def test_dowels_carry_their_shear() -> None:
     drums = {"kind": "column", "width": 1.0, "height": 1.0, "drums": 2, "section": "round", "sides": 20}
     tables = {"joints": {"friction": 0.2, "types": [{"joints": ["ground"], "friction": 5.0}]}, "analysis": {"kind": "tilt"}}
     found = {}
@@ -192,7 +192,7 @@ def test_what_cannot_stand_is_proven() -> None:
     found = SolidLimit(make_dome(1.0, 0.036, 180.0, 10, 12), 0.7).push(0.0)
     assert isinstance(found, Falls) and found.power > 1e-6 and found.overlap < 1e-7
     thin = run({"kind": "dome", "radius": 1, "thickness": 0.036, "rings": 10, "lunes": 12})
-    assert thin.results.safety_factor == 0.0 and "ertificate: a motion, fastest at" in thin.results.certificate
+    assert thin.results.safety_factor == 0.0 and "ertificate: a mechanism, fastest at" in thin.results.certificate
     leaning = run({"kind": "arch", "radius": 10, "thickness": 0.6, "embrace": 157.5, "voussoirs": 14, "skew": 5})
     assert isinstance(leaning.results, SelfWeight) and "ertificate: " in leaning.results.certificate
 
@@ -225,7 +225,7 @@ def test_immovable_is_said() -> None:
         limit.push(90.0)
 
 
-def test_tilt_tells_refuses_and_draws(tmp_path) -> None:
+def test_tilt_reports_refuses_and_draws(tmp_path) -> None:
     import extrados
 
     deck = tmp_path / "dome.toml"
@@ -284,7 +284,7 @@ def test_threads_change_no_bit() -> None:
         assert a.gamma == b.gamma and (a.force == b.force).all() and (a.motion == b.motion).all()
 
 
-def test_what_no_push_brings_down_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_structure_that_no_push_overturns_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a flat arch that cannot slide; and a rose may be open in some directions."""
     flat = {"kind": "arch", "radius": 10, "thickness": 3, "embrace": 40, "voussoirs": 4}
     found = run(flat, "no-sliding", direction=0.0)

@@ -54,12 +54,12 @@ def test_a_curve_that_is_not_lognormal_fits_badly() -> None:
 @pytest.mark.parametrize(
     ("x", "z", "n", "said"),
     [
-        ([0.5], [3], [10], "two or more"),
+        ([0.5], [3], [10], "at least two"),
         ([0.2, 0.5], [0, 0], [10, 10], "nothing happened"),
         ([0.2, 0.5], [10, 10], [10, 10], "every run"),
         ([0.2, 0.3, 0.5], [0, 0, 10], [10, 10, 10], "step between 0.3 and 0.5"),
         ([0.2, 0.3, 0.5], [0, 5, 10], [10, 10, 10], "step at 0.3"),
-        ([0.2, 0.3, 0.5], [9, 5, 1], [10, 10, 10], "does not grow"),
+        ([0.2, 0.3, 0.5], [9, 5, 1], [10, 10, 10], "does not increase"),
     ],
 )
 def test_what_determines_no_curve(x, z, n, said: str) -> None:

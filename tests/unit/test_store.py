@@ -170,7 +170,7 @@ def test_what_a_user_put_or_changed_is_never_lost(what, tmp_path, with_figures, 
     (run / "tilt.csv").exists() or (run / "tilt.csv").write_text("")
     CHANGES[what](run)
     before = everything(run)
-    assert put(run) == tmp_path / "run-2" and "the results are in" in caplog.text
+    assert put(run) == tmp_path / "run-2" and "The results are in" in caplog.text
     assert everything(run) == before
     assert put(run) == tmp_path / "run-3"
 
@@ -228,7 +228,7 @@ def test_figures_are_put_beside_what_is_no_folder_of_the_run(sort, tmp_path, wit
         mine.mkdir()
     before = {path: path.stat().st_mtime_ns for path in mine.iterdir()}
     for _ in range(2):  # and again in the same place
-        assert write_report(run)[0].name == "report.html" and "the new one is figures-2/" in caplog.text
+        assert write_report(run)[0].name == "report.html" and "The new file is figures-2/" in caplog.text
         assert sorted(path.name for path in (run / "figures-2").iterdir()) == names
         assert {path: path.stat().st_mtime_ns for path in mine.iterdir()} == before
         assert not (run / "figures-3").exists() and (run / "figures").is_symlink() == (sort == "link")
@@ -326,7 +326,7 @@ def test_arrays_lie_in_the_file_of_results(sort, tmp_path, with_figures) -> None
     summary = json.loads((run / store.SUMMARY).read_text())
     summary["files"][store.STORE] = files.sum_of(store.STORE, run)
     (run / store.SUMMARY).write_text(json.dumps(summary))
-    with pytest.raises(store.StoreError, match="'a' does not lie in the file whole"):
+    with pytest.raises(store.StoreError, match="the data of 'a' are not complete"):
         store.read(run)
 
 
@@ -349,7 +349,7 @@ def test_a_summary_of_any_size_is_not_read(tmp_path, with_figures, monkeypatch) 
         ("warnings", 5, "analyses.0.warnings"),
     ],
 )
-def test_results_of_another_version_are_told(key, value, words, tmp_path, with_figures) -> None:
+def test_results_of_another_version_are_reported(key, value, words, tmp_path, with_figures) -> None:
     """What is not as this version writes it is told by its place in the file, before a reader stumbles over it."""
     run = tmp_path / "run"
     shutil.copytree(with_figures, run)
@@ -363,9 +363,9 @@ def test_results_of_another_version_are_told(key, value, words, tmp_path, with_f
 @pytest.mark.parametrize(
     ("out", "words"),
     [
-        (".", "holds the current folder"),
-        ("..", "holds the current folder"),
-        ("/", "holds the current folder"),
+        (".", "contains the current folder"),
+        ("..", "contains the current folder"),
+        ("/", "contains the current folder"),
         ("/proc", "mounted file system"),
         ("x" * 248, "more than 200 bytes"),
         ("é" * 101, "more than 200 bytes"),

@@ -135,7 +135,7 @@ def test_a_cluster_gives_the_same_ranking(cluster, folder: Path, tmp_path: Path)
         assert extrados.load(row.folder)["assess"].statement == row.statement, "written by a worker"
 
 
-def test_all_that_is_wrong_is_told_with_its_file(folder: Path) -> None:
+def test_all_that_is_wrong_is_reported_with_its_file(folder: Path) -> None:
     (folder / "bad.toml").write_text(COLUMN.format(-1.0))
     (folder / "worse.toml").write_text("structure = 3\n")
     found = survey.decks_of(folder)
@@ -198,7 +198,7 @@ def test_what_changed_between_two_runs() -> None:
     assert "collapse_acceleration_g" in html.page(comparing.document(("a", "b"), found), Path())
 
 
-def test_what_changed_of_an_assessment_is_told_by_names() -> None:
+def test_what_changed_of_an_assessment_is_reported_by_names() -> None:
     """Strategies and reasons by their names, whatever their place in the list; what follows from verdicts is not told again."""
     old = {"verdicts": [{"strategy": "tilt", "margin": 0.5}, {"strategy": "dem", "margin": None}], "agreement": {"tilt": {"dem": "open"}}}
     new = {"verdicts": [{"strategy": "dem", "margin": None}, {"strategy": "tilt", "margin": 0.8}], "agreement": {"tilt": {"dem": "agree"}}}

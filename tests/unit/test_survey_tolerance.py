@@ -49,7 +49,7 @@ def test_every_gap_and_overlap_with_the_tolerance_that_mends_it() -> None:
     assert inspect(Drawing(blocks), None, 0.012).complaints() == []
     # What no tolerance mends is said so.
     over = inspect(Drawing([box("one", 0, 0), box("two", 0.5, 0.5)]), None, 1e-4)
-    assert over.mends(over.of("overlap")[0]) is None and "draw them anew" in over.complaints()[0]
+    assert over.mends(over.of("overlap")[0]) is None and "draw them again" in over.complaints()[0]
 
 
 def test_joints_of_faces_that_bend() -> None:
@@ -88,7 +88,7 @@ def test_random_surveys_give_a_band() -> None:
         }
     )
     assert "give the deviation" in run_analyses(Context(arch, threads=1))[0].reason
-    assert "a quarter of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
+    assert "1/4 of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
 
 
 def test_surveys_that_cannot_stand_belong_to_the_band() -> None:

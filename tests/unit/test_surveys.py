@@ -96,7 +96,7 @@ def test_check_lists_and_draws_what_run_refuses(tmp_path: Path) -> None:
     deepest = max(float(r["depth_mm"]) for r in listed)
     assert 4.0 < deepest < 6.0
     good = CliRunner().invoke(app, ["check", str(CHURCH), "--out", str(tmp_path / "good")])
-    assert good.exit_code == 0 and "0 places amiss" in good.output and good.output.rstrip().endswith("ok")
+    assert good.exit_code == 0 and "0 faulty places" in good.output and good.output.rstrip().endswith("ok")
 
 
 def test_a_crowd_of_blocks_in_one_place_is_refused_with_the_bound(tmp_path: Path) -> None:
@@ -154,7 +154,7 @@ def test_check_makes_buildings_that_are_no_surveys_too(tmp_path: Path) -> None:
     assert found.exit_code == 2 and "vault.toml:1: structure: buttress: " in found.output
     deck.write_text(text.format("") + '[[joints.types]]\njoints = ["none"]\nfriction = 0.3\n')
     found = CliRunner().invoke(app, ["check", str(deck)])
-    assert found.exit_code == 2 and "names no joint 'none'" in found.output
+    assert found.exit_code == 2 and "joint 'none' does not exist" in found.output
 
 
 def test_joint_types_of_layers_reach_every_strategy() -> None:
@@ -258,4 +258,4 @@ def test_supports_of_free_blocks_move() -> None:
     assert found["movement_at_fall_m"] == pytest.approx(exact[-1].movement, rel=1e-6)
     assert "left haunch of the chain at 8 % of the span, intrados; crown of the chain, extrados" in found.answer
     pier = run({"block": rows(box("a", 0, 0), box("b", 0, 1))}, kind="supports")
-    assert pier.status == "refused" and "the structure has one support" in pier.reason
+    assert pier.status == "refused" and "the structure has only one support" in pier.reason

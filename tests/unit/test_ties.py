@@ -207,7 +207,7 @@ def test_a_proof_that_nothing_stands_counts_what_ties_take() -> None:
         raise NoEquilibrium
 
 
-def test_supports_that_give_way_stretch_ties() -> None:
+def test_moving_supports_stretch_ties() -> None:
     """The frame's foot moves out by 2 cm: the rod, which the stones follow, keeps its yield force."""
     move = {"movements": [{"joint": "left on the ground", "dx": -0.02}]}
     (found,) = run(FRAME, [{**ROD, "yield_force": 5e3}], {"kind": "supports"}, initial=move, joints={"friction": "no-sliding"})
@@ -255,10 +255,10 @@ def test_sweeps_and_surveys_reckon_with_ties() -> None:
 @pytest.mark.parametrize(
     ("tie", "word"),
     [
-        ({"start": [9.0, 9.0], "ground": [0.0, 0.0]}, "no stone is at x = 9"),
+        ({"start": [9.0, 9.0], "ground": [0.0, 0.0]}, "no block is at x = 9"),
         ({"start": [0.0, 3.5], "ground": [0.0, 5.0]}, "lies between 'left', 'right'"),
-        ({"start": [-2.5, 0.2], "end": [-2.4, 0.3]}, "both of its ends are in the stone 'left'"),
-        ({"start": [0.0, 3.5], "ground": [0.0, 5.0], "start_stone": "middle"}, "there is no stone 'middle'"),
+        ({"start": [-2.5, 0.2], "end": [-2.4, 0.3]}, "both ends of the tie are in block 'left'"),
+        ({"start": [0.0, 3.5], "ground": [0.0, 5.0], "start_stone": "middle"}, "block 'middle' does not exist"),
     ],
 )
 def test_anchors_are_named_where_they_are_wrong(tie: dict, word: str) -> None:
@@ -270,9 +270,9 @@ def test_anchors_are_named_where_they_are_wrong(tie: dict, word: str) -> None:
     ("ties", "word"),
     [
         ([{"start": [0, 1]}], "expected either end"),
-        ([{"start": [0, 1], "end": [0, 1]}], "both ends are at one point"),
-        ([{**ROD, "prestress": 3.0, "works_in": "compression"}], "more than it can carry"),
-        ([{**ROD, "prestress": 30.0, "yield_force": 20.0}], "more than it can carry"),
+        ([{"start": [0, 1], "end": [0, 1]}], "both ends have the same position"),
+        ([{**ROD, "prestress": 3.0, "works_in": "compression"}], "exceeds the range that the tie can carry"),
+        ([{**ROD, "prestress": 30.0, "yield_force": 20.0}], "exceeds the range that the tie can carry"),
         ([{**ROD, "name": "a"}, {**ROD, "name": "a"}], "two ties are called 'a'"),
         ([{"start": [0, 1], "ground": [0, 0], "end_stone": "left"}], "belongs to end"),
         ({"start": [0, 1]}, "expected tables [[ties]]"),

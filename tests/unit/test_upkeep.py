@@ -149,7 +149,7 @@ def test_the_citation_and_the_paper_name_the_dissertation() -> None:
     assert set(re.findall(r"@([A-Z]\w+\d{4})", paper)) == known and title.lower() in sources.lower()
 
 
-def test_an_installed_copy_tells_the_commit_that_it_was_built_from(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_installed_copy_states_the_commit_that_it_was_built_from(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / ".git").mkdir()  # of a repository that happens to lie around
     monkeypatch.setattr(provenance, "COMMIT", "abc1234")
     monkeypatch.setattr(provenance, "__file__", str(tmp_path / "site-packages" / "extrados" / "running" / "provenance.py"))

@@ -101,7 +101,7 @@ def test_normals_look_outward():
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_feet_bear_the_weight_and_the_push(name):
+def test_feet_carry_the_weight_and_the_push(name):
     """What the feet press on the ground with is the weight, and against each other the push; alone they thrust alike."""
     mesh = meshed(EVERY[name], 0.8)
     options = Pushover(kind="pushover", mesh=ShellOptions(size=0.8, layers=3))
@@ -223,14 +223,14 @@ def test_a_spreading_barrel_opens_in_three_hinge_lines(tmp_path):
         (
             '\n[[analysis.stages]]\nsettlements = [{ foot = "springing", out = 0.01 }]\n',
             ("", ""),
-            "no foot 'springing'; there are left, right",
+            "foot 'springing' does not exist; expected one of left, right",
         ),
         ("\n[[analysis.stages]]\nbase_shear = -5.0\n", ("", ""), "not below"),
         ('control = { wall = "a", storey = 1 }\n', ("", ""), "it has none"),
         ("", ("depth = 0.6", "depth = 0.6\nskew = 20"), "skew"),
     ],
 )
-def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
+def test_limits_of_a_vault_are_reported(tmp_path, stages, change, words):
     run = extrados.run(deck(tmp_path, stages, change)).results[0]
     assert run.status == "refused" and words in run.reason
 
@@ -239,15 +239,15 @@ def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
     "keys, words",
     [
         ({"settlements": [{"out": 0.01}]}, "either wall"),
-        ({"settlements": [{"foot": "left"}]}, "nothing moves"),
-        ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "take two stages"),
-        ({"stages": [{"name": "a"}, {"name": "a"}]}, "stands twice"),
-        ({"stages": [{}], "directions": ["+", "-"]}, "beside stages"),
-        ({"stages": [{}], "without_equilibrium": "proportional"}, 'without_equilibrium = "proportional" cannot stand beside'),
-        ({"main_stage": "a"}, "there are none"),
+        ({"settlements": [{"foot": "left"}]}, "does not move"),
+        ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "give two stages"),
+        ({"stages": [{"name": "a"}, {"name": "a"}]}, "occurs twice"),
+        ({"stages": [{}], "directions": ["+", "-"]}, "together with stages"),
+        ({"stages": [{}], "without_equilibrium": "proportional"}, 'without_equilibrium = "proportional" cannot be used together with'),
+        ({"main_stage": "a"}, "there are no `stages`"),
     ],
 )
-def test_wrong_stages_are_told(keys, words):
+def test_wrong_stages_are_reported(keys, words):
     with pytest.raises(ValueError, match=words):
         Pushover(kind="pushover", **keys)
 
@@ -261,12 +261,12 @@ def test_wrong_stages_are_told(keys, words):
         (0.0, 1e-9, "carries nothing"),
     ],
 )
-def test_what_a_foot_presses_with_is_told_in_words(thrust, vertical, words):
+def test_the_force_of_a_foot_on_the_ground_is_reported_in_words(thrust, vertical, words):
     assert pushover._pressing({"thrust_N": thrust, "vertical_N": vertical}, 1e5) == words
 
 
 def test_thick_walls_are_no_shells():
-    with pytest.raises(BadGeometry, match="no shell"):
+    with pytest.raises(BadGeometry, match="Shells require"):
         meshed(ON_WALLS.model_copy(update={"buttress_width": 2.5}))
     with pytest.raises(NoView, match="skew"):
         meshed(BARREL.model_copy(update={"skew": 10.0}))
@@ -310,7 +310,7 @@ def test_a_released_load_is_never_raised_on_the_way(tmp_path):
 
 
 @pytest.mark.verify
-def test_the_limit_of_a_dome_of_stones_hangs_on_their_friction(tmp_path):
+def test_the_limit_of_a_dome_of_stones_depends_on_their_friction(tmp_path):
     """Pushed, its stones slide; where they cannot, no push brings it down. A shell, which does not slide, is no other view of the
     same limit."""
 
@@ -334,4 +334,4 @@ def test_the_limit_of_a_dome_of_stones_hangs_on_their_friction(tmp_path):
 
     low, high, none = limit("0.7"), limit("2.0"), limit('"no-sliding"')
     assert high.results.collapse_acceleration_g > 1.5 * low.results.collapse_acceleration_g
-    assert none.status == "refused" and "restrain the blocks from all sides" in none.reason
+    assert none.status == "refused" and "restrain the blocks on all sides" in none.reason

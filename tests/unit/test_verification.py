@@ -92,7 +92,7 @@ def test_verdict_is_that_of_the_least_factor(verified):
     factors = {c.limit_state: c.factor for c in found.checks}
     assert found.zeta_E == factors["SLV"]
     assert verdict["ratio"] == pytest.approx(min(factors.values()))
-    assert verdict["violated"] and "limit drift of piers in shear, 0.5 %" in verdict["violated"][0], "piers in shear end their curve there"
+    assert verdict["violated"] and "limit drift of piers in shear (0.5 %)" in verdict["violated"][0], "piers in shear end their curve there"
     assert verdict["outcome"] == ("open" if min(factors.values()) > 1.0 else "collapses")
     # the base shear of the oscillator is without the forces on the supports, half a row of elements of 0.75 m
     assert found.curves[0].yield_load_N < 0.95 * results.greatest_load_N

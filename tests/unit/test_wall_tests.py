@@ -4,6 +4,7 @@ import math
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
@@ -72,3 +73,32 @@ def test_the_macro_element_has_the_strength_of_its_formula(tmp_path, row: str, f
         expected = area * wall.tensile * math.sqrt(1.0 + wall.pressure / wall.tensile)
     assert found.failure == failure
     assert found.strength == pytest.approx(expected, rel=5e-3)
+
+
+def moved_wall(slip: float, rotation: float) -> tuple[tool.Wall, dict]:
+    """Two rigid units of 1 m x 1 m, one on the other; the upper one slides and rotates about the right end of the bed between them."""
+    wall = tool.Wall("w", 2, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, "S", 100.0, 0.01)
+    node = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
+    moved = np.zeros((1, 8, 2))
+    moved[0, 4:, 0] = slip + rotation * (node[4:, 1] - 1.0)
+    moved[0, 4:, 1] = rotation * (1.0 - node[4:, 0])
+    elements = np.array([[0, 1, 2, 3], [4, 5, 6, 7], [3, 2, 5, 4]])
+    return wall, {"node": node, "elements_0": elements, "state_event": np.array([7]), "state_displacement": moved}
+
+
+@pytest.mark.parametrize(("slip", "rotation", "failure"), [(1e-3, 0.0, "S"), (0.0, 1e-3, "F"), (1e-3, 3e-3, "F"), (3e-3, 1e-3, "S")])
+def test_the_failure_of_a_state_is_that_by_which_its_top_moves(slip: float, rotation: float, failure: str) -> None:
+    wall, arrays = moved_wall(slip, rotation)
+    answer = {"greatest_load_event": 7, "greatest_load_N": 1.0, "initial_stiffness_N_m": 1e9}
+    said, shares = tool.failure_of_state(wall, answer, arrays)
+    assert said == failure
+    assert shares == f"rocking {rotation / (slip + rotation):.0%}, slip {slip / (slip + rotation):.0%}, cracks 0%"
+
+
+def test_a_wall_of_many_units_has_units_twice_as_large(tmp_path, monkeypatch) -> None:
+    decks = []
+    monkeypatch.setattr(tool, "_followed", lambda _, deck: decks.append(deck) or tool.Predicted())
+    for row in ("1,x,A,brick,2,2,0.25,250,62.5,5,,,0.3,0.6,0.5,0.6,F,40,40", "2,x,B,brick,1,1,0.25,250,62.5,5,,,0.3,0.6,0.5,0.6,F,40,40"):
+        tool.by_units(walls(tmp_path, row)[0])
+    sizes = [(deck["structure"]["unit_length"], deck["structure"]["unit_height"]) for deck in decks]
+    assert sizes == [pytest.approx((0.5, 0.125)), pytest.approx((0.25, 0.0625))]

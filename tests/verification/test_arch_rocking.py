@@ -121,7 +121,7 @@ def test_hinges_that_do_not_reflect(ratio, embrace, n, signed) -> None:
     assert ArchModel(make_arch(1.0, ratio, embrace, n), 0.4).restitution == 0.4
 
 
-def test_arch_that_nothing_brings_down() -> None:
+def test_arch_that_nothing_overturns() -> None:
     with pytest.raises(NoView, match="no horizontal load"):
         _ = ArchModel(make_arch(10.0, 1.0, 30.0, 4)).collapse
 

@@ -70,7 +70,7 @@ def test_where_the_thrust_line_leaves_the_arch_outcomes_still_agree() -> None:
     assert equal[share >= 0.75].mean() > 0.84
 
 
-def test_one_mechanism_takes_the_blow_but_is_harder_to_overturn() -> None:
+def test_one_mechanism_takes_the_impact_but_is_harder_to_overturn() -> None:
     """The blow opens almost one mechanism, another than that of limit analysis: the elements move on to easier ones."""
     print()
     for one in SAMPLES:

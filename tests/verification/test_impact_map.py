@@ -61,7 +61,7 @@ def measured(thickness: float, embrace: float) -> Measured:
     )
 
 
-def test_the_blow_at_all_joints_is_nearest_to_discrete_elements() -> None:
+def test_the_impact_at_all_joints_is_nearest_to_discrete_elements() -> None:
     found = [measured(*one) for one in ARCHES]
     print("t/R   deg    thesis  energy-safe  inelastic  swing  blow")
     for (thickness, embrace), m in zip(ARCHES, found, strict=True):

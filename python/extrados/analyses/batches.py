@@ -170,7 +170,7 @@ class _Batches:
                     self._put(first, arrays, path)
                     end = first + _rows(arrays)
                 else:  # of another run that was going on at the same time
-                    context.warnings.append(f"a kept batch overlaps others and is not used: member {first} on")
+                    context.warnings.append(f"a saved batch overlaps others and is not used: it begins at member {first}")
         self.done = sum(self.rows.values())
         tell(self.done)
 
@@ -242,7 +242,7 @@ def sweep(
     whose work is done in Python; a scheduler comes first.
     """
     if count < 1:
-        raise ValueError(f"a sweep needs at least one member, got {count}")
+        raise ValueError(f"a sweep requires at least one member, found {count}")
     with interruptible():
         batches = _Batches(context, name, job, count, tell or (lambda done: context.progress(done, count, text)), large)
         if batches.done == count:
@@ -316,7 +316,9 @@ def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     try:
         from distributed import Client
     except ImportError:
-        raise Refused("a scheduler was given, but dask.distributed is not installed: pip install 'extrados[cluster]'", WHOLE) from None
+        raise Refused(
+            "a scheduler was given, but dask.distributed is not installed. Install it by pip install 'extrados[cluster]'", WHOLE
+        ) from None
     address = context.scheduler
     try:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
@@ -370,7 +372,8 @@ def _collect(batches: _Batches, job: Job, pace: _Pace, client: Any, address: str
 
 def _lost(batches: _Batches, address: str) -> Swept:
     return batches.swept(
-        f"the scheduler at {address} is gone; {batches.done} of {batches.count} members are finished and kept{batches.again}"
+        f"the scheduler at {address} does not respond any more; {batches.done} of {batches.count} members are complete "
+        f"and saved{batches.again}"
     )
 
 

@@ -22,9 +22,9 @@ def changed(data: Any, path: str, value: Any) -> Any:
         elif isinstance(place, dict):
             place = place.setdefault(part, {})
         if not isinstance(place, dict | list):
-            raise Refused(f"'{path}' is no key of the deck", WHOLE)
+            raise Refused(f"'{path}' is not a key of the deck", WHOLE)
     if not isinstance(place, dict):
-        raise Refused(f"'{path}' is no key of the deck", WHOLE)
+        raise Refused(f"'{path}' is not a key of the deck", WHOLE)
     place[last] = value
     return data
 
@@ -38,7 +38,7 @@ def read_table(model: type[Table], data: dict[str, Any]) -> Any:
         where = ".".join(str(p) for p in first["loc"])
         text = str(first.get("ctx", {}).get("error", first["msg"]))
         if first["type"] == "extra_forbidden":
-            text = f"unknown key; known are {', '.join(model.model_fields)}"
+            text = f"unknown key; the keys are {', '.join(model.model_fields)}"
         raise BadGeometry(f"{where}: {text}" if where else text) from None
 
 

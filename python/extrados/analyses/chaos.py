@@ -55,10 +55,15 @@ def violated_by_chaos(
         return []
     if found <= CHAOTIC and turns > NUDGE:
         return [
-            f"Sensitive to perturbations of {turns:.1g}: scaled by 1 plus or minus that, the motion ends in another outcome. One run is "
-            f"one sample: {advice}."
+            (
+                f"The response is sensitive to perturbations of {turns:.1g}: if the motion is scaled by 1 plus or minus this "
+                f"value, the outcome changes. One run is only one sample: {advice}."
+            )
         ]
     return [
-        f"Chaotic: sensitive to perturbations of 1e-6. Scaled by 1 plus or minus {NUDGE:g}, the motion ends in another outcome, or "
-        f"{parts} differs by up to {100.0 * min(1.0, found * NUDGE):.2g} % of {limit}. One run is one sample: {advice}."
+        (
+            "The response is chaotic (sensitive to perturbations of 1e-6). If the motion is scaled by 1 plus or minus "
+            f"{NUDGE:g}, the outcome changes, or {parts} differs by up to {100.0 * min(1.0, found * NUDGE):.2g} % of {limit}. "
+            f"One run is only one sample: {advice}."
+        )
     ]

@@ -69,8 +69,8 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
         answer = f"Outcome open: {verdict.violated[0]} As modelled: {answer}"
     # Half a motion, half a curve: neither stands for the whole
     if result.status == "interrupted" and not result.results.whole_in_parts:
-        verdict = judge("It was interrupted before its end: no verdict.")
-        answer = f"Interrupted before its end; of the computed part: {answer}"
+        verdict = judge("The analysis was interrupted before its end, so there is no verdict.")
+        answer = f"The analysis was interrupted before its end. Result of the completed part: {answer}"
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
 
 
@@ -90,7 +90,7 @@ def faulty(kind: str, error: Exception) -> Result:
         reason = str(error) if isinstance(error, MemoryError) else f"not enough memory: {said}"
         return Result(kind, "failed", f"{reason} ({name} says where)" if files else reason, files=files)
     beside = f" with {name}" if files else ""
-    return Result(kind, "failed", f"internal error, please report it{beside}: {said}", files=files)
+    return Result(kind, "failed", f"internal error of extrados, please report it{beside}: {said}", files=files)
 
 
 def assumptions_of(options: Analysis, deck: Building, building: Building) -> dict[str, Assumption]:

@@ -44,9 +44,9 @@ def left_out(deck: Deck) -> list[Remark]:
             continue
         who, able = ", ".join(names[k] for k in without), [names[k] for k in hears if k not in without]
         if not able:
-            text = f"{who} {'does' if len(without) == 1 else 'do'} not use it{_known_to(name, deck.analyses)}"
+            text = f"{who} {'does' if len(without) == 1 else 'do'} not use this key{_known_to(name, deck.analyses)}"
         elif name in SHARED:
-            text = f"{', '.join(able)} {'uses' if len(able) == 1 else 'use'} it, {who} {'does' if len(without) == 1 else 'do'} not"
+            text = f"{', '.join(able)} {'uses' if len(able) == 1 else 'use'} this key; {who} {'does' if len(without) == 1 else 'do'} not"
         else:
             continue
         found["", name] = Remark(deck.complaint(None, at, text), without[0])
@@ -54,10 +54,12 @@ def left_out(deck: Deck) -> list[Remark]:
         for table in OVERRIDES:
             for name, at in _given(table, getattr(options, table, None)):
                 if name not in asked[k] and (names[k], name) not in found:
-                    words = f"{names[k]} does not use it{_known_to(name, deck.analyses)}"
+                    words = f"{names[k]} does not use this key{_known_to(name, deck.analyses)}"
                     found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
     if deck.code is not None and not any(getattr(o, "by", o.kind) in BY_CODE for o in deck.analyses):
-        found["", "code"] = Remark(deck.complaint(None, ("code",), f"no analysis of this deck uses it; {', '.join(BY_CODE)} do"), 0)
+        found["", "code"] = Remark(
+            deck.complaint(None, ("code",), f"no analysis of this deck uses this table; {', '.join(BY_CODE)} can use it"), 0
+        )
     return list(found.values())
 
 

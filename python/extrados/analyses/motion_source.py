@@ -23,7 +23,7 @@ MOST_NOTES = 10  # of a suite, shown with the result
 def shortened(notes: list[str]) -> list[str]:
     """The first MOST_NOTES, and how many more there are."""
     more = len(notes) - MOST_NOTES
-    return notes[:MOST_NOTES] + ([f"{more} more notes on records of the suite are not shown."] if more > 0 else [])
+    return notes[:MOST_NOTES] + ([f"{more} more remarks on records of the suite are not shown."] if more > 0 else [])
 
 
 class Source(Protocol):
@@ -106,7 +106,7 @@ def source_of(context: Context, seed: int | None, duration: float | None = None)
             members = suite_members(model, folder)
             grounds = [_try(partial(suite_motion, model, m, folder), notes) for m in members]
             if all(isinstance(g, str) for g in grounds):
-                raise Refused(f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}", ("motion",))
+                raise Refused(f"none of the {len(grounds)} records of the suite can be read. First reason: {grounds[0]}", ("motion",))
             context.warnings += shortened(notes)
             return ListSource(grounds, [member_name(m) for m in members]), len(grounds)
         return ListSource([context.motion.ground], ["motion"]), 1

@@ -45,10 +45,10 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
     building = context.building
     for what, key in building.special_keys.items() if options.view or options.uses else ():
         if what not in options.bears:
-            yield _refused(f"{options.kind} cannot take {what} into account: remove it from its deck, or use {_who(what)}", key)
+            yield _refused(f"{options.kind} cannot include {what}: remove it from the deck of this analysis, or use {_who(what)}", key)
     if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
         yield _refused(
-            '"mp4" needs the program ffmpeg or the package imageio-ffmpeg, and neither is here; "gif" needs nothing',
+            ('"mp4" requires the program ffmpeg or the package imageio-ffmpeg, and neither is installed. "gif" requires neither'),
             ("analysis", "animation"),
         )
     if options.needs_motion:
@@ -66,7 +66,7 @@ def refuse_memory(needed: float, what: str, cure: str, key: Key) -> None:
     """Refused, before a long run, where its numbers take more memory [bytes] than the machine has; `cure` says what takes less."""
     there = room.total()
     if needed > SHARE * there:
-        raise Refused(f"{what} needs about {needed / 1e9:.3g} GB of memory; this machine has {there / 1e9:.3g} GB; {cure}", key)
+        raise Refused(f"{what} needs about {needed / 1e9:.3g} GB of memory, and this machine has {there / 1e9:.3g} GB; {cure}", key)
 
 
 def as_shell(building: Building, options: Analysis) -> bool:
@@ -76,14 +76,23 @@ def as_shell(building: Building, options: Analysis) -> bool:
 
 def stones_of(building: Building, options: Analysis) -> "Assembly | SolidAssembly":
     """What an analysis sees of the stones: solids where it asks for them, or there is no plane section."""
-    if options.solid and any(getattr(options, key, None) is not None for key in SPATIAL):
+    asks = any(getattr(options, key, None) is not None for key in SPATIAL) or getattr(options, "vary", None) == "direction"
+    if options.solid and asks:
         return building.solids()
     try:
         return building.blocks()
-    except NoView:
+    except NoView as plane:
         if not options.solid:
             raise
-        return building.solids()
+        try:
+            return building.solids()
+        except NoView:
+            raise plane from None
+
+
+def in_space(building: Building, options: Analysis) -> bool:
+    """Whether an analysis takes the stones as solids."""
+    return not isinstance(stones_of(building, options), Assembly)
 
 
 def _bound(building: Building, options: Analysis) -> None:

@@ -80,12 +80,12 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     except Unfinished as error:
         result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))
     except (Cancelled, KeyboardInterrupt):
-        result = Result(options.kind, "interrupted", "interrupted before it had a result")
+        result = Result(options.kind, "interrupted", "the analysis was interrupted before it had a result")
     except (CoreError, NoAnswer, StoreError) as error:
         result = Result(options.kind, "failed", str(error))
     except Exception as error:
         if len(interrupts.asked) > signals:  # a library that was interrupted while it is loaded says what it likes
-            result = Result(options.kind, "interrupted", "interrupted before it had a result")
+            result = Result(options.kind, "interrupted", "the analysis was interrupted before it had a result")
         else:  # the other analyses of the deck still count
             result = faulty(options.kind, error)
     remarks, _ = building.told()

@@ -28,16 +28,16 @@ class Animated(Table):
     """Keys of the analyses whose answer moves."""
 
     animation: Literal["none", "gif", "mp4"] = key(
-        "none", "also write the motion as a film, 1280 x 720, among the figures; mp4 needs ffmpeg or the package imageio-ffmpeg"
+        "none", "also write a film of the motion, 1280 x 720, with the figures; mp4 requires ffmpeg or the package imageio-ffmpeg"
     )
     animation_speed: float = key(
-        1.0, "speed of the film: 1 is real time, 0.2 five times slower; results without a time last 8 s at 1", gt=0, le=10
+        1.0, "speed of the film: 1 is real time, 0.2 is five times slower; for results without a time, 1 gives a film of 8 s", gt=0, le=10
     )
 
     @model_validator(mode="after")
     def _moves(self) -> "Animated":
         if "animation_speed" in self.model_fields_set and self.animation == "none":
-            raise ValueError('animation_speed: needs animation = "gif" or "mp4"')
+            raise ValueError('animation_speed requires animation = "gif" or "mp4"')
         return self
 
 
@@ -80,7 +80,7 @@ class BuildingAnalysis(Analysis):
     """Base of the analyses of a building: they may override its properties for themselves."""
 
     view: ClassVar[str] = "blocks"
-    material: MaterialOverride | None = key(None, "values of [material] for this analysis alone")
-    joints: JointsOverride | None = key(None, "values of [joints] for this analysis alone")
-    supports: SupportsOverride | None = key(None, "values of [supports] for this analysis alone")
-    initial: InitialOverride | None = key(None, "values of [initial] for this analysis alone")
+    material: MaterialOverride | None = key(None, "values of [material] for this analysis only")
+    joints: JointsOverride | None = key(None, "values of [joints] for this analysis only")
+    supports: SupportsOverride | None = key(None, "values of [supports] for this analysis only")
+    initial: InitialOverride | None = key(None, "values of [initial] for this analysis only")

@@ -54,8 +54,8 @@ class Elsewhere:
             with contextlib.suppress(subprocess.TimeoutExpired):
                 worker.process.wait(ENDS)
             raise RuntimeError(
-                f"a process that computed members {first} to {first + count - 1} ended with code {worker.process.returncode}; "
-                "a negative one is a signal, -9 often for want of memory"
+                f"a process that computed members {first} to {first + count - 1} ended with code {worker.process.returncode}. A "
+                "negative code is the number of a signal; -9 often means that memory was exhausted"
             ) from None
         finally:
             self.free.put(worker)

@@ -1,1 +1,1 @@
-"""Bridges out: the stones, meshes and blocks of a deck in the formats of other programs."""
+"""Exports: blocks, meshes and frames of a deck in the formats of other programs, and a deck from a plan."""

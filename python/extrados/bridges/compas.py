@@ -90,6 +90,6 @@ def _node(vertices: np.ndarray, faces: Sequence[tuple[int, ...]], name: str, is_
 
 
 def _object(dtype: str, **data: Any) -> dict[str, Any]:
-    """An object of COMPAS; its identity follows from what it holds, so that the same deck gives the same file."""
+    """An object of COMPAS; its identity follows from its content, so that the same deck gives the same file."""
     content = json.dumps(data, sort_keys=True)
     return {"dtype": dtype, "data": data, "inheritance": [], "guid": str(uuid.uuid5(uuid.NAMESPACE_OID, dtype + content))}

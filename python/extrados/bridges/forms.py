@@ -1,4 +1,4 @@
-"""The formats that a deck's building is written in, by their names."""
+"""The list of export formats."""
 
 import logging
 from collections.abc import Callable
@@ -18,19 +18,19 @@ FORMS: dict[str, tuple[Callable[[Deck], str], str, str]] = {
     "udec": (itasca.udec, ".dat", "the stones of a plane section as blocks of UDEC 7"),
     "3dec": (itasca.threedec, ".dat", "the stones in space as blocks of 3DEC 7"),
     "opensees-frame": (frame_script.macroelements, ".tcl", "the frame of macro-elements of a building for OpenSees with Macroelement3d"),
-    "frame-tables": (frame_script.tables, ".txt", "the frame of macro-elements of a building as tables of text, as TREMURI orders them"),
-    "opensees": (opensees.written, ".py", "a rocking block, or else a mesh with dry joints, as a script of OpenSeesPy"),
+    "frame-tables": (frame_script.tables, ".txt", "the frame of macro-elements of a building as text tables in the order of TREMURI"),
+    "opensees": (opensees.written, ".py", "a single rocking block, or the mesh of a wall with dry joints, as a script of OpenSeesPy"),
 }
 #: Those that hold nothing but the geometry of blocks
 BLOCKS = ("compas", "udec", "3dec")
 
 
 def exported(deck: Deck, form: str) -> str:
-    """The text of a format; DeckError where there is no such format, or the building has no such view."""
+    """The text of the building in a format; DeckError if the format is unknown, or the building has no such model."""
     if form not in FORMS:
-        raise DeckError([f"no format '{form}'; there are {', '.join(FORMS)}"])
+        raise DeckError([f"no format '{form}'; the formats are {', '.join(FORMS)}"])
     if deck.structure is None:
-        raise DeckError([f"{form} needs a [structure]"])
+        raise DeckError([f"the export to {form} needs a [structure]"])
     try:
         text = FORMS[form][0](deck)
         if form in BLOCKS and (left := _beyond_geometry(deck)):
@@ -41,7 +41,7 @@ def exported(deck: Deck, form: str) -> str:
 
 
 def _beyond_geometry(deck: Deck) -> list[str]:
-    """What of a building changes its capacity and is no geometry of blocks: ties, dowels, fill, and the like."""
+    """Parts of a building that affect its capacity but are not geometry of blocks: ties, dowels, fill and others."""
     found = list(deck.building.special_keys)
     try:
         stones: Assembly | SolidAssembly = deck.building.blocks()
@@ -57,11 +57,11 @@ def _beyond_geometry(deck: Deck) -> list[str]:
 
 
 def scene(deck: Deck) -> Any:
-    """The stones as a pyvista.MultiBlock, a mesh for each by its name; ImportError says what to install."""
+    """The blocks as a pyvista.MultiBlock, one mesh per block by name; ImportError names the package to install."""
     try:
         import pyvista
     except ImportError:
-        raise ImportError("this needs pyvista: pip install pyvista") from None
+        raise ImportError("a scene of the stones needs pyvista: pip install pyvista") from None
     made = pyvista.MultiBlock()
     for name, vertices, faces in compas.bodies(deck):
         made.append(pyvista.PolyData(vertices, [number for face in faces for number in (len(face), *face)]), name)

@@ -1,7 +1,8 @@
-"""The frame of macro-elements of a building for other programs: OpenSees with Macroelement3d (EPFL), and tables of text.
+"""The frame of macro-elements of a building for other programs: OpenSees with Macroelement3d (EPFL), and text tables.
 
-The walls stand side by side in parallel planes, each along X: all nodes of a wall on a level have one displacement along it, floors
-are springs between these displacements, and corners are vertical springs. This is the frame of frame-pushover.
+The walls are drawn side by side in parallel planes, each along X. All nodes of a wall on a level have one displacement along
+the wall, floors are springs between these displacements, and corners are vertical springs. This is the frame of
+frame-pushover.
 """
 
 import logging
@@ -31,7 +32,9 @@ def frame_of(deck: Deck) -> EquivalentFrame:
     tables = (getattr(analysis, "frame", None) for analysis in deck.analyses)
     found = deck.building.frame(next((one for one in tables if isinstance(one, FrameOptions)), FrameOptions()))
     if found.plan.foundation_stiffness is not None:
-        raise BadGeometry("frames are exported on rigid ground: leave it out of the deck", ("structure", "foundation_stiffness"))
+        raise BadGeometry(
+            "the export of frames assumes rigid ground: remove foundation_stiffness from the deck", ("structure", "foundation_stiffness")
+        )
     return found
 
 
@@ -72,7 +75,7 @@ def _rod(frame: EquivalentFrame, k: int) -> str:
 def _tell_rods(frame: EquivalentFrame, form: str) -> None:
     rods = sum(_is_rod(frame, k) for k in range(len(frame.links)))
     if rods:
-        log.warning("%s: not exported: %d links of tie rods; comments give their values", form, rods)
+        log.warning("%s: %d links of tie rods were not exported; comments in the file give their values", form, rods)
 
 
 def _node_place(frame: EquivalentFrame, k: int) -> np.ndarray:
@@ -92,7 +95,7 @@ def macroelements(deck: Deck) -> str:
     title = plain_name(" ".join(deck.title.split()) or deck.path)
     lines = [
         f"# {title}: by extrados {VERSION}; N, m. Needs the OpenSees of EPFL (EESD) with Macroelement3d.",
-        "# Walls stand side by side, each along X. Shear of the element: one Mohr-Coulomb law, c the least strength without pressure.",
+        "# Walls stand side by side, each along X. Shear of an element: one Mohr-Coulomb law; c is the least strength at zero pressure.",
         "wipe",
         "model basic -ndm 3 -ndf 6",
         *_nodes(frame),

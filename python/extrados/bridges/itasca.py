@@ -1,7 +1,7 @@
-"""Blocks of UDEC and 3DEC: geometry as text, by the commands of their version 7 (not run here: neither program is at hand).
+"""Blocks of UDEC and 3DEC: geometry as text, by the commands of version 7. The output was not run in either program.
 
-UDEC: `block create polygon x,y x,y ...`, its manual's form. 3DEC: `block create group 'name' poly face x,y,z ... face ...`,
-the form that the open package compas_3dec hands to 3DEC, faces clockwise as seen from outside.
+UDEC: `block create polygon x,y x,y ...`, as in its manual. 3DEC: `block create group 'name' poly face x,y,z ... face ...`, as
+the package compas_3dec writes it, with faces clockwise as seen from outside.
 """
 
 from extrados._build_info import VERSION
@@ -10,7 +10,7 @@ from extrados.decks.reader import Deck
 
 def _head(deck: Deck, program: str) -> list[str]:
     title = " ".join(deck.title.split()) or deck.path
-    return [f"; {title}", f"; geometry for {program} by extrados {VERSION}; lengths in m; properties and supports are yours", "model new"]
+    return [f"; {title}", f"; geometry for {program} by extrados {VERSION}; lengths in m; add the properties and supports", "model new"]
 
 
 def udec(deck: Deck) -> str:

@@ -1,8 +1,8 @@
 """Scripts of OpenSeesPy: a rigid block on two toes, or finite elements with dry joints that open and slide.
 
-Contacts are node to node (zeroLengthContact2D: no tension, Coulomb friction), rigid bodies are stiff beams under the
-corotational transformation. Cracking, crushing, cohesion and impact rules of the deck have no counterpart there: a rocking block loses
-energy by the damping that the analysis is given, not at impacts.
+Contacts are node to node (zeroLengthContact2D: no tension, Coulomb friction); rigid bodies are stiff beams under the
+corotational transformation. Cracking, crushing, cohesion and impact rules of the deck are not exported: a rocking block loses
+energy only by the damping of the OpenSees analysis, not at impacts.
 """
 
 from collections.abc import Iterator
@@ -22,10 +22,11 @@ NO_SLIDING, HARD = 1e3, 1e6
 
 
 def written(deck: Deck) -> str:
-    """A block where the building is one that rocks, else the mesh of the deck's first analysis that has one, else of the default size."""
+    """The script of a single block if the building is one, otherwise of the first mesh of the deck, or of a mesh with the
+    default size."""
     title = " ".join(deck.title.split()) or deck.path
     lines = [
-        f'"""{_words(title)}: by extrados {VERSION}; units N, m, kg, s. The model stands under its weight at the end."""',
+        f'"""{_words(title)}: by extrados {VERSION}; units N, m, kg, s. At its end the script has applied the self-weight."""',
         "",
         "import openseespy.opensees as ops",
         "",
@@ -33,7 +34,7 @@ def written(deck: Deck) -> str:
     ]
     assert deck.structure is not None
     for what, key in deck.building.special_keys.items():
-        raise BadGeometry(f"the export to OpenSees cannot include {what}: leave it out of the deck", key)
+        raise BadGeometry(f"the export to OpenSees cannot include {what}: remove this part from the deck", key)
     if deck.structure.rocks_as == "block" and len(deck.building.blocks().mass) == 1:
         lines += _block(deck)
     else:
@@ -49,7 +50,7 @@ def _words(text: str) -> str:
 
 _WEIGHT = [
     "",
-    "# The weight, in ten steps",
+    "# Self-weight, applied in ten steps",
     'ops.constraints("Transformation")',
     'ops.numberer("RCM")',
     'ops.system("UmfPack")',
@@ -66,7 +67,7 @@ def _block(deck: Deck) -> Iterator[str]:
     """Nodes: 1, 2 the ground under the right and the left toe, 3, 4 the toes, 5 the centre of mass, 6, 7 the toes as the block has them."""
     model = deck.building.rocker().model
     if not isinstance(model, BlockModel):
-        raise BadGeometry("OpenSees takes one rigid block here", ("structure",))
+        raise BadGeometry("the export to OpenSees covers a single rigid block only", ("structure",))
     block, friction = model.block, deck.building.friction()
     if block.slope:
         raise BadGeometry("the export to OpenSees covers a block on level ground only", ("structure", "base_slope"))
@@ -97,7 +98,7 @@ def _mesh(mesh: Mesh) -> Iterator[str]:
     """Elements in plane stress, elastic; joints of no thickness as contacts of their pairs of nodes."""
     for word in ("ties", "bars"):
         if getattr(mesh, word):
-            raise BadGeometry(f"OpenSees is given no {word} of a wall here: leave them out", ("structure", word))
+            raise BadGeometry(f"the export to OpenSees cannot include the {word} of a wall: remove them from the deck", ("structure", word))
     yield '\nops.model("basic", "-ndm", 2, "-ndf", 2)'
     for k, (x, y) in enumerate(mesh.xy.tolist(), 1):
         yield f"ops.node({k}, {x!r}, {y!r})"
@@ -114,7 +115,9 @@ def _mesh(mesh: Mesh) -> Iterator[str]:
             continue
         name = {"Q4": "quad", "T3": "tri31"}.get(group.kind)
         if name is None:
-            raise BadGeometry(f'elements {group.kind} have no counterpart here; give mesh.element = "Q4" or "T3"', ("analysis", "mesh"))
+            raise BadGeometry(
+                f'the export to OpenSees has no element for {group.kind}: give mesh.element = "Q4" or "T3"', ("analysis", "mesh")
+            )
         for nodes, thickness, material in zip(group.connect, group.thickness.tolist(), group.material.tolist(), strict=True):
             number += 1
             tags = ", ".join(str(n + 1) for n in nodes.tolist())
@@ -128,12 +131,12 @@ def _mesh(mesh: Mesh) -> Iterator[str]:
 
 
 def _held(mesh: Mesh) -> dict[int, set[str]]:
-    """The nodes that are held, with their directions: those of the stones on the ground, and those of [[supports.held]]."""
+    """The supported nodes with their directions: those of blocks on the ground, and those of [[supports.held]]."""
     held = {} if mesh.ground is None else {int(node): set("xy") for node in np.ravel(mesh.ground)}
     for k, support in enumerate(mesh.held):
         key = ("supports", "held", k)
         if support.stiffness is not None:
-            raise BadGeometry("the export to OpenSees has rigid supports: remove stiffness", (*key, "stiffness"))
+            raise BadGeometry("the export to OpenSees has rigid supports only: remove stiffness", (*key, "stiffness"))
         for node in mesh.nodes_at(support, f"supports.held[{k}]").tolist():
             held.setdefault(node, set()).update(support.fix)
     return held

@@ -50,7 +50,7 @@ class DrawnWall:
 def deck_of_file(
     drawing: Path, walls: Sequence[str], openings: Sequence[str], thickness: float | None, storeys: Sequence[float], unit: str | None = None
 ) -> str:
-    """`deck_of_plan` of a file; DeckError says what cannot be read."""
+    """`deck_of_plan` of a file; DeckError gives the reason if it cannot be read."""
     try:
         return deck_of_plan(read(drawing, LARGEST_FILE), walls, openings, thickness, storeys, unit)
     except BadGeometry as error:
@@ -65,16 +65,16 @@ def deck_of_plan(
     drawn = read_dxf(file, unit, [], {name: Layer("joints") for name in (*walls, *openings)})
     lines = _lines(drawn.marks, walls)
     if not len(lines):
-        raise BadGeometry(f"{file.path.name}: the layers {', '.join(walls)} hold no lines")
+        raise BadGeometry(f"{file.path.name}: the layers {', '.join(walls)} contain no lines")
     pieces = walls_of(lines, thickness)
     found = [wall for wall in pieces if wall.length > LEAST + wall.thickness]
     short = [wall.length for wall in pieces if wall.length <= LEAST + wall.thickness]
     if not found:
         raise BadGeometry(
-            f"{file.path.name}: no two parallel lines lie {THIN:g} to {THICK:g} m apart: draw faces, or give the thickness of axes"
+            f"{file.path.name}: no two parallel lines have a distance of {THIN:g} to {THICK:g} m: draw both faces of each wall, or draw axes and give --thickness"
         )
     if len(found) > MOST_WALLS:
-        raise BadGeometry(f"{file.path.name}: {len(found)} walls, at most {MOST_WALLS}")
+        raise BadGeometry(f"{file.path.name}: the drawing has {len(found)} walls, more than the {MOST_WALLS} allowed")
     marks = _lines(drawn.marks, openings)
     return _written([_opened(wall, marks) for wall in joined(found)], short, bool(openings), file.path.name, storeys)
 
@@ -85,7 +85,7 @@ def _lines(marks: Mapping[str, np.ndarray], layers: Sequence[str]) -> np.ndarray
     own = [np.asarray(lines).reshape(-1, 4) for layer, lines in marks.items() if layer.upper() in wanted]
     found = np.concatenate(own) if own else np.empty((0, 4))
     if len(found) > MOST_LINES:
-        raise BadGeometry(f"{len(found)} lines of walls or openings, at most {MOST_LINES}")
+        raise BadGeometry(f"the drawing has {len(found)} lines of walls or openings, more than the {MOST_LINES} allowed")
     return found[np.hypot(found[:, 2] - found[:, 0], found[:, 3] - found[:, 1]) > 1e-9]
 
 
@@ -198,7 +198,7 @@ def joined(walls: list[DrawnWall]) -> list[DrawnWall]:
 
 
 def _opened(wall: DrawnWall, lines: np.ndarray) -> DrawnWall:
-    """The wall with the openings that lines of their layer show: those within its thickness, together where they touch."""
+    """The wall with openings from lines of their layer: lines within its thickness, joined where they touch."""
     normal = np.array([-wall.way[1], wall.way[0]])
     parts = []
     for points in lines.reshape(-1, 2, 2):
@@ -223,7 +223,7 @@ def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name
     said = [f"Walls are read from the drawing {name}; it gives no heights.", f"Assumed {sills}."]
     if short:
         said.append(
-            f"Not considered: {len(short)} pieces at most {LEAST:g} m longer than thick, such as ends of walls; the longest {max(short):.2f} m."
+            f"Not considered: {len(short)} pieces whose length exceeds their thickness by at most {LEAST:g} m, such as ends of walls; the longest measures {max(short):.2f} m."
         )
     made = []
     for wall in walls:

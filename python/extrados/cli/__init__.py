@@ -42,8 +42,7 @@ def _options(
 
 
 def _open_streams() -> None:
-    """What was closed by whoever called us leads nowhere: else the next file that is opened would take its number, and what
-    is told would be written into it."""
+    """Open a substitute for streams that the caller has closed; otherwise the next opened file would receive their output."""
     while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(handle, True)
     os.close(handle)

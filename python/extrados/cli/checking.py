@@ -1,5 +1,7 @@
-"""Decks looked at without a run: complaints, and how stones, solids and meshes come out."""
+"""The command `check`: errors of decks, and the fit of blocks, solids and meshes, without a run."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,15 +18,16 @@ MOST_PLACES = 40
 def check(
     decks: Annotated[list[Path], typer.Argument(help="decks to check")],
     out: Annotated[
-        Path | None, typer.Option(help="folder for the picture and the list of a survey; default results/<deck name>-check")
+        Path | None,
+        typer.Option(help="folder for the picture, and for the list of gaps and overlaps of a survey; default: results/<deck name>-check"),
     ] = None,
 ) -> None:
-    """Check decks without running them: every complaint at once, and how the stones of a survey fit."""
+    """Check decks without a run: list all errors together, and the gaps and overlaps between the stones of a survey."""
     from extrados.decks.reader import DeckError, read_deck
     from extrados.running.check import check_building
 
     if out is not None and len(decks) > 1:
-        err_console.say("--out takes one deck at a time")
+        err_console.say("--out needs a single deck: several decks would share one folder")
         raise typer.Exit(WRONG_DECK)
     complaints = []
     for path in decks:
@@ -51,8 +54,8 @@ def check(
 
 
 def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
-    """How the stones of a survey fit: its list on the terminal, all of it and its picture in a folder where there is
-    anything to list, or the folder is asked for."""
+    """Print the list of gaps and overlaps of a survey. Write the list and its picture into a folder if it has entries, or if the
+    folder is requested."""
     from rich.table import Table
 
     from extrados.running.check import write_check
@@ -76,17 +79,23 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
     grounded = int((inspection.contacts.b < 0).sum())
     out_console.say(
         f"{len(inspection.outlines)} stones, {len(inspection.contacts.a)} joints, {grounded} of them on the ground; "
-        f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance"
+        f"{len(amiss)} faulty places, {len(checked.places) - len(amiss)} more closed within the tolerance"
     )
     if not checked.places and not asked:
         return
-    try:
+    with _said_if_unwritten(folder):
         picture, places = write_check(checked, folder)
+        out_console.say(f"Picture: {picture}")
+        out_console.say(f"List:    {places}")
+
+
+@contextmanager
+def _said_if_unwritten(folder: Path) -> Iterator[None]:
+    """Pictures that cannot be written into the folder are reported, and nothing else stops."""
+    try:
+        yield
     except OSError as error:
         err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
-        return
-    out_console.say(f"Picture: {picture}")
-    out_console.say(f"List:    {places}")
 
 
 def _tell_plan(checked: "Checked", folder: Path) -> None:
@@ -104,14 +113,12 @@ def _tell_plan(checked: "Checked", folder: Path) -> None:
         f"{walls}{mesh.elements()} elements, {len(mesh.xyz)} nodes; {'walls and floors weigh' if mesh.walls else 'weight'} "
         f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
     )
-    try:
+    with _said_if_unwritten(folder):
         out_console.say(f"Picture: {write_plan(mesh, folder)}")
-    except OSError as error:
-        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
 
 
 def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
-    """How many solids touch along how many contacts; their picture where they come from a file, or the folder is asked for."""
+    """Print the numbers of solids and contacts. Write their picture if they are from a file, or if the folder is requested."""
     from extrados.running.check import write_solids
 
     solids = checked.solids
@@ -122,7 +129,5 @@ def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
     out_console.say(f"{len(solids.mass)} solids, {len(solids.a)} contacts, {int((solids.b < 0).sum())} of them on the ground")
     if not asked:
         return
-    try:
+    with _said_if_unwritten(folder):
         out_console.say(f"Picture: {write_solids(solids, folder)}")
-    except OSError as error:
-        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")

@@ -1,4 +1,4 @@
-"""The building of a deck elsewhere: on the interactive page, in other programs."""
+"""Commands that use the building of a deck outside a run: the interactive page, exports, import of a plan."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,20 +9,22 @@ from extrados.cli.terminal import errors, out_console
 
 
 def explore(
-    deck: Annotated[Path | None, typer.Argument(help="the deck to open; default a new arch")] = None,
-    port: Annotated[int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")] = None,
+    deck: Annotated[Path | None, typer.Argument(help="deck to open; default: a new arch")] = None,
+    port: Annotated[int | None, typer.Option(min=1024, max=65535, help="port; default: 8737, or any free port")] = None,
     browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
     classroom: Annotated[
         bool, typer.Option("--class", help="also start a classroom session; prints a link and a QR code for the pupils")
     ] = False,
     address: Annotated[
-        str, typer.Option(help="address of this machine on the local network, for --class; default: this machine alone")
+        str, typer.Option(help="for --class: address of this machine on the local network; default: only this machine can open the pages")
     ] = "127.0.0.1",
     standalone: Annotated[
         Path | None,
-        typer.Option(help="instead, write a page that needs no server to this file, with sliders for one size and for the tilt"),
+        typer.Option(
+            help="write a page that needs no server to this file, and exit; the page has sliders for one dimension and for the tilt"
+        ),
     ] = None,
-    pupils: Annotated[int, typer.Option(min=1, max=60, help="most pupils at a time, for --class")] = 30,
+    pupils: Annotated[int, typer.Option(min=1, max=60, help="for --class: greatest number of pupils at the same time")] = 30,
 ) -> None:
     """Open the interactive page: drag the blocks, see the thrust. Only this machine can open it, unless --class is given."""
     from extrados.decks.reader import read_deck
@@ -45,7 +47,7 @@ def explore(
     from extrados.explore.supervisor import explore as serve_pages
 
     if not classroom and address != "127.0.0.1":
-        raise typer.BadParameter("an address is for --class", param_hint="--address")
+        raise typer.BadParameter("used only together with --class", param_hint="--address")
     try:
         options = ClassOptions(address, pupils) if classroom else None
     except BadAddress as error:
@@ -67,7 +69,9 @@ def export(
             "--to", help="compas, udec, 3dec, opensees, opensees-frame or frame-tables", autocompletion=_forms, show_default=False
         ),
     ],
-    out: Annotated[Path | None, typer.Option(help="file; default results/<deck name>.<ending>")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="file to write; default: results/<deck name>-<format> with the ending of the format")
+    ] = None,
 ) -> None:
     """Write the building of a deck for another program."""
     from extrados.bridges.forms import FORMS, exported
@@ -88,17 +92,22 @@ def export(
 
 
 def import_plan(
-    drawing: Annotated[Path, typer.Argument(help="the drawing, DXF; or a model, IFC")],
-    walls: Annotated[list[str] | None, typer.Option("--walls", help="layer of the walls of a drawing; may be given again")] = None,
-    openings: Annotated[list[str] | None, typer.Option("--openings", help="layer of the openings; default: gaps in the walls")] = None,
-    thickness: Annotated[
-        float | None, typer.Option("--thickness", help="of walls drawn by their axes [m]; default: lines are faces")
+    drawing: Annotated[Path, typer.Argument(help="plan of the building: a DXF drawing, or an IFC model")],
+    walls: Annotated[
+        list[str] | None, typer.Option("--walls", help="layer of the walls of a drawing; repeat the option for further layers")
     ] = None,
-    storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys, from the ground")] = "3.0",
-    unit: Annotated[str | None, typer.Option("--unit", help="unit of a drawing that states none: m, cm, mm, in, ft")] = None,
+    openings: Annotated[
+        list[str] | None, typer.Option("--openings", help="layer of the openings; without this layer, gaps in the walls are openings")
+    ] = None,
+    thickness: Annotated[
+        float | None,
+        typer.Option("--thickness", help="thickness [m] of walls that are drawn by their axes; default: the lines are faces of walls"),
+    ] = None,
+    storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys from the ground up, such as 3.0,2.8")] = "3.0",
+    unit: Annotated[str | None, typer.Option("--unit", help="length unit, if the drawing states none: m, cm, mm, in, ft")] = None,
 ) -> None:
-    """Print a deck of a building from the plan of a drawing: walls by their faces or axes, doors and windows by gaps or a layer. Or from
-    an IFC model: walls, openings and storeys."""
+    """Print a deck of a building from a plan in DXF (lines are the faces or axes of walls; openings are gaps, or have a layer), or from
+    an IFC model (walls, openings and storeys)."""
     from extrados.bridges.plan_drawing import deck_of_file
     from extrados.bridges.plan_ifc import deck_of_ifc
 
@@ -111,10 +120,10 @@ def import_plan(
     try:
         heights = [float(part) for part in storeys.split(",")]
     except ValueError:
-        raise typer.BadParameter(f"{storeys}: expected heights such as 3.0,2.8", param_hint="--storeys") from None
+        raise typer.BadParameter(f"{storeys}: expected heights of the storeys in m, such as 3.0,2.8", param_hint="--storeys") from None
     if not all(0.5 < height < 20.0 for height in heights) or len(heights) > 50:
-        raise typer.BadParameter(f"{storeys}: expected heights between 0.5 and 20 m", param_hint="--storeys")
+        raise typer.BadParameter(f"{storeys}: expected at most 50 heights of storeys, each between 0.5 and 20 m", param_hint="--storeys")
     if thickness is not None and not 0.0 < thickness < 5.0:
-        raise typer.BadParameter(f"{thickness:g}: expected metres above 0 and below 5", param_hint="--thickness")
+        raise typer.BadParameter(f"{thickness:g}: expected a thickness above 0 and below 5 m", param_hint="--thickness")
     with errors():
         print(deck_of_file(drawing, walls, openings or [], thickness, heights, unit), end="")

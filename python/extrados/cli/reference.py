@@ -1,4 +1,4 @@
-"""What the program knows: words of decks and results, starter decks, cases, its version."""
+"""Commands that print reference information: keys of decks and results, starter decks, cases, version."""
 
 import json
 from pathlib import Path
@@ -18,7 +18,7 @@ def _kinds(begun: str) -> list[str]:
 
 
 def _words(begun: str) -> list[str]:
-    """What `explain` knows that begins so."""
+    """The words of `explain` that begin with a text."""
     from extrados.decks import synonyms
     from extrados.decks.explain import facts
 
@@ -29,7 +29,7 @@ def _words(begun: str) -> list[str]:
     return sorted({word for word in known if word.startswith(begun) and " " not in word})
 
 
-def schema(results: Annotated[bool, typer.Option("--results", help="that of summary.json instead")] = False) -> None:
+def schema(results: Annotated[bool, typer.Option("--results", help="print the JSON Schema of summary.json instead")] = False) -> None:
     """Print the JSON Schema of decks, for editors, or of results."""
     if results:
         from extrados.results.explain import json_schema
@@ -44,14 +44,14 @@ def explain(
         list[str] | None,
         typer.Argument(
             metavar="[WORD]",
-            help="a key, a kind or a section of decks, or a word of the trade; results, results.KIND or results.KIND.KEY",
+            help="key, kind or section of a deck, or a technical term; or results, results.KIND, results.KIND.KEY",
             autocompletion=_words,
         ),
     ] = None,
-    manual: Annotated[bool, typer.Option("--manual", help="the whole reference manual of decks in Markdown")] = False,
-    results: Annotated[bool, typer.Option("--results", help="the whole reference manual of results in Markdown")] = False,
+    manual: Annotated[bool, typer.Option("--manual", help="print the whole reference manual of decks in Markdown")] = False,
+    results: Annotated[bool, typer.Option("--results", help="print the whole reference manual of results in Markdown")] = False,
 ) -> None:
-    """Say what a deck key, a kind or a result means: unit, default, bounds, source; and where a thing is found."""
+    """Explain a deck key, a kind, a result or a technical term: meaning, unit, default, bounds and source."""
     told: Any
     found: Any
     key = " ".join(words or [])
@@ -74,10 +74,10 @@ def explain(
 
 def new(
     kind: Annotated[
-        str | None, typer.Argument(help="a kind of analysis, structure or motion; default lists them", autocompletion=_kinds)
+        str | None, typer.Argument(help="kind of analysis, structure or motion; default: list all kinds", autocompletion=_kinds)
     ] = None,
 ) -> None:
-    """Print a commented starter deck that runs as it is."""
+    """Print a commented starter deck that runs without changes."""
     if kind is None:
         from extrados import kinds
         from extrados.decks.explain import summary
@@ -97,7 +97,9 @@ def new(
         raise typer.Exit(WRONG_DECK) from None
 
 
-def cases(folder: Annotated[Path | None, typer.Argument(help="folder; default ./cases, else the cases that are shipped")] = None) -> None:
+def cases(
+    folder: Annotated[Path | None, typer.Argument(help="folder; default: ./cases if it exists, or the shipped cases")] = None,
+) -> None:
     """List the decks below a folder with their titles."""
     from extrados.decks.reader import LARGEST
     from extrados.decks.toml import loads

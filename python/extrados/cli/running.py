@@ -1,4 +1,4 @@
-"""Commands that compute: decks, a single motion, a folder of buildings."""
+"""Commands that calculate: decks, a single motion, a folder of buildings."""
 
 import json
 import sys
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 
 def run(
     decks: Annotated[list[Path], typer.Argument(help="decks to run")],
-    out: Annotated[Path | None, typer.Option(help="results folder; default results/<deck name>")] = None,
-    threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
+    out: Annotated[Path | None, typer.Option(help="results folder; default: results/<deck name>")] = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="number of threads; default: one per core")] = None,
     resume: Annotated[bool, typer.Option(help="continue from the checkpoint of an interrupted run")] = False,
     scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the sweeps")] = "",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
-    quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no result")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="print neither progress nor results")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of text")] = False,
 ) -> None:
-    """Run decks: print the answer, write results, figures and report."""
+    """Run decks: print the conclusions, write results, figures and report."""
     from extrados.analyses.context import Context
     from extrados.decks.reader import DeckError, read_deck
     from extrados.running.run import run_to
 
     if out is not None and len(decks) > 1:
-        err_console.say("--out takes one deck at a time")
+        err_console.say("--out needs a single deck: several decks would share one folder")
         raise typer.Exit(WRONG_DECK)
     worst = 0
     with errors(as_json):
@@ -40,7 +40,7 @@ def run(
         folders = [deck.default_out for deck in checked]
         twice = next((f for f in folders if folders.count(f) > 1), None)
         if twice is not None:
-            raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
+            raise DeckError([f"two decks would write to the folder {twice}: run them separately, each with its own --out"])
         for deck in checked:
             progress = progress_shown(quiet or as_json)
             tell = (lambda text: None) if quiet or as_json else out_console.say
@@ -68,17 +68,22 @@ def run(
 
 
 def motion(
-    file: Annotated[str, typer.Argument(help="a record, or extrados:el-centro-1940")],
-    out: Annotated[Path | None, typer.Option(help="results folder; default results/<file name>")] = None,
-    time_step: Annotated[float | None, typer.Option(help="sampling step [s] where the file has none")] = None,
-    unit: Annotated[str | None, typer.Option(help="unit where the file has none: g, m/s^2, cm/s^2 ...")] = None,
-    channel: Annotated[str | None, typer.Option(help="channel of a file with several: number or part of its name")] = None,
-    columns: Annotated[str | None, typer.Option(help="several columns without time: series or components (then give --channel)")] = None,
-    baseline: Annotated[str, typer.Option(help="none, mean, linear, quadratic or cubic")] = "none",
+    file: Annotated[str, typer.Argument(help="file of a record, or a shipped record: extrados:el-centro-1940")],
+    out: Annotated[Path | None, typer.Option(help="results folder; default: results/<file name>")] = None,
+    time_step: Annotated[float | None, typer.Option(help="time step [s], if the file states none")] = None,
+    unit: Annotated[str | None, typer.Option(help="unit of acceleration, if the file states none: g, m/s^2, cm/s^2 ...")] = None,
+    channel: Annotated[str | None, typer.Option(help="channel to read, if the file has several: its number or a part of its name")] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(
+            help="for several columns without times: series (the rows in order form one series) or components (each column is one: choose with --channel)"
+        ),
+    ] = None,
+    baseline: Annotated[str, typer.Option(help="baseline correction: none, mean, linear, quadratic or cubic")] = "none",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
-    as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of text")] = False,
 ) -> None:
-    """What a ground motion is, on one page, without a deck."""
+    """Describe a ground motion without a deck: intensities, spectra and primary impulses, in one report."""
     from extrados.analyses.context import Context, default_threads
     from extrados.decks.reader import make_deck
     from extrados.running.run import run_to
@@ -109,14 +114,14 @@ def motion(
 
 def assess(
     folder: Annotated[Path, typer.Argument(help="a folder of decks; common.toml holds their defaults")],
-    out: Annotated[Path | None, typer.Option(help="results folder; default results/<folder name>")] = None,
-    threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
+    out: Annotated[Path | None, typer.Option(help="results folder; default: results/<folder name>")] = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="number of threads; default: one per core")] = None,
     resume: Annotated[bool, typer.Option(help="continue from the checkpoint of an interrupted run")] = False,
     scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the buildings")] = "",
     figures: Annotated[bool, typer.Option(help="draw figures and reports")] = True,
-    quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no ranking")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="print neither progress nor the ranking")] = False,
 ) -> None:
-    """Assess every building of a folder: a ranking, worst first, and a page for each."""
+    """Assess every building of a folder: a report for each, and a ranking with the worst first."""
     from rich.table import Table
 
     from extrados.running.survey import assess_folder, decks_of
@@ -139,13 +144,13 @@ def assess(
             out_console.print(table)
             out_console.say(f"Ranking: {place / 'ranking.html'}")
     if len(rows) < total:
-        err_console.say(f"{total - len(rows)} of {total} buildings are missing; --resume continues from here")
+        err_console.say(f"{total - len(rows)} of {total} buildings were not assessed; --resume continues with them")
         raise typer.Exit(interrupts.exit_code())
     raise typer.Exit(0 if all(one.status == "ok" for one in rows) else NOT_DONE)
 
 
 def _tell(run: "Run", title: str, count: int | None = None) -> None:
-    """The answers of a run, of its first `count` analyses: those of the deck, without what these have asked for."""
+    """Print the results of the first `count` analyses of a run: those of the deck, without the parts that they have run."""
     if title:
         out_console.say(title, "bold")
     for condition in run.summary["deck"]["conditions"]:
@@ -160,7 +165,7 @@ def _tell(run: "Run", title: str, count: int | None = None) -> None:
 
 
 def _draw(folder: Path, figures: bool, quiet: bool) -> None:
-    """Draw figures and report of a run whose answer has been told, and say where all lies."""
+    """Draw figures and report of a run whose results are printed, and print the places of the files."""
     sys.stdout.flush()
     report = None
     if figures:
@@ -169,7 +174,7 @@ def _draw(folder: Path, figures: bool, quiet: bool) -> None:
 
             report = write_report(folder)[0]
         except KeyboardInterrupt:
-            err_console.say(f"interrupted while drawing; the results are in {folder}: extrados report draws them")
+            err_console.say(f"interrupted while drawing; the results are in {folder}. To draw them: extrados report {folder}")
             raise typer.Exit(interrupts.exit_code()) from None
     if quiet:
         return

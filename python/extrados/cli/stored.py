@@ -1,4 +1,4 @@
-"""Stored results: drawn anew, listed, compared."""
+"""Commands on stored results: redraw, list, compare."""
 
 import json
 from pathlib import Path
@@ -12,13 +12,15 @@ from extrados.schema.text import printable
 
 def report(
     folder: Annotated[Path, typer.Argument(help="a results folder")],
-    pdf: Annotated[bool | None, typer.Option(help="also report.pdf; default where the run holds an assessment")] = None,
+    pdf: Annotated[bool | None, typer.Option(help="also write report.pdf; default: only for a run with an assessment")] = None,
     template: Annotated[
         Path | None, typer.Option(help="report.toml of an office: logo, colour, title block, order and choice of sections")
     ] = None,
-    language: Annotated[str | None, typer.Option(help="en, it, es, fr or de; default that of the template, else of the deck")] = None,
+    language: Annotated[
+        str | None, typer.Option(help="language of the report: en, it, es, fr or de; default: that of the template, or that of the deck")
+    ] = None,
 ) -> None:
-    """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF with its source report.typ."""
+    """Draw figures and report of stored results again: as HTML, and as PDF on A4 with its source report.typ."""
     from extrados.show.report import write_report
 
     with errors():
@@ -28,10 +30,10 @@ def report(
 def plot(
     folders: Annotated[list[Path], typer.Argument(help="results folders")],
     together: Annotated[
-        Path | None, typer.Option(help="draw the capacity curves of all of them into this one picture (.png, and .svg beside it)")
+        Path | None, typer.Option(help="one picture with the capacity curves of all runs: a .png file, and .svg beside it")
     ] = None,
 ) -> None:
-    """Draw the figures and the report anew, and list the figures; or the capacity curves of several runs in one picture."""
+    """Draw figures and report again and list the figures. With --together: the capacity curves of several runs in one picture."""
     from extrados.show.report import write_report
 
     with errors():
@@ -69,12 +71,12 @@ def _together(folders: list[Path], picture: Path) -> None:
 
 def compare(
     old: Annotated[Path, typer.Argument(help="a results folder")],
-    new: Annotated[Path, typer.Argument(help="another one")],
-    tolerance: Annotated[float, typer.Option(min=0.0, help="relative difference up to which numbers are the same")] = 1e-9,
+    new: Annotated[Path, typer.Argument(help="the results folder to compare it with")],
+    tolerance: Annotated[float, typer.Option(min=0.0, help="relative difference up to which two numbers count as equal")] = 1e-9,
     page: Annotated[Path | None, typer.Option(help="also write the comparison as an HTML page")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="print it as JSON")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="print the comparison as JSON")] = False,
 ) -> None:
-    """What changed between two results: deck, verdicts, numbers, warnings, program."""
+    """List the changes between two results: deck, verdicts, numbers, warnings, program."""
     from dataclasses import asdict
 
     from rich.table import Table
@@ -88,7 +90,7 @@ def compare(
         if as_json:
             print(json.dumps(asdict(found), indent=2))
         elif found.same:
-            out_console.say("Nothing but the time it took differs.")
+            out_console.say("Only the computing time differs.")
         tables = {"verdicts": found.verdicts, "deck": found.deck, "program": found.program, **found.numbers}
         for title, there in tables.items() if not as_json else ():
             if not there:
@@ -100,7 +102,7 @@ def compare(
                 table.add_row(*(printable(text) for text in row(change)))
             out_console.print(table)
             if len(there) > MOST:
-                out_console.say(f"and {len(there) - MOST} smaller ones")
+                out_console.say(f"and {len(there) - MOST} smaller differences")
         for words, lines in (("gone", found.warnings_gone), ("new", found.warnings_new)):
             for line in lines if not as_json else ():
                 out_console.say(f"warning {words}: {line}")

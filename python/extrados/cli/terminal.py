@@ -1,4 +1,4 @@
-"""What all commands share: the two consoles, exit codes, how errors and signals end a command."""
+"""Shared parts of all commands: consoles, exit codes, and the handling of errors and signals."""
 
 import functools
 import json
@@ -65,7 +65,7 @@ class Commands(typer.Typer):
 
 @contextmanager
 def errors(json_out: bool = False) -> Iterator[None]:
-    """Every error a user can cause ends as a message and an exit code, never as a traceback."""
+    """Turn every error that a user can cause into a message and an exit code, without a traceback."""
     from extrados.decks.reader import DeckError
     from extrados.results.store import StoreError
 
@@ -92,15 +92,15 @@ def errors(json_out: bool = False) -> Iterator[None]:
 
 
 def progress_shown(quiet: bool) -> Progress:
-    """How far a command is."""
+    """The progress display of a command."""
     return Progress(quiet, lambda: err_console._rich, err_console.say)
 
 
 def usable_threads(asked: int | None) -> int:
-    """As many threads as asked for, but no more than there are cores."""
+    """The requested number of threads, at most the number of cores."""
     from extrados.analyses.context import default_threads
 
     cores = default_threads()
     if asked is not None and asked > cores:
-        err_console.say(f"--threads {asked}: this process may use {cores} cores, and starts no more threads than that")
+        err_console.say(f"--threads {asked} exceeds the {cores} cores of this process: {cores} threads are used")
     return min(asked or cores, cores)

@@ -56,7 +56,7 @@ def indices(name: str, value: npt.ArrayLike, end: int, shape: tuple[int | None, 
         return np.zeros(array.shape, dtype=np.int32, order="F")
     bad = (array < 0) | (array >= end)
     if bad.any():
-        raise IndexError(f"{name} names {array[bad][0]}, expected 0 to {end - 1}")
+        raise IndexError(f"{name} contains the index {array[bad][0]}, expected 0 to {end - 1}")
     return np.asfortranarray(_whole(name, array) + np.int32(1))
 
 
@@ -64,7 +64,7 @@ def _whole(name: str, array: npt.NDArray[Any]) -> npt.NDArray[np.int32]:
     if array.dtype.kind not in "iu" and array.size:
         raise TypeError(f"{name} holds {array.dtype}, expected integers")
     if array.size and (array.max() > _INT32.max or array.min() < _INT32.min):
-        raise ValueError(f"{name} holds a number that is too large")
+        raise ValueError(f"{name} contains a number that is too large")
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
@@ -74,7 +74,7 @@ _INT32 = np.iinfo(np.int32)
 def room_for(*lengths: int) -> None:
     """ValueError where an answer of these lengths would be larger than MOST_VALUES."""
     if float(np.prod([float(n) for n in lengths])) > MOST_VALUES:
-        raise ValueError(f"{' x '.join(map(str, lengths))} values are more than {MOST_VALUES:,}: use smaller batches")
+        raise ValueError(f"{' x '.join(map(str, lengths))} values exceed the limit of {MOST_VALUES:,}: use smaller batches")
 
 
 def thread_count(threads: int) -> int:

@@ -97,7 +97,7 @@ class Model(BodyModel[Run]):
         moves: Sequence[SupportMove] = (),
     ):
         if not bodies.laws or any(not 0 <= k < len(bodies.laws) for k in bodies.joints.values()):
-            raise ValueError("a joint names a law that is not there")
+            raise ValueError("a joint has the number of a law that does not exist")
         n, parts = len(bodies.mass), len(bodies.parts)
         corners = [len(part) for part in bodies.parts]
         handle, status = _core.api_dem.create(
@@ -159,7 +159,7 @@ class Model(BodyModel[Run]):
             indices("support moves", [m.body for m in moves], self.count, (None,)),
             real("support moves", np.transpose(values), (5, None)),
         )
-        check(status, "support moves: a body that is no support, or no duration")
+        check(status, "moving support: the body is not a support, or the duration is not positive")
 
     def _put_surroundings(self) -> None:
         o = self.options

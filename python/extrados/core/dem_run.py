@@ -46,7 +46,7 @@ class Law:
         if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
             raise ValueError(f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0")
         if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
-            raise ValueError("friction, cohesion, tension and damping of a joint must not be negative")
+            raise ValueError("friction, cohesion, tension and damping of a joint must be 0 or above")
 
 
 @dataclass(frozen=True)
@@ -104,10 +104,11 @@ class Effort:
 class Ties:
     """Ties, chains and hoops (ties): one tension each along a line of points that the bodies carry (fortran/dem/ties.f90).
 
-    stiffness: force per change of length [N/m]; prestress, least and greatest tension [N]: least below 0 for compression,
+    stiffness: force per change of length [N/m], 0 of a dashpot alone; prestress, least and greatest tension [N]: least below 0 for compression,
     a bound of 0 is slackness, at another one it yields, infinite never. first: its first point; closed: the last
     point is joined to the first. Anchors (anchors): point, body, -1 for the ground, place (anchors, 2 or 3) as drawn [m];
-    anchors of one point share its force in equal parts.
+    anchors of one point share its force in equal parts. damping: c of a dashpot beside each, of a power of the rate of its
+    length [N (s/m)^power].
     """
 
     stiffness: np.ndarray
@@ -119,6 +120,8 @@ class Ties:
     body: np.ndarray
     point: np.ndarray
     place: np.ndarray
+    damping: np.ndarray | None = None
+    power: np.ndarray | None = None
 
     def lengths(self) -> np.ndarray:
         """Length of each as drawn (ties) [m]."""
@@ -192,9 +195,9 @@ class BodyModel(Owner, ABC, Generic[Found]):
         real("places of ties", ties.place, (anchors, None))
         bodies = integers("bodies of ties", np.asarray(ties.body) + 1, anchors)
         if np.any(bodies < 0) or np.any(bodies > self.count):
-            raise IndexError(f"a tie names a body that is not there; there are {self.count}")
+            raise IndexError(f"a tie has the number of a body that does not exist; the model has {self.count} bodies")
         if not np.bincount(integers("points of ties", ties.point, anchors)).all():
-            raise ValueError("a point of a tie has no anchor")
+            raise ValueError("a point of a tie has no anchor body")
         on = np.flatnonzero(ties.body >= 0)
         own = np.zeros((anchors, 3))
         own[:, : ties.place.shape[1]] = ties.place
@@ -202,17 +205,20 @@ class BodyModel(Owner, ABC, Generic[Found]):
         own[on, : local.shape[1]] = local
         most = np.finfo(float).max
         values = [ties.stiffness, ties.lengths(), ties.prestress, np.maximum(ties.least, -most), np.minimum(ties.most, most)]
+        values += [np.zeros(n) if ties.damping is None else ties.damping, np.ones(n) if ties.power is None else ties.power]
         status = _core.api_dem_run.ties(
             self.handle,
             self.count,
-            real("ties", np.array(values), (5, n)),
+            real("ties", np.array(values), (7, n)),
             integers("points", np.append(ties.first, ties.point.max() + 1) + 1),
             integers("closed", np.asarray(ties.closed, dtype=np.int32), n),
             bodies,
             integers("points", ties.point + 1, anchors),
             real("places of ties", own.T, (3, anchors)),
         )
-        check(status, "ties: stiffness above 0, prestress between the least and the greatest tension")
+        check(
+            status, "ties: the stiffness or damping must be above 0, and the prestress must lie between the least and the greatest tension"
+        )
         self._ties = n
 
     def _put_laws(self, laws: Sequence[Law]) -> None:
@@ -273,12 +279,12 @@ class BodyModel(Owner, ABC, Generic[Found]):
             times = np.arange(round(o.end_time / o.output_step * (1 - 1e-12)) + 1) * o.output_step
         wanted = real("times", times, (None,))
         if not len(wanted) or np.any(np.diff(wanted) < 0.0):
-            raise ValueError("output times must ascend, and there must be one")
+            raise ValueError("output times must increase, and at least one is required")
         for number in (motion, across or 0):
             if not 0 <= number < len(motions):
-                raise IndexError(f"motion {number} is not in the set of {len(motions)}")
+                raise IndexError(f"motion number {number} does not exist: the set has {len(motions)} motions")
         if across is not None and not self.in_space:
-            raise ValueError("the plane has one horizontal component")
+            raise ValueError("a plane model takes one horizontal component only")
         if not np.isfinite(scale):
             raise ValueError(f"scale is {scale}, expected a number")
         other = 0 if across is None else int(across) + 1
@@ -317,7 +323,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
     def state(self) -> np.ndarray:
         """The whole state (words) of a run that has paused, for `run` of this build alone; HandleError where none has."""
         words, status = _core.api_dem_run.state_size(self.handle)
-        check(status, "state of a run that has paused")
+        check(status, "state of a run that was paused")
         state, status = _core.api_dem_run.state(self.handle, int(words))
         check(status, "state of the run")
         return np.concatenate([state, state_digest(state)])
@@ -328,7 +334,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         if status == status_code("out_of_memory"):
             check(status, "state of the run")
         if status != status_code("ok"):
-            raise ValueError("the state is of a run of another model, of other times or of another build")
+            raise ValueError("this state belongs to a run of another model, to other times or to another build")
 
     @abstractmethod
     def _last_run(self, interrupted: bool) -> Found:

@@ -75,7 +75,7 @@ class Ground:
 
 def _given(name: str, value: np.ndarray | None) -> np.ndarray:
     if value is None:
-        raise ValueError(f"a ground motion has neither samples nor {name}")
+        raise ValueError(f"a ground motion requires samples or {name}")
     return value
 
 
@@ -89,7 +89,7 @@ class MotionSet(Owner):
 
     def __init__(self, grounds: Sequence[Ground]):
         if not grounds:
-            raise ValueError("a set of ground motions needs one")
+            raise ValueError("a set of ground motions must contain at least one motion")
         handle, status = _core.api_signal.create(len(grounds))
         check(status, self.what)
         super().__init__(handle)
@@ -109,13 +109,13 @@ class MotionSet(Owner):
             rows = real("samples", ground.samples, (None, None))
             _check_channels(rows.shape[0])
             if rows.shape[1] < 2 or not ground.step > 0.0:
-                raise ValueError("a sampled motion needs two samples and a step above zero")
+                raise ValueError("a sampled motion requires at least two samples and a time step above zero")
             status = _core.api_signal.samples(self.handle, number, float(ground.start), float(ground.step), rows)
         else:
             edges = real("breaks", _given("breaks", ground.breaks), (None,))
             count = len(edges) - 1
             if count < 1 or not (edges[1:] > edges[:-1]).all():
-                raise ValueError("breaks of a motion must ascend")
+                raise ValueError("the break times of a motion must increase")
             lines = real("linear", np.transpose(_given("linear", ground.linear)), (2, None, count))
             _check_channels(lines.shape[1])
             if ground.terms:

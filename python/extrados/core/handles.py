@@ -55,7 +55,7 @@ class Owner:
             self._release()  # a call that was left behind may still use it, and must not hide the error
 
     def _refuse(self) -> NoReturn:
-        raise TypeError(f"a {self.what} lives in the core and cannot be copied or pickled: build another one")
+        raise TypeError(f"this {self.what} cannot be copied or pickled, because it exists only in the core: create another one")
 
     def __copy__(self) -> NoReturn:
         self._refuse()

@@ -16,7 +16,7 @@ def least_vertex(
     """
     k, n = rows.shape
     if len(least) != k or not len(cost) == len(low) == len(high) == n:
-        raise ValueError(f"{k} rows of {n} unknowns do not go with {len(least)} and {len(cost)}, {len(low)}, {len(high)}")
+        raise ValueError(f"{k} rows of {n} unknowns do not agree with the lengths {len(least)} and {len(cost)}, {len(low)}, {len(high)}")
     x, multipliers, sides, solved, status = _core.api_limit.vertex(rows.T, least, cost, low, high)
     check(status, "linear programme")
     return (x, multipliers, sides) if solved else None
@@ -31,7 +31,7 @@ class BandFactor:
 
     def __init__(self, band: np.ndarray):
         if band.ndim != 2 or not band.size or band.dtype != np.float64 or not band.flags.c_contiguous:
-            raise ValueError(f"a band of shape {band.shape} and type {band.dtype}; expected rows of doubles, contiguous")
+            raise ValueError(f"the band matrix has shape {band.shape} and type {band.dtype}; expected contiguous rows of doubles")
         self._band = band.T
         check(_core.api_limit.factor_band(self._band), "factor of a band")
 

@@ -177,5 +177,5 @@ def table_body(right: Table, left: Table, restitution: tuple[float, float]) -> B
     """
     energies = [restitution[0] ** 2 * right.mass / left.mass, restitution[1] ** 2 * left.mass / right.mass]
     if min(restitution) < 0.0 or max(energies) > 1.0 + 1e-9:
-        raise ValueError(f"restitution is {restitution}: expected not below 0, and an impact must not create energy")
+        raise ValueError(f"restitution is {restitution}: expected 0 or above, and an impact must not create energy")
     return Body(lists.number("rocking_body", "table"), np.concatenate([restitution, right.numbers, left.numbers]))

@@ -28,7 +28,7 @@ def _batch(motions: npt.ArrayLike) -> np.ndarray:
     """(count, points) or (points,) as the core's (points, count)."""
     motions = np.atleast_2d(np.asarray(motions, dtype=float))
     if motions.ndim != 2 or motions.shape[1] < 2:
-        raise ValueError(f"motions have shape {motions.shape}, expected (count, points) with two points or more")
+        raise ValueError(f"motions have shape {motions.shape}, expected (count, points) with at least two points")
     return real("motions", np.ascontiguousarray(motions).T, (None, None))
 
 
@@ -147,7 +147,7 @@ def response_spectra(
     batch = _batch(motions)
     periods, dampings = real("periods", periods, (None,)), real("dampings", dampings, (None,))
     if periods.size < 1 or dampings.size < 1 or np.any(dampings < 0.0) or np.any(dampings >= 1.0):
-        raise ValueError("response spectra need a period, and dampings from 0 to below 1")
+        raise ValueError("response spectra require at least one period, and damping ratios from 0 to below 1")
     if periods.min() * 4096 < points_per_cycle * _step(step):
         raise ValueError(f"period {periods.min():g} s is too short for a time step of {step:g} s")
     room_for(3, periods.size, dampings.size, batch.shape[1])
@@ -217,7 +217,7 @@ def _affordable(length: int) -> int:
         factor += 1
     slow += left if left > 7 else 0
     if length * slow > 1e9:
-        raise ValueError(f"length is {length}, expected one of small prime factors, such as a power of 2")
+        raise ValueError(f"length is {length}, expected a product of small prime factors, such as a power of 2")
     return length
 
 

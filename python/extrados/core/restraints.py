@@ -76,9 +76,9 @@ def restrained_body(
     tables: paths rocking to +x (n) and to -x (m), of all laws in the core's order; rebound: rate after over before where it is thrown back to +x, -x.
     """
     if not any(open_sides) or not all(0.0 <= r <= 1.0 for r in rebound):
-        raise ValueError(f"open sides {open_sides}, rebound {rebound}: expected an open side and 0 to 1")
+        raise ValueError(f"open side is {open_sides} and rebound is {rebound}: expected a valid open side, and a rebound from 0 to 1")
     if bool(laws) != (tables is not None):
-        raise ValueError("laws and their paths go together")
+        raise ValueError("each law requires a path, and each path a law")
     numbers = [
         [bare.kind, len(bare.parameters)],
         bare.parameters,

@@ -126,7 +126,7 @@ def watched_body(
     """
     steps, joints = values[0].shape[0] - 1, values[0].shape[1]
     if values[1].shape != values[0].shape or values[0].shape[2:] != (3, 3) or steps < 4:
-        raise ValueError(f"values have shapes {values[0].shape} and {values[1].shape}")
+        raise ValueError(f"the two arrays of values have different shapes, {values[0].shape} and {values[1].shape}")
     most = np.finfo(float).max
     numbers = [
         [bare.kind, len(bare.parameters)],
@@ -144,7 +144,7 @@ class BodyList(Owner):
 
     def __init__(self, bodies: Sequence[Body]):
         if not bodies:
-            raise ValueError("a list of rocking structures needs one")
+            raise ValueError("a list of rocking structures must contain at least one")
         handle, status = _core.api_rocking.create(len(bodies))
         check(status, self.what)
         super().__init__(handle)
@@ -173,29 +173,16 @@ def limits(body: Body) -> tuple[tuple[float, float], tuple[float, float]]:
     return (float(critical[0]), float(critical[1])), (float(limit[0]), float(limit[1]))
 
 
-@dataclass(frozen=True)
-class Response:
-    """One response with its history.
-
-    time (points) [s] and, at those times, rotation [rad], rate, acceleration, ground and vertical
-    acceleration [m/s^2], kinetic and potential energy and the ledger (work of the ground minus loss at
-    impacts and what restraints took up, `spent`) [J]. events: (kind, time [s], value); see core.rocking.EVENTS.
-    Of restraints: `stored` energy (points) beyond that of their prestress [J], `forces` (restraints, points), the least
-    and greatest of them at any time, and the path that stays (restraints) [N, m; of turns N m, rad].
-    """
+@dataclass(frozen=True, kw_only=True)
+class Course:
+    """What every response has: at `time` (points) [s] ground and vertical acceleration [m/s^2], kinetic and potential energy and the
+    ledger, work of the ground minus what the structure lost [J]; events: (kind, time [s], value); see EVENTS."""
 
     outcome: Outcome
     half_cycles: int
-    impacts: int
-    peak: float
-    peak_ratio: float
     stop_time: float
     steps: int
-    rejected: int
     time: np.ndarray
-    rotation: np.ndarray
-    rate: np.ndarray
-    acceleration: np.ndarray
     ground: np.ndarray
     vertical: np.ndarray
     kinetic: np.ndarray
@@ -204,6 +191,25 @@ class Response:
     events: list[tuple[str, float, float]]
     events_found: int  # may exceed the room for them
     work: float
+    interrupted: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response(Course):
+    """One response with its history.
+
+    At the times of the course rotation [rad], rate, acceleration; the ledger subtracts the loss at impacts and what restraints
+    took up, `spent` [J]. Of restraints: `stored` energy (points) beyond that of their prestress [J], `forces` (restraints,
+    points), the least and greatest of them at any time, and the path that stays (restraints) [N, m; of turns N m, rad].
+    """
+
+    impacts: int
+    peak: float
+    peak_ratio: float
+    rejected: int
+    rotation: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
     loss: float
     spent: float
     stored: np.ndarray
@@ -212,8 +218,18 @@ class Response:
     greatest_force: np.ndarray
     permanent: np.ndarray
     settled: bool  # it rests, has fallen, or can no longer fall
-    interrupted: bool = False
     joints: JointDemand | None = None  # of a watched structure
+
+
+def check_run(end_time: float, output_step: float, tolerance: float, scale: float) -> None:
+    """ValueError where a run has no end, no outputs, no tolerance or no scale."""
+    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
+        raise ValueError("end time, output step and tolerance must be positive, and the scale must be a number")
+
+
+def events_of(kinds: np.ndarray, event: np.ndarray, found: int) -> list[tuple[str, float, float]]:
+    """Events (kind, time [s], value) from the numbers of their kinds (room) and their times and values (2, room)."""
+    return [(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)]
 
 
 def output_times(end_time: float, output_step: float, rows: int) -> np.ndarray:
@@ -240,12 +256,11 @@ def history(
     It starts with `start_rotation` >= 0 [rad] and `start_rate` [rad/s] to the side `start_side`, 1 to +x or -1. `room`:
     events kept.
     """
-    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
-        raise ValueError("end time, output step and tolerance must be positive, the scale a number")
+    check_run(end_time, output_step, tolerance, scale)
     if start_side not in (1, -1) or not start_rotation >= 0.0:
-        raise ValueError(f"start is {start_rotation} rad to side {start_side}, expected 0 or more to side 1 or -1")
+        raise ValueError(f"start rotation is {start_rotation} rad to side {start_side}: expected 0 or above, to side 1 or -1")
     if not 0 <= room <= 10**7:
-        raise ValueError(f"number of events kept is {room}, expected 0 to 10,000,000 events")
+        raise ValueError(f"number of saved events is {room}, expected 0 to 10,000,000")
     times = output_times(end_time, output_step, 8)
     with MotionSet([ground]) as motions, BodyList([body]) as bodies:
         counts, measures, state, kept, kinds, event, status = long_call(
@@ -263,7 +278,6 @@ def history(
     interrupted = status == status_code("cancelled")
     if not interrupted:
         check(status, "rocking response")
-    found = min(events, room)
     state = state[:, :points]
     if not (np.isfinite(state).all() and np.isfinite(measures).all()):
         check(status_code("not_finite"), "rocking response")
@@ -287,7 +301,7 @@ def history(
         kinetic=kinetic,
         potential=potential,
         ledger=ledger,
-        events=[(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)],
+        events=events_of(kinds, event, min(events, room)),
         events_found=events,
         work=work,
         loss=loss,

@@ -132,7 +132,7 @@ def teeth(softening: Softening, young: float, band: float) -> tuple[np.ndarray, 
     n, modulus, strength, status = _core.api_sla_laws.teeth(
         LAWS[s.law], young, s.strength, s.energy, band, s.ripple, int(s.exact), int(s.overshoot), MOST_TEETH
     )
-    check(status, f"teeth of a {s.law} law, band {band:g} m (largest {largest_band(s, young):g} m)")
+    check(status, f"teeth of a {s.law} law: the crack band is {band:g} m (largest possible: {largest_band(s, young):g} m)")
     return np.array(modulus[:n]), np.array(strength[:n])
 
 
@@ -220,8 +220,8 @@ class Model(Owner):
         equation = np.asarray(freedoms.equation)
         if (axes, self.freedoms) not in ((2, 2), (3, 6)) or len(equation) != self.nodes:
             raise ValueError(
-                f"places have shape {np.shape(xy)} and equations {equation.shape}, expected ({self.nodes}, 2) of both in "
-                f"the plane, ({self.nodes}, 3) and ({self.nodes}, 6) in space"
+                f"coordinates have shape {np.shape(xy)} and equations {equation.shape}, expected ({self.nodes}, 2) of both in the "
+                f"plane, ({self.nodes}, 3) and ({self.nodes}, 6) in space"
             )
         equations = int(equation.max(initial=-1)) + 1
         if equations > self.freedoms * self.nodes:
@@ -253,7 +253,7 @@ class Model(Owner):
             self.equations, self.points, self.factor_values = (int(x) for x in sizes)
             if status == status_code("too_large"):
                 raise MemoryError(
-                    f"{self.equations} equations need {self.factor_values * 8 / 2**30:.1f} GiB for the factor, "
+                    f"{self.equations} equations need {self.factor_values * 8 / 2**30:.1f} GiB for the matrix factor, and "
                     f"{limit / 2**30:.1f} GiB are allowed: use larger elements"
                 )
             check(status, "analysis of the stiffness matrix")
@@ -295,8 +295,10 @@ class Model(Owner):
                 largest = largest_band(Softening(strength, energy, name), modulus)
                 check(
                     status,
-                    f"teeth of a {name} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: "
-                    f"band {width:g} m, the largest is {largest:g} m",
+                    (
+                        f"teeth of a {name} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: the crack band is "
+                        f"{width:g} m, and the largest possible is {largest:g} m"
+                    ),
                 )
             check(status, "softening laws")
         return numbers, ladder
@@ -448,7 +450,7 @@ class Model(Owner):
         """
         stop = stop or Stop()
         if room < 1 or not monitors:
-            raise ValueError("a run needs memory for an event, and a monitor")
+            raise ValueError("a run requires memory for at least one event, and at least one monitored value")
         room_for(15 + len(monitors), room)
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
@@ -632,7 +634,7 @@ def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) 
     """The law of each element."""
     each = [law] * count if law is None or isinstance(law, Softening) else list(law)
     if len(each) != count:
-        raise ValueError(f"{len(each)} softening laws for {count} elements")
+        raise ValueError(f"there are {len(each)} softening laws for {count} elements; expected one for each element")
     return each
 
 
@@ -641,7 +643,7 @@ def _beddings(group: Plane | Bars | Joints, count: int) -> list[Bedding | None]:
     bedding = group.bedding if isinstance(group, Plane) else None
     each = [bedding] * count if bedding is None or isinstance(bedding, Bedding) else list(bedding)
     if len(each) != count:
-        raise ValueError(f"bed joints of {len(each)} elements for {count}")
+        raise ValueError(f"there are {len(each)} laws of bed joints for {count} elements; expected one for each element")
     return each
 
 

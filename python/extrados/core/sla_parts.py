@@ -93,7 +93,7 @@ class Bedding:
 
     def __post_init__(self) -> None:
         if not (self.strength > 0.0 and self.energy > 0.0 and self.shear >= 1.0):
-            raise ValueError("bedded masonry needs ratios above 0 and a shear factor of at least 1")
+            raise ValueError("masonry with bed joints requires ratios above 0 and a shear factor of at least 1")
 
     def stretch(self) -> tuple[float, float]:
         """Least and greatest f^2 / G over all crack directions, over that across the bed joints: the bands whose teeth
@@ -120,7 +120,7 @@ class Hill:
 
     def __post_init__(self) -> None:
         if not (self.ratio > 0.0 and self.shear > 0.0 and abs(self.coupling) < 2.0):
-            raise ValueError("Hill's criterion needs a ratio and a shear factor above 0 and a coupling between -2 and 2")
+            raise ValueError("Hill's criterion requires a ratio and a shear factor above 0, and a coupling between -2 and 2")
 
 
 @dataclass(frozen=True)
@@ -327,7 +327,9 @@ class Freedoms:
         held = list(held)
         for node, direction, *_ in [*held, *(entry for tie in ties for entry in tie)]:
             if not (0 <= node < nodes and 0 <= direction < of_node):
-                raise IndexError(f"a freedom names node {node}, direction {direction} of {nodes} nodes with {of_node}")
+                raise IndexError(
+                    f"a degree of freedom has node {node} and direction {direction}, but there are {nodes} nodes with {of_node} directions"
+                )
         equation = np.zeros((nodes, of_node), dtype=np.int64)
         factor = np.ones((nodes, of_node))
         for node, direction in held:

@@ -7,10 +7,11 @@ import numpy.typing as npt
 
 from extrados import _core
 from extrados.core import lists
-from extrados.core.calls import long_call, real
-from extrados.core.errors import check, status_code
-from extrados.core.ground import Ground, MotionSet
-from extrados.core.rocking import EVENTS, OUTCOMES, Body, Outcome, output_times
+from extrados.core.calls import real
+from extrados.core.errors import check
+from extrados.core.ground import Ground
+from extrados.core.rocking import Body, Course
+from extrados.core.two_coordinates import run_two
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def soft_base_body(base: SoftBase, critical: tuple[float, float]) -> Body:
     A member starts at its rotation, free to sink. A half cycle begins where the edge away from which it leans lifts, unless
     the last one was to the same side."""
     if not (np.isfinite(critical).all() and min(critical) > 0.0):
-        raise ValueError(f"critical rotations are {critical}, expected two above zero")
+        raise ValueError(f"critical rotations are {critical}, expected two values above zero")
     return Body(KIND, np.append(base.numbers, critical))
 
 
@@ -81,40 +82,25 @@ class BaseContact:
     most: float
 
 
-@dataclass(frozen=True)
-class SoftBaseResponse:
-    """A response: at `time` (points) [s] rotation, positive to +x [rad], sinking [m], their rates, ground and vertical
-    acceleration [m/s^2], kinetic energy, potential energy with that of the springs, and the ledger, work of the ground less
-    what the base took up [J], force of the base (points, 2) to +x and up [N], range of the base that pushes (points, 2),
-    from the foot of the centre [m], greatest pressure per length [N/m] or force of an edge [N]. peak: of both coordinates;
-    end: rotation, sinking and their rates; landings of the left and the right edge; half_cycles: see soft_base_body; events: (kind, time [s], edge), -1 left,
-    1 right."""
+@dataclass(frozen=True, kw_only=True)
+class SoftBaseResponse(Course):
+    """A response: at the times of the course rotation, positive to +x [rad], sinking [m], their rates, force of the base (points, 2)
+    to +x and up [N], range of the base that pushes (points, 2), from the foot of the centre [m], greatest pressure per length [N/m]
+    or force of an edge [N]; the potential energy includes the springs', the ledger subtracts what the base took up, `spent` [J].
+    peak: of both coordinates; end: rotation, sinking and their rates; landings of the left and the right edge; half_cycles: see
+    soft_base_body; events: (kind, time [s], edge), -1 left, 1 right."""
 
-    outcome: Outcome
     landings: tuple[int, int]
-    half_cycles: int
     peak: tuple[float, float]
-    stop_time: float
-    steps: int
     end: np.ndarray
-    time: np.ndarray
     rotation: np.ndarray
     sinking: np.ndarray
     rate: np.ndarray
     sinking_rate: np.ndarray
-    ground: np.ndarray
-    vertical: np.ndarray
-    kinetic: np.ndarray
-    potential: np.ndarray
-    ledger: np.ndarray
     force: np.ndarray
     range: np.ndarray
     most: np.ndarray
-    events: list[tuple[str, float, int]]
-    events_found: int
-    work: float
     spent: float
-    interrupted: bool = False
 
 
 def base_contact(base: SoftBase, rotation: float, sinking: float, rate: float = 0.0, sinking_rate: float = 0.0) -> BaseContact:
@@ -153,57 +139,34 @@ def soft_base_history(
 ) -> SoftBaseResponse:
     """Rock the block under `ground` times `scale` until collapse or `end_time` [s]; start (4,): rotation [rad], sinking [m]
     and their rates; output_step [s]; room: most events that are kept."""
-    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
-        raise ValueError("end time, output step and tolerance must be positive, the scale a number")
-    if not 1 <= room <= 10**7:
-        raise ValueError(f"number of events kept is {room}, expected 1 to 10,000,000 events")
-    rows = int(_core.api_soft_base.rows())
-    times = output_times(end_time, output_step, rows)
-    with MotionSet([ground]) as motions:
-        counts, measures, state, kinds, event, status = long_call(
-            _core.api_soft_base.history,
-            real("base", base.numbers, (9,)),
-            motions.handle,
-            1,
-            np.array([scale, end_time, tolerance], dtype=float),
-            real("start", start, (4,)),
-            times,
-            rows,
-            int(room),
-        )
-    interrupted = status == status_code("cancelled")
-    if not interrupted:
-        check(status, "rocking on a compliant base")
-    outcome, left, right, steps, half_cycles, points, events = (int(k) for k in counts)
-    s = state[:, :points].T
-    if not (np.isfinite(s).all() and np.isfinite(measures).all()):
-        check(status_code("not_finite"), "rocking on a compliant base")
-    found = min(events, room)
-    turn, sunk, stop, *end = (float(x) for x in measures)
+    run = run_two(
+        _core.api_soft_base,
+        base.numbers,
+        "a block on a compliant base",
+        ground,
+        end_time,
+        output_step,
+        scale=scale,
+        tolerance=tolerance,
+        start=start,
+        room=room,
+    )
+    s = run.state
+    _, left, right, _, half_cycles, *_ = run.counts
+    turn, sunk, _, *end, work, spent = run.measures
     return SoftBaseResponse(
-        OUTCOMES[outcome],
-        (left, right),
-        half_cycles,
-        (turn, sunk),
-        stop,
-        steps,
-        np.array(end[:4]),
-        times[:points],
-        s[:, 0],
-        s[:, 1],
-        s[:, 2],
-        s[:, 3],
-        s[:, 4],
-        s[:, 5],
-        s[:, 6],
-        s[:, 7],
-        s[:, 8],
-        s[:, 9:11],
-        s[:, 11:13],
-        s[:, 13],
-        [(EVENTS[int(k)], float(t), int(e)) for k, (t, e) in zip(kinds[:found], event.T[:found], strict=True)],
-        events,
-        end[4],
-        end[5],
-        interrupted,
+        **run.common,
+        half_cycles=half_cycles,
+        landings=(left, right),
+        peak=(turn, sunk),
+        end=np.array(end),
+        rotation=s[:, 0],
+        sinking=s[:, 1],
+        rate=s[:, 2],
+        sinking_rate=s[:, 3],
+        force=s[:, 9:11],
+        range=s[:, 11:13],
+        most=s[:, 13],
+        work=work,
+        spent=spent,
     )

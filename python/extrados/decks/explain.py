@@ -161,7 +161,7 @@ def facts() -> list[TableFacts]:
         "deck",
         "The top of a deck",
         "",
-        "Texts that stand before the first table.",
+        "Texts before the first table.",
         {word: KeyFacts(about, "", "text", "") for word, about in WORDS.items()},
     )
     tables = ((section, kind, model) for section, there in sections().items() for kind, model in there.items())

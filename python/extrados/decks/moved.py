@@ -1,6 +1,6 @@
 """Where keys of earlier versions stand now: an old deck is told the new place of each."""
 
-_FOR_ONE = "for this analysis alone, in [analysis.{}]"
+_FOR_ONE = "for this analysis only, in [analysis.{}]"
 
 
 def _joint(name: str) -> str:
@@ -12,7 +12,7 @@ def _material(name: str) -> str:
 
 
 def _mesh(name: str) -> str:
-    return f"{name} in [analysis.mesh], the elements of an sla analysis"
+    return f"{name} in [analysis.mesh], which gives the elements of an sla analysis"
 
 
 #: (section, key) -> the new place in words

@@ -151,9 +151,9 @@ def _piped(name: str) -> bytes | None:
                 return None
             raw = stream.read(LARGEST + 1)
     except OSError as error:
-        raise DeckError([f"{name}: cannot be read: {error.strerror or error}"]) from None
+        raise DeckError([f"{name}: this file cannot be read: {error.strerror or error}"]) from None
     if len(raw) > LARGEST:
-        raise DeckError([f"{name}: is more than {LARGEST / 1e6:g} MB; at most as many are read"])
+        raise DeckError([f"{name}: this file has more than {LARGEST / 1e6:g} MB, the greatest size that is read"])
     return raw
 
 
@@ -163,7 +163,7 @@ def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
-        raise DeckError([f"{name}:{line}: is not UTF-8 text (byte {error.start}); expected a TOML deck"]) from None
+        raise DeckError([f"{name}:{line}: this file is not UTF-8 text (byte {error.start}); expected a TOML deck"]) from None
     try:
         data = loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -226,7 +226,7 @@ class _Checker:
         code = self.table(Code, data["code"], ("code",)) if "code" in data else None
         given = data.get("analysis")
         if given is None or (isinstance(given, list) and not given):
-            self.complain((), f"no [analysis]: expected one of {_words(kinds.ANALYSES)}")
+            self.complain((), f"the deck has no [analysis]; expected one of {_words(kinds.ANALYSES)}")
             given = []
         tables = given if isinstance(given, list) else [given]
         several = isinstance(given, list)
@@ -277,7 +277,7 @@ class _Checker:
         for part in (part for name in ("regions", "bars", "layer") for part in getattr(structure, name, ())):
             if part.material is not None and part.material not in named:
                 known = ", ".join(sorted(named)) or "none"
-                self.complain(("structure",), f"unknown material '{part.material}'; [materials] holds {known}")
+                self.complain(("structure",), f"material '{part.material}' does not exist; [materials] contains {known}")
         many: dict[str, Any] = {name: self.named(name, data.get(name, [])) for name in PLURAL}
         return Building(
             structure,
@@ -290,7 +290,7 @@ class _Checker:
     def named(self, section: str, tables: Any) -> tuple[Any, ...]:
         """The ties, dampers or hinges of the deck, each with a name; what is wrong in them is complained of."""
         if not isinstance(tables, list) or len(tables) > MOST:
-            self.complain((section,), f"expected tables [[{section}]], {MOST} at most")
+            self.complain((section,), f"expected tables [[{section}]], at most {MOST}")
             return ()
         made, names = [], set()
         for k, table in enumerate(tables):
@@ -384,17 +384,17 @@ class _Checker:
         kind, structure = analysis.kind, data.get("structure")
         wanted = analysis.structures
         if structure is None and (analysis.view or wanted):
-            self.complain(path, f"{kind} needs a [structure]{'' if wanted is None else ' of kind ' + _words(wanted)}")
+            self.complain(path, f"{kind} requires a [structure]{'' if wanted is None else ' of kind ' + _words(wanted)}")
         elif isinstance(structure, dict) and isinstance(structure.get("kind"), str):
             shape = structure["kind"]
             known = shape in kinds.STRUCTURES
             lacks = kinds.STRUCTURES[shape].lacks if known else {}
             if known and wanted is not None and shape not in wanted:
-                self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
+                self.complain(path, f"{kind} cannot analyse a structure of kind '{shape}'; expected {_words(wanted)}")
             elif analysis.view in lacks and not (analysis.solid and "solids" not in lacks) and shape not in analysis.shells:
                 self.complain(path, f"{kind} cannot analyse a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
-            self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")
+            self.complain(path, f"{kind} requires a [motion]; expected one of {_words(kinds.MOTIONS)}")
 
 
 def _leads(text: str, given: Any) -> Key:
@@ -429,9 +429,9 @@ def _home(model: type[Table], section: str, place: tuple) -> str:
         return f"; it belongs in [{home}]"
     within = (name for name, field in known.items() if (t := _table_in(field.annotation)) and key in t.model_fields)
     if home := next(within, ""):
-        return f"; it belongs in {'.'.join((section, *(str(p) for p in place[:-1] if not isinstance(p, int)), home))}"
+        return f"; this key belongs in {'.'.join((section, *(str(p) for p in place[:-1] if not isinstance(p, int)), home))}"
     if section in PROPERTIES and key in _of_analyses():
-        return "; it belongs in the [[analysis]] table"
+        return "; this key belongs in the [[analysis]] table"
     if alike := ALIKE.get(key, set()) & known.keys():
         return f"; did you mean '{min(alike)}'?"
     return _nearest(key, known)
@@ -474,7 +474,7 @@ def _expected(problem: ErrorDetails) -> str:
     if problem["type"] == "string_type":
         return "expected text in quotes"
     if problem["type"] == "list_type" and isinstance(problem.get("input"), dict):
-        return "expected a list of tables, [{ ... }], even for one"
+        return "expected a list of tables, [{ ... }], also for a single table"
     if problem["type"] == "list_type":
         return "expected a list, [ ... ]"
     return problem["msg"][0].lower() + problem["msg"][1:]

@@ -14,7 +14,7 @@ class TooDeep(ValueError):
     """No deck is nested like this."""
 
     def __init__(self) -> None:
-        super().__init__("is nested too deeply for a deck")
+        super().__init__("this value is nested too deeply for a deck")
 
 
 def loads(text: str) -> dict[str, Any]:

@@ -1,1 +1,1 @@
-"""The interactive page: a server on loopback, sessions that keep a live deck, and the page itself in static/."""
+"""The interactive page: a server on the loopback address, sessions with a live deck, and the page itself in static/."""

@@ -1,7 +1,5 @@
-"""What the page draws of a building that has no stones in a plane: blocks in space, walls on a plan, a wall's elements.
-
-It can be looked at and turned; a drawing in words says why limit analysis of a section does not follow a hand there.
-"""
+"""Drawings of buildings that are not plane sections of blocks: blocks in space, walls on a plan, elements of a wall. The user
+can rotate them; a sentence states why there is no thrust line."""
 
 from typing import Any
 
@@ -25,10 +23,8 @@ Drawn = tuple[dict[str, Any], dict[str, np.ndarray]]
 
 
 def seen(building: Building, mesh: Any = None) -> Drawn | None:
-    """Words and arrays of the first of solids, shells and elements that the building has; None where it has none of them.
-
-    mesh: [analysis.mesh] of the deck's analysis of finite elements.
-    """
+    """Words and arrays of the first available model: solids, shells or elements; None without any. mesh: [analysis.mesh] of the
+    deck's analysis of finite elements."""
     try:
         return of_solids(building.solids())
     except NoView:
@@ -92,8 +88,8 @@ def of_shells(mesh: ShellMesh) -> Drawn:
 
 
 def of_elements(mesh: Mesh) -> Drawn:
-    """A wall in its plane by its elements, as the drawing takes stones: `outline`, `outline_start`; no joints. `held`
-    (n, 2): nodes on supports; `ties`: ends of its bars [m]."""
+    """A wall in its plane by its elements, in the same form as blocks: `outline`, `outline_start`; no joints. `held` (n, 2):
+    nodes on supports; `ties`: ends of its bars [m]."""
     groups = [g.connect[:, : len(EDGES[g.kind])] for g in mesh.groups if g.law is None]
     count = sum(map(len, groups))
     words = {
@@ -105,7 +101,7 @@ def of_elements(mesh: Mesh) -> Drawn:
         "warnings": mesh.warnings,
     }
     if count > MOST_ELEMENTS:
-        words["warnings"] = [*mesh.warnings, f"{count} elements are too many to be drawn"]
+        words["warnings"] = [*mesh.warnings, f"{count} elements are too many to draw on the page"]
         groups = []
     held = [mesh.nodes_at(place, "supports.held") for place in mesh.held]
     faces = [mesh.xy[row] for group in groups for row in group]

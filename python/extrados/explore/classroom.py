@@ -1,7 +1,7 @@
-"""A class: a bounded session without files for each pupil, and what the teacher sees of all and does with all.
+"""A class: a bounded session without files for each pupil, and the overview of the teacher.
 
-Decks of pupils come as text, as starters, or from the cases with known results, and name no file but the shipped ground
-motions. Size of deck, number of blocks, duration of motions, and computing time are bounded. Nothing is written to disk.
+Decks of pupils are texts, starters, or cases with known results, and can use only shipped ground motions. Size of deck,
+number of blocks, duration of motions, and computing time are bounded. Nothing is written to disk.
 """
 
 import asyncio
@@ -53,9 +53,9 @@ NOWHERE = Path("/nonexistent/extrados-class")
 
 
 class Classroom:
-    """The pupils of a class by their numbers. frozen: they may look and change nothing. changes: counts what they changed.
+    """The pupils of a class by their numbers. frozen: pupils can view but not change anything. changes: number of their changes.
 
-    The loop that serves owns `pupils`; all else may be read from any thread.
+    The serving loop owns `pupils`; any thread may read all other attributes.
     """
 
     def __init__(self, most: int = PUPILS):
@@ -85,7 +85,7 @@ class Classroom:
 
 
 class Pupil(Session):
-    """The session of a pupil. seen, text: what the teacher sees of it; left: computing time it may still use [s]."""
+    """The session of a pupil. seen, text: the view of the teacher; left: remaining computing time [s]."""
 
     shipped_alone = True
 
@@ -114,11 +114,11 @@ class Pupil(Session):
         if do == "pause" and by_teacher:
             yield Reply({**told, "frozen": self.room.frozen})
         elif do not in ASKED or any(key in message for key in ("path", "dropped")) or message.get("here") == "dropped":
-            yield Reply({**told, "bad": "a class has no files and no runs"})
+            yield Reply({**told, "bad": "pupils of a class cannot open files or start runs"})
         elif self.room.frozen and not by_teacher and do not in ("hello", "rest"):
             yield Reply({**told, "bad": "the teacher has paused the class"})
         elif isinstance(text, str) and len(text) > LARGEST_DECK:
-            yield Reply({**told, "bad": f"a deck has at most {LARGEST_DECK} characters in a class"})
+            yield Reply({**told, "bad": f"in a class a deck may have at most {LARGEST_DECK} characters"})
         else:
             for reply in super().answer(message):
                 self._note(reply)
@@ -140,11 +140,11 @@ class Pupil(Session):
         deck, wrong = self.there().deck, []
         counts = [] if deck.structure is None else [v for v in deck.structure.model_dump().values() if isinstance(v, int)]
         if max(counts, default=0) > MOST_BLOCKS or _blocks(self) > MOST_BLOCKS:
-            wrong.append(f"a structure has at most {MOST_BLOCKS} blocks in a class")
+            wrong.append(f"in a class a structure may have at most {MOST_BLOCKS} blocks")
         lasting = [getattr(deck.motion, name, None) for name in ("duration", "period")]
         lasting += [getattr(options, "end_time", None) for options in deck.analyses]
         if max((v for v in lasting if isinstance(v, int | float)), default=0.0) > LONGEST:
-            wrong.append(f"motions and responses last at most {LONGEST:g} s in a class")
+            wrong.append(f"in a class motions and responses may last at most {LONGEST:g} s")
         if wrong:
             raise DeckError(wrong)
 
@@ -158,7 +158,7 @@ def _blocks(desk: Desk) -> int:
 
 
 def thumbnail(reply: Reply) -> dict[str, Any]:
-    """The drawing of a scene as a path of SVG with its box, the tilt [g], and whether it stands."""
+    """The drawing of a scene as an SVG path with its box, the tilt [g], and whether the structure is stable."""
     scene, title = reply.words["scene"], reply.words.get("deck", {}).get("title") or ""
     outline, start = reply.arrays.get("outline"), reply.arrays.get("outline_start")
     seen = {"title": title[:80], "gamma": scene.get("gamma"), "falls": scene.get("falls"), "capacity": scene.get("capacity")}
@@ -222,5 +222,5 @@ class Teacher(Session):
         """The deck of a pupil."""
         pupil = self.room.pupils.get(message.get("number", 0))
         if pupil is None:
-            raise BadMessage("there is no such pupil")
+            raise BadMessage("the class has no pupil of this number")
         return {"peeked": pupil.text, "number": pupil.number}

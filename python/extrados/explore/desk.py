@@ -1,4 +1,4 @@
-"""What one page has before it: a deck with its text and its live model, and what is drawn of it."""
+"""The state of one page: a deck with its text and its live model, and the picture of it."""
 
 import shutil
 import tempfile
@@ -77,7 +77,7 @@ class Desk:
         return otherwise(), live.deck.building, None
 
     def words(self) -> dict[str, Any]:
-        """What the page is told of the deck whatever is asked: title, analyses, kinds, motion."""
+        """The facts on the deck that every reply contains: title, analyses, kinds, motion."""
         live = self.there()
         deck = live.deck
         told: dict[str, Any] = {
@@ -94,7 +94,7 @@ class Desk:
 
     @property
     def size(self) -> float:
-        """The size of what is drawn [m]."""
+        """The size of the drawing [m]."""
         return self.picture.assembly.size if self.picture else 1.0
 
     def drops(self) -> Path:
@@ -104,7 +104,7 @@ class Desk:
         return self.scratch
 
     def close(self) -> None:
-        """Forget what was dropped."""
+        """Delete dropped files."""
         if self.scratch is not None:
             shutil.rmtree(self.scratch, ignore_errors=True)
             self.scratch = None

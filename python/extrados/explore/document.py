@@ -24,7 +24,7 @@ def text_of(data: Mapping[str, Any]) -> str:
 
 
 class Document:
-    """The text of a deck: what is put is written when the text is asked for, the last value of each key."""
+    """The text of a deck: changes are written when the text is requested, with the last value of each key."""
 
     def __init__(self, text: str):
         self._text = text
@@ -88,7 +88,7 @@ def _item(value: Any) -> Any:
 
 
 def as_written(value: Any, before: Any, si: str, bare: bool = True) -> Any:
-    """A number in `si` as it stands in the deck beside what stood there: in the unit that its author took."""
+    """A number in `si` in the unit that the author used for the former value."""
     if isinstance(before, str) and isinstance(value, int | float):
         found = QUANTITY.fullmatch(before)
         if found:

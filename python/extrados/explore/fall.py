@@ -1,9 +1,9 @@
-"""The collapse of a structure that cannot stand, or that is tilted beyond its capacity: rigid contacts carry it on in time.
+"""The collapse of a structure that cannot stand, or that is tilted beyond its capacity, calculated in time with rigid contacts.
 
 The ground is tilted by theta = atan(gamma), so that gravity is g (sin theta, -cos theta) in the axes of the building. Beyond
 the capacity the blocks start with the velocities of the collapse mechanism, scaled to a small speed; a structure that cannot
-stand starts from rest. A level floor at the foot of the lowest support catches what falls. The run pauses between pieces,
-so that the page shows the first while the next is computed.
+stand starts from rest. A level floor at the foot of the lowest support stops falling blocks. The run pauses between pieces,
+so that the page shows the first piece while the next is calculated.
 """
 
 import time
@@ -51,7 +51,7 @@ class Piece:
 
 
 def begin_fall(context: Context, building: Building, made: Picture) -> Iterator[Piece]:
-    """The fall of what a picture shows, piece by piece; Refused if rigid contacts do not take the building."""
+    """The collapse of the structure of a picture, piece by piece; Refused if rigid contacts do not accept the building."""
     assembly = made.assembly
     grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
     level = level_of(assembly)

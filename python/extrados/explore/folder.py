@@ -1,4 +1,4 @@
-"""The working folder of the page, and the decks with known answers: what may be read there, and what may be written."""
+"""The working folder of the page, and the shipped cases: which files may be read and written."""
 
 import contextlib
 import os
@@ -32,7 +32,7 @@ PLACE = re.compile(r"(?:[\w][\w .+-]{0,100}/){0,6}[\w][\w .+-]{0,100}")
 
 
 class NotThere(ValueError):
-    """What is asked for is not in the folder, or may not be; the text says why."""
+    """A requested file is not in the folder, or must not be read; the text gives the reason."""
 
 
 class Folder:
@@ -42,9 +42,9 @@ class Folder:
         self.root = root.resolve()
 
     def inside(self, path: str) -> Path:
-        """The place of a relative path; NotThere where it leads out."""
+        """The place of a relative path; NotThere if it leads out of the folder."""
         if not PLACE.fullmatch(path) or ".." in path:
-            raise NotThere(f"{path[:100]!r} is no path within the working folder")
+            raise NotThere(f"{path[:100]!r} is not a path within the working folder")
         target = self.root / path
         with contextlib.suppress(OSError, RuntimeError):
             if target.resolve().is_relative_to(self.root):
@@ -86,21 +86,21 @@ class Folder:
         """A deck of the folder: its bytes, the folder of its files, its name."""
         target = self.inside(path)
         if target.suffix != ".toml":
-            raise NotThere(f"{path}: a deck ends in .toml")
+            raise NotThere(f"{path}: the name of a deck must end in .toml")
         try:
             return (files.read(target.relative_to(self.root).as_posix(), LARGEST, self.root).content, target.parent, target.name)
         except files.BadFile as error:
             raise NotThere(str(error)) from None
 
     def beside(self, place: Path, name: str) -> bytes:
-        """A file that a deck in `place` names; NotThere where it cannot be read."""
+        """A file that a deck in `place` names; NotThere if it cannot be read."""
         try:
             return files.read(name, 50_000_000, place).content
         except files.BadFile as error:
             raise NotThere(str(error)) from None
 
     def presets(self) -> list[dict[str, str]]:
-        """All decks with known answers: name and title."""
+        """All shipped cases: name and title."""
         global _presets
         if _presets is None:
             found = []
@@ -123,9 +123,9 @@ class Folder:
         return _presets
 
     def preset(self, name: str) -> tuple[bytes, Path, str]:
-        """A deck with known answers, by its name; the folder of its files, its file name."""
+        """A shipped case by its name: its content, the folder of its files, its file name."""
         if not any(row["name"] == name for row in self.presets()):
-            raise NotThere(f"there is no case {name[:100]!r}")
+            raise NotThere(f"no shipped case has the name {name[:100]!r}")
         path = CASES / f"{name}.toml"
         return path.read_bytes(), path.parent, path.name
 
@@ -133,7 +133,7 @@ class Folder:
         """Write a deck, and the files it names where they are not there yet; the path within the folder."""
         target = self.inside(path if path.endswith(".toml") else f"{path}.toml")
         if target.exists() and not replace:
-            raise NotThere(f"{target.relative_to(self.root)} is there already: choose to replace it, or another name")
+            raise NotThere(f"{target.relative_to(self.root)} exists already: choose to replace it, or choose another name")
         try:
             for name, content in beside.items():
                 place = self.inside((target.parent.relative_to(self.root) / name).as_posix())
@@ -141,7 +141,7 @@ class Folder:
                     place.parent.mkdir(parents=True, exist_ok=True)
                     place.write_bytes(content)
                 elif place.read_bytes() != content:
-                    raise NotThere(f"{name} is there already, with other content: save the deck in another folder")
+                    raise NotThere(f"a different file {name} exists already beside the deck: save the deck in another folder")
             target.parent.mkdir(parents=True, exist_ok=True)
             _replace(target, text)
         except OSError as error:
@@ -149,11 +149,11 @@ class Folder:
         return target.relative_to(self.root).as_posix()
 
     def run(self, path: str) -> Stored:
-        """A stored run; StoreError where it is damaged or too large for a page."""
+        """A stored run; StoreError if it is damaged or too large for a page."""
         target = self.inside(path)
         size = sum(f.stat().st_size for f in target.glob("*") if f.is_file() and not f.is_symlink()) if target.is_dir() else 0
         if size > LARGEST_RUN:
-            raise StoreError(f"{path}: holds {size / 1e6:.0f} MB, more than a page is shown ({LARGEST_RUN / 1e6:g} MB)")
+            raise StoreError(f"{path} has {size / 1e6:.0f} MB, more than the {LARGEST_RUN / 1e6:g} MB that the page shows")
         return read(target)
 
     def figures(self, path: str, name: str) -> list[tuple[str, str]]:
@@ -210,8 +210,8 @@ class Folder:
             try:
                 code = child.wait(WAITS)
             except subprocess.TimeoutExpired:
-                code = "none: its output ended and it did not"
-            yield "" if code in (0, 3) else f"it ended with code {code}", True
+                code = "unknown, because the process did not end after its output"
+            yield "" if code in (0, 3) else f"the run ended with exit code {code}", True
         finally:
             if child.poll() is None:
                 child.send_signal(signal.SIGINT)

@@ -1,8 +1,8 @@
-"""Who may talk to the server: a page of its own, by its token, in requests of a decent size and rate.
+"""Access control of the server: only the program's own pages, by their token, with bounded size and rate of requests.
 
-A page of any other site that the same browser shows can send requests to 127.0.0.1, and a name that its owner points
-at 127.0.0.1 makes them look its own. Hence all three are asked for: the name in Host, the site in Origin, and a token
-that only the address holds which the program has printed.
+A page of any other site in the same browser can send requests to 127.0.0.1, and a host name that points to 127.0.0.1 makes
+these requests look like those of the same site. Three checks are therefore required: the name in Host, the site in Origin,
+and a token that only the printed address contains.
 """
 
 import hmac
@@ -96,7 +96,7 @@ class Guard:
         await self.app(scope, receive, _with_headers(send))
 
     def objection(self, scope: dict[str, Any]) -> tuple[int, str] | None:
-        """Status and reason why a request is not passed on, None where it is."""
+        """Status and reason of a refusal, None if the request is passed on."""
         socket = scope["type"] == "websocket"
         heads: dict[bytes, list[bytes]] = {}
         for name, value in scope["headers"]:
@@ -104,32 +104,32 @@ class Guard:
         if not self.requests.take():
             return 429, "too many requests"
         if len(heads.get(b"host", [])) != 1 or heads[b"host"][0] not in self.hosts:
-            return 421, "this server responds at its own address only"
+            return 421, "this server accepts requests to its own address only"
         origin = heads.get(b"origin", [])
         if len(origin) > 1 or (origin and origin[0] != b"http://" + heads[b"host"][0]):
-            return 403, "requests of other sites are refused"
+            return 403, "requests from other sites are refused"
         if not origin and (socket or scope["method"] not in ("GET", "HEAD")):
             return 403, "a request without an origin is refused"
         # A tab that goes to the page from the file of `supervisor` is no danger: it needs the token, and reads nothing
         leads = scope.get("method") == "GET" and heads.get(b"sec-fetch-dest") == [b"document"]
         if heads.get(b"sec-fetch-site", [b"none"])[0] not in (b"none", b"same-origin") and (socket or not leads):
-            return 403, "requests of other sites are refused"
+            return 403, "requests from other sites are refused"
         if not socket and scope["method"] not in ("GET", "HEAD", "POST"):
-            return 405, "only GET and POST are known"
+            return 405, "only GET and POST requests are accepted"
         if len(scope.get("raw_path") or b"") + len(scope.get("query_string") or b"") > LONGEST_PATH:
             return 414, "the address is too long"
         if sum(len(name) + len(value) for name, value in scope["headers"]) > LARGEST_HEADS:
-            return 431, "the heads of the request are too long"
+            return 431, "the headers of the request are too long"
         lengths = heads.get(b"content-length", [b"0"])
         if len(lengths) != 1 or not lengths[0].isdigit() or len(lengths[0]) > MOST_DIGITS or int(lengths[0]) > LARGEST_BODY:
-            return 413, "too much is sent"
+            return 413, "the request is too large"
         door = next((door for door in self.doors if _opens(door, scope)), None)
         if door is None:
-            return 403, "the address lacks its token: take the whole address that `extrados explore` has printed"
+            return 403, "the address lacks its token: open the whole address that `extrados explore` printed"
         if heads[b"host"][0].decode("latin-1") not in [host.lower() for host in door.hosts]:
-            return 421, "this server responds at its own address only"
+            return 421, "this server accepts requests to its own address only"
         if door.near and not _is_near(scope):
-            return 403, "this address is for the machine itself"
+            return 403, "this address can be opened only on the machine of the server"
         return None
 
 

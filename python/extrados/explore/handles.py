@@ -1,7 +1,5 @@
-"""Handles of the drawing: places that a hand takes hold of, and what deck keys follow from where it leads them.
-
-Places are those of the building's own coordinates [m]. `values` of a place are the deck's, in SI and degrees.
-"""
+"""Handles of the drawing: points that can be dragged, and the keys of the deck that follow from their places. Places are in the
+coordinates of the building [m]; values are those of the deck, in SI and degrees."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -60,7 +58,7 @@ class KindHandles:
 
 
 def kind_handles(structure: Structure) -> KindHandles | None:
-    """The handles of the kind of a structure; None where it has none."""
+    """The handles of the kind of a structure; None for a kind without handles."""
     place = kinds.STRUCTURES[structure.kind].handles
     return None if place is None else kinds.load(place)
 
@@ -72,7 +70,7 @@ def anchor_of(structure: Structure, assembly: Assembly) -> np.ndarray:
 
 
 def handles_of(structure: Structure, assembly: Assembly | None) -> list[Handle]:
-    """The handles of a building, in the order in which the keyboard passes them; assembly: its blocks, where it has any."""
+    """The handles of a building in the order of the Tab key; assembly: its blocks, if it has any."""
     known = kind_handles(structure)
     return [] if known is None else list(known.make(structure, assembly))
 
@@ -153,7 +151,7 @@ def _vault(s: Any, assembly: Assembly) -> Iterator[Handle]:
     top = outer * math.cos(half) if s.height_to == "extrados" else 0.0
     across = -(start + 0.5 * s.buttress_width) if s.height_to == "extrados" else 0.0
     yield _length("height", "Height above the ground", across, top, s.height, lambda x, y: y - base, "y")
-    yield _length("face", "Inner faces of the buttresses from the axis", -s.face, base, s.face, lambda x, y: -x)
+    yield _length("face", "Distance of the inner faces of the buttresses from the axis", -s.face, base, s.face, lambda x, y: -x)
 
 
 def _church(s: Any, _: Assembly) -> Iterator[Handle]:
@@ -190,13 +188,15 @@ def _church(s: Any, _: Assembly) -> Iterator[Handle]:
         yield _length("aisle_span", "Clear span of the aisles", side * end, 0.0, span, lambda x, y: side * x - back)
         yield _length("buttress_width", "Width of the outer buttresses", side * (end + width), 0.0, width, lambda x, y: side * x - end)
     else:
-        yield _length("half_width", "From the axis to the outer faces", side * s.half_width, 0.0, s.half_width, lambda x, y: side * x)
+        yield _length(
+            "half_width", "Distance of the outer faces from the axis", side * s.half_width, 0.0, s.half_width, lambda x, y: side * x
+        )
         yield _length("buttress_width", "Width of the outer buttresses", side * end, 0.0, width, lambda x, y: s.half_width - side * x)
     aisle_outer = 0.5 * span + s.aisle_thickness
     high = s.buttress_top or low + aisle_outer * math.cos(0.5 * math.radians(s.aisle_embrace))
     yield _length("buttress_top", "Height of the outer buttresses", side * (end + 0.5 * width), high, high, lambda x, y: y, "y")
     if s.flyer is not None:
-        for name, label, x in (("head", "Head of the flyers", back), ("foot", "Foot of the flyers", end)):
+        for name, label, x in (("head", "Height of the head of the flyers", back), ("foot", "Height of the foot of the flyers", end)):
             yield _length(f"flyer.{name}", label, side * x, getattr(s.flyer, name), getattr(s.flyer, name), lambda x, y: y, "y")
 
 
@@ -234,8 +234,23 @@ def _openings(openings: list[Any]) -> Iterator[Handle]:
 
 def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     wide, high = s.units * s.unit_length, s.courses * s.unit_height
-    yield _length("unit_length", "Length of a unit, by that of the wall", wide, 0.5 * high, s.unit_length, lambda x, y: x / s.units)
-    yield _length("unit_height", "Height of a unit, by that of the wall", 0.5 * wide, high, s.unit_height, lambda x, y: y / s.courses, "y")
+    yield _length(
+        "unit_length",
+        "Length of a unit (the handle changes the length of the wall)",
+        wide,
+        0.5 * high,
+        s.unit_length,
+        lambda x, y: x / s.units,
+    )
+    yield _length(
+        "unit_height",
+        "Height of a unit (the handle changes the height of the wall)",
+        0.5 * wide,
+        high,
+        s.unit_height,
+        lambda x, y: y / s.courses,
+        "y",
+    )
     yield from _openings(s.openings)
 
 
@@ -285,7 +300,7 @@ def _pointed(s: Any, _: Assembly) -> Iterator[Handle]:
     yield _length("span", "Clear span", -0.5 * s.span, 0.0, s.span, lambda x, y: -2.0 * x)
     yield _length(
         "radius",
-        "Radius of the intrados, by its rise",
+        "Radius of the intrados (the handle changes the rise)",
         0.0,
         rise,
         s.radius,
@@ -435,7 +450,7 @@ def _anchorage(assembly: Assembly, place: list[float], given: str | None) -> str
     point = np.array([place])
     there = [k for k, outline in enumerate(assembly.outlines) if inside(outline, point)[0]]
     if not there:
-        raise BadGeometry("the anchorage of a tie lies in a block")
+        raise BadGeometry("the anchorage of a tie must lie in a block")
     names = [assembly.block_names[k] for k in there]
     return None if given is None or given in names else names[0]
 

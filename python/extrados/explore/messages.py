@@ -1,4 +1,4 @@
-"""What a message of the page may give, read strictly; and what may go wrong with what it asks for."""
+"""Strict reading of the messages of a page, and their errors."""
 
 import re
 from typing import Any
@@ -41,7 +41,7 @@ def path(message: Message) -> str:
 
 
 def quantity(text: str, unit: str, label: str) -> float:
-    """A number typed with a unit or without, in `unit`; DeckError says what is wrong with it."""
+    """A number with or without a unit, converted to `unit`; DeckError gives the error."""
     text = text.strip().replace("−", "-").replace("°", " deg")
     try:
         return float(text)
@@ -49,7 +49,9 @@ def quantity(text: str, unit: str, label: str) -> float:
         pass
     found = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z%/^0-9*]+)", text[:60])
     if not found:
-        raise DeckError([f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"])
+        raise DeckError(
+            [f"{label}: '{text[:40]}' is not a quantity; expected a number such as 1.5, or a number with its unit such as 150 cm"]
+        )
     try:
         return float(found[1]) * quantities.factor(found[2], unit)
     except ValueError as error:

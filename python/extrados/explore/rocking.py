@@ -1,4 +1,4 @@
-"""What the page shows of rocking: the history with its shapes, the map of pulses that bring it down, the primary impulse."""
+"""Rocking on the page: the history with its shapes, the map of pulses that cause collapse, the primary impulse."""
 
 import time
 from collections.abc import Iterator

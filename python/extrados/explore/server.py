@@ -48,7 +48,7 @@ WHOLE_REQUEST, MOST_IDLE = 30.0, 32
 
 
 class Inbox:
-    """What a page has asked for and its session has not begun; `lane` of a message: what it may replace there."""
+    """Requests of a page that its session has not begun; `lane` of a message: which waiting message it replaces."""
 
     def __init__(self) -> None:
         self.waiting: list[dict[str, Any]] = []
@@ -72,7 +72,7 @@ class Inbox:
 
 
 def _words(raw: str) -> dict[str, Any] | None:
-    """A message of a page; None where it is none."""
+    """A message of a page; None if it is not valid."""
     try:
         message = json.loads(raw)
     except (ValueError, RecursionError):
@@ -96,7 +96,7 @@ def _end(works: list[Generator[Reply, None, None]], session: Session) -> None:
 def _log_failure(ended: Future[None]) -> None:
     """Tell on the log what went wrong at the end of a page, which nobody waits for."""
     if (error := ended.exception()) is not None:
-        log.error("the end of a page failed", exc_info=error)
+        log.error("a page could not be closed", exc_info=error)
 
 
 async def _serve(page: WebSocket, session: Session, inbox: Inbox, shared: ThreadPoolExecutor | None) -> None:
@@ -154,7 +154,7 @@ async def _read(page: WebSocket, inbox: Inbox) -> None:
         text = message.get("text")
         words = None if text is None else _words(text)
         if words is None:
-            await page.close(1003, "expected a JSON object with a word 'do'")
+            await page.close(1003, "expected a JSON object with the key 'do'")
             return
         if not (messages.take() and volume.take(len(text or ""))) or len(inbox.waiting) > MOST_WAITING:
             await page.close(1008, "too many messages")
@@ -199,24 +199,24 @@ async def _file(request: Request) -> Response:
     name = request.path_params.get("name") or "index.html"
     found = request.app.state.files.get(name)
     if found is None:
-        return PlainTextResponse("there is no such file\n", 404)
+        return PlainTextResponse("this file does not exist\n", 404)
     return Response(found[0], media_type=found[1])
 
 
 async def _film(request: Request) -> Response:
-    """Pictures of what is seen, one after the other, as a film."""
+    """A film of a sequence of pictures."""
     state = request.app.state
     if request.scope["role"] == "pupil":
-        return PlainTextResponse("a class makes no films\n", 403)
+        return PlainTextResponse("pupils of a class cannot make films\n", 403)
     if state.filming:
-        return PlainTextResponse("another film is being made\n", 429)
+        return PlainTextResponse("another film is being made: try again when it is finished\n", 429)
     state.filming = True
     try:
         body = bytearray()
         async for part in request.stream():
             body += part
             if len(body) > LARGEST_BODY:
-                return PlainTextResponse("too much is sent\n", 413)
+                return PlainTextResponse("the request is too large\n", 413)
         made = await asyncio.get_running_loop().run_in_executor(None, film, bytes(body))
     except BadFilm as error:
         return PlainTextResponse(f"{error}\n", 422)

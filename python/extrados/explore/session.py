@@ -1,4 +1,4 @@
-"""A session: one page's deck, kept alive; messages of the page in, replies out. It knows nothing of how they travel."""
+"""A session: the live deck of one page; messages in, replies out, independent of the transport."""
 
 import logging
 import time
@@ -55,7 +55,7 @@ class Session(Desk):
         do = ANSWERS.get(message["do"]) if isinstance(message.get("do"), str) else None
         try:
             if do is None:
-                raise BadMessage(f"nothing is known of '{str(message.get('do'))[:40]}'")
+                raise BadMessage(f"the page sent an unknown request: '{str(message.get('do'))[:40]}'")
             begin = time.thread_time()
             for reply in do(self, message):
                 spent = 1e3 * (time.thread_time() - begin)
@@ -68,8 +68,8 @@ class Session(Desk):
         except BadMessage as error:
             yield Reply({"of": number, "to": str(message.get("do"))[:40], "bad": str(error)[:2000]})
         except RecursionError:
-            yield Reply({"of": number, "to": message["do"], "complaints": ["is nested too deeply for a deck"]})
+            yield Reply({"of": number, "to": message["do"], "complaints": ["the deck is nested too deeply"]})
         except Exception as error:  # the page lives on: it is told, and what it holds stays as it was
             log.exception("a page requested %s", message["do"])
-            told = f"this is a fault of the program, please report it: {type(error).__name__}: {error}"
+            told = f"this is a fault of extrados, please report it: {type(error).__name__}: {error}"
             yield Reply({"of": number, "to": message["do"], "complaints": [told[:2000]]})

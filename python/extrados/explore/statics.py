@@ -1,6 +1,6 @@
-"""What the page shows of limit analysis: capacity both ways, lines of thrust at a tilt, hinges, mechanism, reactions.
+"""Limit analysis on the page: capacity in both senses, lines of thrust at a tilt, hinges, mechanism, reactions.
 
-It asks less than the analysis `tilt` does, and hence answers while a hand moves; the numbers are the same.
+The page calculates less than the analysis `tilt`, so that results follow a drag; the numbers are the same.
 """
 
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ class View:
 
 @dataclass
 class Picture:
-    """Words and arrays of a state; `limit` and what it found stay for what is asked of it later."""
+    """Words and arrays of a state; `limit` and its results are kept for later requests."""
 
     words: dict[str, Any]
     arrays: dict[str, np.ndarray]
@@ -76,7 +76,7 @@ def geometry(assembly: Assembly, anchor: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def picture(building: Building, options: LimitAnalysisTable, view: View, anchor: np.ndarray) -> Picture:
-    """The structure and all that is drawn on it; where it cannot stand the words say so and the lines are missing."""
+    """The structure and its drawing; if it cannot stand, the words state this and there are no lines."""
     assembly = building.blocks()
     chains = assembly.chains
     chain = view.chain if view.chain in chains else first_chain(assembly)
@@ -95,7 +95,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     if building.ties:
         made.arrays["ties"] = building.anchored().point.reshape(-1, 2) - anchor
     if building.dampers:
-        made.arrays["dampers"] = np.array([[d.start, d.far] for d in building.dampers]).reshape(-1, 2) - anchor
+        made.arrays["dampers"] = np.array([d.flat() for d in building.dampers]).reshape(-1, 2) - anchor
     words["abutting_wall"] = building.supports.abutting_wall
     words["head_mass_kg"] = getattr(building.structure, "head_mass", None) or None
     ends = _ends(made, building, options)
@@ -147,7 +147,7 @@ def _ends(made: Picture, building: Building, options: LimitAnalysisTable) -> dic
     """Collapse to both sides; None without it, and the words of the picture give the reason."""
     words = made.words
     if ignored := [what for what in building.special_keys if what not in options.bears]:
-        words |= {"stands": None, "unknown": f"{options.kind} cannot take {' and '.join(ignored)} into account."}
+        words |= {"stands": None, "unknown": f"The analysis {options.kind} cannot consider {' and '.join(ignored)}."}
         return None
     limit: LimitAnalysis | None = None
     try:
@@ -213,7 +213,7 @@ def _reason(words: dict[str, Any]) -> str:
 
 
 def detail(made: Picture, anchor: np.ndarray) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """What takes longer than a movement of a hand: mechanisms carried on, the geometric safety factor, or why the
+    """Results that take longer than a movement of the mouse: mechanisms, geometric safety factor, or the reason why the
     structure cannot stand."""
     words: dict[str, Any] = {}
     arrays: dict[str, np.ndarray] = {}
@@ -271,7 +271,7 @@ def _touches(assembly: Assembly, state: State, anchor: np.ndarray) -> list[list[
 
 
 def _reactions(assembly: Assembly, state: State, anchor: np.ndarray) -> list[dict[str, Any]]:
-    """Forces of the ground on the structure, and where they act."""
+    """Forces of the ground on the structure, with their points of action."""
     points, force = state.points(assembly), state.force(assembly)
     force = np.where(np.abs(force) > ROUNDING * np.abs(force).max(initial=0.0), force, 0.0)
     on_b = assembly.a == GROUND

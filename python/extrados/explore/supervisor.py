@@ -28,12 +28,12 @@ MOST_DEATHS, WITHIN = 5, 60.0
 
 
 class BadAddress(ValueError):
-    """A class cannot be held at an address; the text says why."""
+    """An address cannot be used for a class; the text gives the reason."""
 
 
 @dataclass(frozen=True)
 class ClassOptions:
-    """Where a class is held: an address of this machine on the local network, and the most pupils."""
+    """Address of this machine on the local network, and greatest number of pupils of a class."""
 
     address: str = "127.0.0.1"
     pupils: int = PUPILS
@@ -44,7 +44,9 @@ class ClassOptions:
         except ValueError:
             raise BadAddress(f"{self.address}: expected an IPv4 address of this machine, such as 192.168.1.5") from None
         if found.is_unspecified or not (found.is_private or found.is_link_local):
-            raise BadAddress(f"{self.address}: a class is held on one address of a private network, not on all or on the internet")
+            raise BadAddress(
+                f"{self.address}: a class needs one address of a private network; an address of the internet, or 0.0.0.0, is refused"
+            )
 
 
 def explore(
@@ -56,7 +58,7 @@ def explore(
         try:
             sock = stack.enter_context(server.listen(PORT if port is None else port, strict=port is not None))
         except OSError as error:
-            say(f"port {port} cannot be taken: {error.strerror or error}")
+            say(f"port {port} cannot be used: {error.strerror or error}")
             return 3
         address = f"http://127.0.0.1:{sock.getsockname()[1]}/{token}/"
         sockets, second = [sock], None
@@ -64,13 +66,13 @@ def explore(
             try:
                 sockets.append(stack.enter_context(server.listen(PORT + 1, address=pupils.address)))
             except OSError as error:
-                say(f"{pupils.address} is no address of this machine that a class can be held at: {error.strerror or error}")
+                say(f"{pupils.address} cannot be used for a class on this machine: {error.strerror or error}")
                 return 3
             second = (sockets[1].fileno(), server.new_token(), pupils.pupils)
             _say_class(f"http://{pupils.address}:{sockets[1].getsockname()[1]}/{second[1]}/", pupils, say)
         say(f"{'Teacher' if pupils else 'Page'}:    {address}")
         say(f"Folder:  {folder}")
-        say("Ctrl-C ends it.")
+        say("Ctrl-C stops the server.")
         given = {"socket": sock.fileno(), "token": token, "folder": str(folder), "deck": deck, "class": second}
         deaths: list[float] = []
         pointer = write_pointer(address) if browser else None
@@ -92,9 +94,11 @@ def explore(
             now = time.monotonic()
             deaths = [t for t in deaths if now - t < WITHIN] + [now]
             if len(deaths) >= MOST_DEATHS:
-                say(f"the server died {len(deaths)} times within a minute, last with code {code}: given up")
+                say(
+                    f"the server stopped {len(deaths)} times within a minute, the last time with exit code {code}; extrados does not start it again"
+                )
                 return 3
-            say(f"the server died (code {code}): it is begun anew, and open pages come back with their state")
+            say(f"the server stopped (exit code {code}) and is started again; open pages keep their state")
             time.sleep(0.2 * len(deaths))
 
 
@@ -102,7 +106,7 @@ def _say_class(link: str, pupils: ClassOptions, say: Callable[[str], None]) -> N
     """Print the link of a class, and its QR code if the package for it is there."""
     say(f"Class:   {link}   (up to {pupils.pupils} pupils)")
     if ipaddress.IPv4Address(pupils.address).is_loopback:
-        say("         This machine alone reaches it: --address names one of the local network.")
+        say("         Only this machine can open the page of the class: give --address with an address of the local network.")
     try:
         import segno
     except ImportError:

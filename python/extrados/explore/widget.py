@@ -83,7 +83,7 @@ class Page(anywidget.AnyWidget):
 
     @property
     def deck(self) -> str:
-        """The deck as it stands in the page."""
+        """The present text of the deck on the page."""
         return self.session.document.text
 
     def _answer(self, _: Any, message: Any, __: Any) -> None:

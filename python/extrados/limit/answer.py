@@ -154,7 +154,7 @@ def assess(
     if not isinstance(limit.system, Sparse):
         # The structure stands: that no line is found now is a matter of rounding too.
         rounding = (NoAnswer, NoEquilibrium)
-        drawn = beside("the most central course of the line at collapse", lambda: limit.recentred(state, moving), rounding) or state
+        drawn = beside("the most central thrust line at collapse", lambda: limit.recentred(state, moving), rounding) or state
         start = [state for pair in ends.values() for state in pair]
         central = beside("the most central line upright", lambda: limit.central(start=start), rounding)
     upright, part = central or (None, np.nan)
@@ -183,20 +183,24 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
         try:
             upright = [limit.collapse(direction)[1].upper_bound for direction in (1, -1)]
         except NoEquilibrium:
-            return CannotStand(f"{why_not(limit)}; certificate: planes outside the curves of strength already leave no forces")
+            return CannotStand(
+                f"{why_not(limit)}; certificate: already if planes outside the strength curves are used as limits, no equilibrium "
+                "forces exist"
+            )
         if upright[0] < 0.0 or upright[1] > 0.0:
             return CannotStand(
-                f"{why_not(limit)}; certificate: the work of loads and crushing in the mechanism that this load sets in motion"
+                f"{why_not(limit)}; certificate: balance of the work of loads and crushing in the mechanism under self-weight"
             )
     if motion is None:
-        raise NoAnswer("no state was found upright, but no motion proves that there is none")
+        raise NoAnswer("no equilibrium state was found for the upright structure, and no mechanism proves that none exists")
     assembly = limit.assembly
     x, y = (assembly.centroid / assembly.size).T
     velocity = np.column_stack([motion[:, 0] - motion[:, 2] * y, motion[:, 1] + motion[:, 2] * x, motion[:, 2]])
     velocity[:, :2] *= assembly.size
     fastest = assembly.block_names[int(np.hypot(velocity[:, 0], velocity[:, 1]).argmax())]
     return CannotStand(
-        f"{why_not(limit)}; certificate: a motion, fastest at {fastest}, by which the loads do work that no joint takes", velocity
+        (f"{why_not(limit)}; certificate: a mechanism, fastest at {fastest}, in which the loads do positive work and no joint resists"),
+        velocity,
     )
 
 
@@ -208,33 +212,36 @@ def why_not(limit: LimitAnalysis) -> str:
         told = ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
         if not LimitAnalysis(assembly, loads=limit.loads).stands():
             return f"nothing carries {told} from below"
-        return f"only friction carries {told}, and {_slides(limit)}"
+        return f"only friction carries {told}, and also {_slides(limit)}"
     try:
         interval = sorted(limit.collapse(d)[0].gamma for d in (1, -1))
     except NoEquilibrium:
         interval = []
     if interval and (interval[0] > 0.0 or interval[1] < 0.0):
         return (
-            f"the structure stands only under a horizontal load of {interval[0]:.4f} to {interval[1]:.4f} g "
-            f"(tilted by {np.degrees(np.arctan(interval[0])):.2f} to {np.degrees(np.arctan(interval[1])):.2f} degrees)"
+            f"the structure can stand only under a horizontal load between {interval[0]:.4f} and {interval[1]:.4f} g (tilt "
+            f"between {np.degrees(np.arctan(interval[0])):.2f} and {np.degrees(np.arctan(interval[1])):.2f} degrees)"
         )
     try:
         state, part = limit.central()
     except NoEquilibrium:
         if limit.friction is not None:
             return _slides(limit)
-        return "some block hangs: its joint would have to pull"
+        return "a block is not supported: its joint would need tension"
     except NoAnswer:
         return "no thrust line stays inside the structure"
     if part < 1.0 and limit.strength is not None:
-        return f"a thrust line keeps to {part:.3f} of the joints, but the strength of {engineering(limit.strength, 'Pa')} does not carry it"
+        return (
+            f"a thrust line passes within the central {part:.3f} of the joints, but the strength of "
+            f"{engineering(limit.strength, 'Pa')} is not sufficient for this line"
+        )
     if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
         return _slides(limit)
     off = 2.0 * np.abs(state.position - 0.5)
     worst = [assembly.joint_names[j] for j in np.flatnonzero(off > part * (1.0 - 1e-6))]
     return (
         f"no thrust line stays inside the structure: the section would have to be {100.0 * (part - 1.0):.4g} % thicker, "
-        f"the line leaves first at {', '.join(worst[:6])}"
+        f"the thrust line first leaves the structure at {', '.join(worst[:6])}"
     )
 
 
@@ -246,8 +253,8 @@ def _slides(limit: LimitAnalysis) -> str:
 
     low, high = 0.0, 10.0
     if not stands(high):
-        return "some block hangs: its joint would have to pull"
+        return "a block is not supported: its joint would need tension"
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if stands(middle) else (middle, high)
-    return f"the structure slides apart: a coefficient of friction of at least {high:.3f} is needed"
+    return f"the structure fails by sliding: the coefficient of friction must be at least {high:.3f}"

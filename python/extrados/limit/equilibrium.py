@@ -46,7 +46,7 @@ def spanning_tree(assembly: Assembly) -> Tree:
     if tree is None:
         names = [assembly.block_names[i] for i in lost]
         more = f" and {len(names) - 5} more" if len(names) > 5 else ""
-        raise Disconnected(f"not connected to the ground by any joint: {', '.join(names[:5])}{more}")
+        raise Disconnected(f"these blocks are not connected to the ground by any joint: {', '.join(names[:5])}{more}")
     return tree
 
 

@@ -126,7 +126,7 @@ class FaceLaw:
         nothing = sparse.csc_array((n, n))
         found = clarabel.DefaultSolver(nothing, cost, sparse.vstack(blocks).tocsc(), np.concatenate(right), cones, settings).solve()
         if "Solved" not in str(found.status):
-            raise NoAnswer(f"the conic solver gave up on the face law: {found.status}")
+            raise NoAnswer(f"the conic solver found no solution for the face law: {found.status}")
         x = np.array(found.x)
         return float(x[-1]), np.maximum(x[:corners], 0.0)
 

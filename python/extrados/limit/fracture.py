@@ -101,7 +101,7 @@ def fractured_collapse(
             raise
         except NoEquilibrium:
             if limit.certificate() is None:
-                raise NoAnswer("no state was found with the crack, but no motion proves that there is none") from None
+                raise NoAnswer("no equilibrium state was found with the crack, and no mechanism proves that none exists") from None
             raise
         distance, width = section_distance(cracked, block, foot + height, direction, state, load, sway)
         line = np.array(_ends(assembly, block, base, height, direction))
@@ -128,7 +128,7 @@ def _base(assembly: Assembly, block: int) -> int:
     grounded = [j for j in assembly.joints_of(block).tolist() if GROUND in (assembly.a[j], assembly.b[j])]
     name = assembly.block_names[block]
     if len(grounded) != 1:
-        raise NoCrack(f"{name}: the buttress has {len(grounded)} ground joints; the crack is sought from one")
+        raise NoCrack(f"{name}: the buttress has {len(grounded)} joints on the ground; the analysis of the crack requires exactly one")
     return grounded[0]
 
 
@@ -141,5 +141,5 @@ def _ends(assembly: Assembly, block: int, base: int, height: float, direction: i
     level = inner[1] + height
     faces = crossings(assembly.outlines[block], level)
     if len(faces) != 2:
-        raise NoCrack(f"{assembly.block_names[block]}: at {height:.4g} m above its base it has no two faces")
+        raise NoCrack(f"{assembly.block_names[block]}: at {height:.4g} m above its base, the block does not have two faces")
     return np.array([faces[0] if direction > 0 else faces[1], level]), toe

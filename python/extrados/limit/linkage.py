@@ -96,10 +96,12 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     fastest = float(np.hypot(*mechanism.velocity[:, :2].T).max())
     slides = [j for j in _moving(mechanism) if abs(mechanism.slip[j]) > SLIPS * fastest]
     if slides:
-        raise CannotRock(f"the mechanism slides along {_listed(names, slides)}: a rocking mechanism rotates about hinges without sliding")
+        raise CannotRock(
+            f"the mechanism slides along {_listed(names, slides)}: a rocking mechanism must rotate about hinges without sliding"
+        )
     crushes = [j for j in _moving(mechanism) if ends[:2, j].min() < -SLIPS * fastest]
     if crushes:
-        raise CannotRock(f"the stone crushes at {_listed(names, crushes)}: the hinges that rock are sharp edges")
+        raise CannotRock(f"the blocks crush at {_listed(names, crushes)}: rocking requires hinges at sharp edges, without crushing")
 
     part = rigid_parts(assembly, mechanism)
     count = int(part.max())
@@ -113,10 +115,10 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     mass, centroid, inertia = _mass(assembly, part, count)
     spin = np.array([mechanism.velocity[part == k + 1, 2].mean() for k in range(count)])
     driver = _driver(assembly, joint, joined, point, spin, side)
-    parted = f", for it parts all along {_listed(names, mechanism.sliding)}" if mechanism.sliding else ""
+    parted = f", because it opens along the whole of {_listed(names, mechanism.sliding)}" if mechanism.sliding else ""
     row = _independent(centroid, joined, point, assembly.size, driver, parted)
     made = Linkage(side, part, mass, centroid, inertia, joint, joined, point, row, driver, 1 if spin[driver - 1] > 0.0 else -1)
-    _same_motion(made, assembly, mechanism, spin, fastest)
+    _same_motion(made, assembly, mechanism, fastest)
     return made
 
 
@@ -163,7 +165,7 @@ def _driver(assembly: Assembly, joint: np.ndarray, joined: np.ndarray, point: np
         for h in candidates:
             if 0 in joined[h] and turning[joined[h].max()]:
                 return int(joined[h].max())
-    raise CannotRock("no part of the mechanism rotates about a hinge on a part at rest")
+    raise CannotRock("no part of the mechanism rotates about a hinge on a part that is at rest")
 
 
 def _jacobian(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float) -> np.ndarray:
@@ -198,13 +200,14 @@ def _independent(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, si
     if len(basis) < rows.shape[1]:
         free = rows.shape[1] - len(basis) + 1
         raise CannotRock(
-            f"its {len(centroid)} moving parts on {len(joined)} hinges have {free} degrees of freedom: they do not move as one{parted}"
+            f"the mechanism has {len(centroid)} moving parts and {len(joined)} hinges, and thus {free} degrees of freedom "
+            f"instead of one{parted}"
         )
     kept_rows = np.array(kept)
     return np.column_stack([kept_rows // 2 + 1, kept_rows % 2 + 1])
 
 
-def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: np.ndarray, fastest: float) -> None:
+def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, fastest: float) -> None:
     """CannotRock where the hinges move the parts otherwise than the mechanism found: it must part a joint to move."""
     rows = _jacobian(made.centroid, made.joined, made.point, assembly.size)
     moving = made.part > 0
@@ -217,4 +220,4 @@ def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: 
     field[:, :2] /= assembly.size
     error = rows @ field.ravel() if len(rows) else np.zeros(1)
     if np.abs(error).max() * assembly.size > SAME * fastest:
-        raise CannotRock("the hinges alone do not give the motion found: the mechanism also moves at other joints")
+        raise CannotRock("the hinges alone do not give the mechanism that was found: it also moves at other joints")

@@ -74,7 +74,7 @@ class LoadPath:
         bonded = self._factor(self._bonded(), 0.0, border=False)
         upright = self._held(state, bonded.solve(p.dead), 0.0, None)
         if upright is None:
-            raise NoAnswer("elastic joints found no equilibrium under self-weight")
+            raise NoAnswer("no equilibrium with elastic joints was found under self-weight")
         state = upright
         first = step = FIRST * ELASTIC_LOAD * float(p.live @ bonded.solve(p.live))
         flat, moved = 0, nothing
@@ -84,7 +84,7 @@ class LoadPath:
             if found is None:
                 step, moved = 0.5 * step, 0.5 * moved
                 if step < SHRUNK * first:
-                    raise NoAnswer(f"the load path ended at {state.gamma:.4f} g: no smaller step leads on")
+                    raise NoAnswer(f"the load path ended at {state.gamma:.4f} g, because no smaller step converges")
                 continue
             moved = found.u - state.u
             change = abs(found.gamma - state.gamma)
@@ -96,7 +96,7 @@ class LoadPath:
             if flat >= FLAT_STEPS:
                 return SlidingState(state.gamma, state.force, state.share, moved / step)
             step, moved = GROWTH * step, GROWTH * moved
-        raise NoAnswer(f"the load path is not constant after {MOST_STEPS} steps: {state.gamma:.4f} g")
+        raise NoAnswer(f"the load on the load path has not become constant after {MOST_STEPS} steps: {state.gamma:.4f} g")
 
     def _held(self, old: _State, start: np.ndarray, gamma: float, work: float | None) -> _State | None:
         """The state after a step of `work` of the live load (None: gamma stays), by proximal steps where Newton's fail."""
@@ -125,7 +125,7 @@ class LoadPath:
     def _newton(self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray) -> _State | None:
         """The state in equilibrium after a step, with springs `hold` to the displacements `about`; None without one."""
         if self.solves > self.effort:
-            raise NoAnswer(f"the load path ended at {gamma:.4f} g: it took more than {self.effort} linear systems")
+            raise NoAnswer(f"the load path ended at {gamma:.4f} g, because it needed more than {self.effort} linear systems")
         p = self.points
 
         def left(u: np.ndarray, gamma: float) -> tuple[_State, np.ndarray, float, float]:

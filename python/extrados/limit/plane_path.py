@@ -13,7 +13,7 @@ def collapse_along_path(limit: LimitAnalysis, direction: int, ratio: float, effo
     """State and mechanism under a push to +x (1) or -x (-1) of joints whose shear stiffness is `ratio` of the normal one;
     NoAnswer where the path does not lead to a collapse."""
     if limit.strength is not None:
-        raise NoAnswer("load paths do not consider crushing")
+        raise NoAnswer("load paths do not include crushing")
     points = limit.contact_points(direction)
     end = rigid_motion(points, LoadPath(points, ratio, effort).follow())
     corners = np.column_stack([end.force[0::2, 0], end.force[1::2, 0], end.force[0::2, 1] + end.force[1::2, 1]])

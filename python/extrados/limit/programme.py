@@ -151,7 +151,7 @@ class LimitAnalysis:
                 return solution, programme.constraints, corners
             self._cuts = cuts if self._cuts is None else self._cuts + cuts
             programme = self._programme = Programme(self.system, self._whole())
-        raise NoAnswer("the crushing of the joints did not settle")
+        raise NoAnswer("the iteration for crushing of the joints did not converge")
 
     def crushing_cuts(self, corners: np.ndarray, law: float) -> Constraints | None:
         """Tangent planes of min(n_p, n_q) >= N^2 / (2 f L) where scaled corner forces (joints, 3) break it by more than `law` of
@@ -210,7 +210,7 @@ class LimitAnalysis:
         """Collapse by linear programmes."""
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
         if abs(solution.x[-1]) > 0.99 * BOUND or solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
-            raise Immovable("no such load causes collapse: the joints restrain the blocks from all sides")
+            raise Immovable("no load of this kind causes collapse: the joints restrain the blocks on all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
         if isinstance(self.system, Reduced):
             twist, defect = self.system.velocities(motion)
@@ -264,8 +264,9 @@ class LimitAnalysis:
             self._refuse_immovable(direction)
             lower, upper = ("nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction))
             raise NoAnswer(
-                f"no state of collapse without dilatancy was found; the load lies between that without friction ({lower}) and "
-                f"that with dilatancy ({upper}); blocks that friction alone holds between their neighbours may have none"
+                f"no collapse state without dilatancy was found. The collapse load lies between that without friction ({lower}) "
+                f"and that with dilatancy ({upper}). If friction alone carries a block between its neighbours, such a state may "
+                "not exist"
             )
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())
@@ -329,7 +330,7 @@ class LimitAnalysis:
         """Immovable where not even joints without friction let the load do work."""
         # However much soil and ties take, a greater load overcomes it.
         if self._certificate(direction * self.loads.live, np.zeros(len(self._mu)), taking=False) is None:
-            raise Immovable("no such load causes collapse: the joints restrain the blocks from all sides")
+            raise Immovable("no load of this kind causes collapse: the joints restrain the blocks on all sides")
 
     def read_collapse(
         self, gamma: float, corners: np.ndarray, share: np.ndarray, twist: np.ndarray, motion: np.ndarray, taken: float
@@ -493,7 +494,7 @@ class LimitAnalysis:
         # Where joints come to carry nothing the programmes do not tell nearer parts apart.
         if best is not None and high - low < LEAST_PART:
             return best, high if high > LEAST_PART else 0.0
-        raise NoAnswer("the most central thrust line did not settle")
+        raise NoAnswer("the iteration for the most central thrust line did not converge")
 
     def _central_of_wall(self, gamma: float) -> tuple[State, float]:
         """The same of a wall, by halving: joints cut down to a part about their middles bear gamma, or do not.

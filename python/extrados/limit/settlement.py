@@ -17,7 +17,7 @@ from extrados.model.geometry.assembly import GROUND
 
 SLIGHT = 1e-6  # cost of pressing beside that of the work on the supports
 SAME = 1e-8  # of the total load: states that do this little more work are as good
-CANNOT_FOLLOW = "the blocks are wedged, and would have to be crushed"
+CANNOT_FOLLOW = "the blocks are wedged: they cannot follow the movement without crushing"
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def settle(limit: LimitAnalysis, movement: np.ndarray) -> Settlement:
     twist, defect = limit.system.velocities(scaled, *([solution.equations * most / assembly.size] if limit.system.equations else []))
     defect *= float(np.abs(twist).max()) * assembly.size / most  # of the movement: where no block moves, of nothing
     if defect > 1e-6:
-        raise NoAnswer(f"the motions of blocks and joints differ by {defect:.1e} of the movement")
+        raise NoAnswer(f"the motions of blocks and of joints differ by {defect:.1e} times the movement")
     size = assembly.size
     shift = twist[:, :2] * size
     x, y = assembly.centroid.T

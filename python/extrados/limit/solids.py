@@ -74,7 +74,7 @@ class Falls:
 
 
 @dataclass(frozen=True)
-class _Stated:
+class Stated:
     """A programme: least cost x with right - matrix x within the cones. lines: column of the matrix of forces that each row after the
     first is the rate of, -1 for a bound (of a sliding corner the opening is over mu). sized: of each unknown that bounds the
     lengthening of a strand that is sized its number, else -1."""
@@ -87,8 +87,8 @@ class _Stated:
     sized: np.ndarray
 
 
-def _conic(matrix: sparse.csr_array, cost: np.ndarray, right: np.ndarray, cones: list[Any], method: str) -> "clarabel.DefaultSolution":
-    """The solution of a conic programme, see _Stated."""
+def solve_conic(matrix: sparse.csr_array, cost: np.ndarray, right: np.ndarray, cones: list[Any], method: str) -> "clarabel.DefaultSolution":
+    """The solution of a conic programme, see Stated."""
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_iter = 200
@@ -114,6 +114,7 @@ class SolidLimit:
         resting: np.ndarray | None = None,
     ):
         self.assembly = assembly
+        self.friction = friction
         self.strands = tuple(strands)
         self.resting = np.zeros((len(assembly.mass), 6)) if resting is None else resting
         joints = len(assembly.a)
@@ -185,18 +186,23 @@ class SolidLimit:
     def push(self, direction: float) -> Programme | Falls:
         """The greatest multiplier gamma of all weights, pushed along a direction [deg from +x to +y], or the proof that none is
         borne. Immovable where no push brings it down, NoAnswer where the solver gives up."""
-        dead, live = self.ways(direction)
-        complaint = None
+        try:
+            return self.most(*self.ways(direction))
+        except NoAnswer:
+            if (falls := self.falls()) is None:
+                raise
+            return falls
+
+    def most(self, dead: np.ndarray, live: np.ndarray) -> Programme | Falls:
+        """The greatest multiplier gamma of loads `live` that the blocks carry beside `dead`, both over the scale (6 nb), or the proof
+        that none is. Immovable where no multiplier causes collapse, NoAnswer where the solver gives up."""
+        complaint = NoAnswer("")
         for method in METHODS:
             try:
                 return self._pushed(dead, live, method)
             except NoAnswer as error:
                 complaint = error
-        falls = self.falls()
-        if falls is None:
-            assert complaint is not None
-            raise complaint
-        return falls
+        raise complaint
 
     def pushes(
         self, directions: Sequence[float], threads: int = 1, told: Callable[[int], None] = lambda done: None
@@ -261,7 +267,7 @@ class SolidLimit:
         cases = []
         for direction in directions:
             dead, live = self.ways(direction)
-            cases.append(self._stated(dead + gamma * live, None, sized))
+            cases.append(self.stated(dead + gamma * live, None, sized))
         among = [np.concatenate([np.isin(one.sized, group).astype(float) for one in cases]) for group in ties]
         limited = np.flatnonzero(np.isfinite(most))
         beyond = sparse.csr_array((-np.ones(len(limited)), (limited, np.arange(len(limited)))), shape=(len(ties), len(limited)))
@@ -274,13 +280,13 @@ class SolidLimit:
         cones = [cone for one in cases for cone in one.cones] + [clarabel.NonnegativeConeT(len(limited) + len(ties))]
         status = ""
         for method in METHODS:
-            solution = _conic(matrix, cost, right, cones, method)
+            solution = solve_conic(matrix, cost, right, cones, method)
             status, forces = str(solution.status), np.array(solution.z)[len(right) - len(ties) :]
             total, bound = float(forces.sum()), -float(solution.obj_val)
             if np.isfinite(total) and abs(total - bound) <= LOOSE * max(1.0, bound):
                 return np.maximum(forces, 0.0) * self.scale
             if "DualInfeasible" in status:
-                raise NoEquilibrium("no forces of these ties suffice")
+                raise NoEquilibrium("no forces of these ties are sufficient")
         raise NoAnswer(f"the conic solver found no least forces: {status}")
 
     def contact_points(self, direction: float) -> ContactPoints:
@@ -353,19 +359,16 @@ class SolidLimit:
         if "DualInfeasible" in status:
             return self._proven(x, dead)
         if "PrimalInfeasible" in status:
-            raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks from all sides")
+            raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks on all sides")
         power = float(live @ x)
         if not np.isfinite(x).all() or power <= 0.0:
-            raise NoAnswer(f"the conic solver gave up: {status}")
+            raise NoAnswer(f"the conic solver found no solution: {status}")
         motion = x / power
         z = np.array(solution.z)
         gamma = -float(z[0])
-        forces, corners = np.zeros(self.matrix.shape[1]), len(self.mu)
-        forces[lines[lines >= 0]] = z[1:][lines >= 0]
+        forces, tension = self.forces_of(z, lines)
+        corners = len(self.mu)
         force, keys = forces[: 3 * corners].reshape(-1, 3), forces[3 * corners :].reshape(-1, 2)
-        slides = (self.mu > 0.0) & np.isfinite(self.mu)
-        force[slides, 0] /= self.mu[slides]
-        tension = self._tensions(z[len(z) - len(self._limits[0]) :])
         rest = self.matrix @ forces + self.pulls @ tension + gamma * live + dead
         overlap, spent = self._hindered(motion)
         # the scale is a stone's weight times the root of their number: over the weight of all it is one over that root
@@ -378,35 +381,37 @@ class SolidLimit:
             tension * self.scale,
             self._rates(motion),
             float(np.abs(rest).max()) * part,
-            self._excess(force, keys, tension) * part,
+            self.excess(forces, tension) * part,
             overlap,
         )
         if max(found.equilibrium, found.cone, found.overlap) > LOOSE or found.gap > LOOSE * max(1.0, abs(gamma)):
             raise NoAnswer(
-                f"the conic solver gave up ({status}): forces are balanced to {found.equilibrium:.1e} of the weight, the bounds differ "
-                f"by {found.gap:.1e} g"
+                f"the conic solver stopped without a solution ({status}): the unbalanced forces are {found.equilibrium:.1e} of "
+                f"the weight, and the bounds differ by {found.gap:.1e} g"
             )
         return found
 
     def _solved(
         self, dead: np.ndarray, live: np.ndarray | None, method: str, sized: Sequence[int] = ()
     ) -> "tuple[clarabel.DefaultSolution, np.ndarray]":
-        """The programme of the motion, solved, and the column of each of its rows, see _stated. The lengthening of the strands that
+        """The programme of the motion, solved, and the column of each of its rows, see stated. The lengthening of the strands that
         are `sized` is together bounded by one, by a row at the very end whose multiplier is their force."""
-        one = self._stated(dead, live, sized)
+        one = self.stated(dead, live, sized)
         if (one.sized < 0).all():
-            return _conic(one.matrix, one.cost, one.right, one.cones, method), one.lines
+            return solve_conic(one.matrix, one.cost, one.right, one.cones, method), one.lines
         matrix = sparse.vstack([one.matrix, sparse.csr_array((one.sized >= 0).astype(float)[None])])
         cones = [*one.cones, clarabel.NonnegativeConeT(1)]
-        return _conic(matrix, one.cost, np.append(one.right, 1.0), cones, method), np.append(one.lines, -1)
+        return solve_conic(matrix, one.cost, np.append(one.right, 1.0), cones, method), np.append(one.lines, -1)
 
-    def _stated(self, dead: np.ndarray, live: np.ndarray | None, sized: Sequence[int] = ()) -> "_Stated":
+    def stated(self, dead: np.ndarray, live: np.ndarray | None, sized: Sequence[int] = (), counted: np.ndarray | None = None) -> Stated:
         """The programme of the motion: least power of the weights lifted, less what dowels take, with a power of the push of
         one and contacts that open mu times as fast as they slide. Its multipliers are the forces.
 
         Without a push the motion is bounded instead, each rate by one: then it is the one by which the weights fall most.
         It has a sixth of the unknowns of the programme of the forces, whose dual it is. The last rows are the limits of the
         strands, see _limits. With strands that are `sized` nothing bounds the motion: a row on their lengthening has to.
+        counted: a value of each unit force (columns of the matrix), added to its rate: the multipliers are then the forces of
+        least total value in equilibrium with `dead`, which is minus the least cost.
         """
         corners, rates = len(self.mu), self.matrix.T.tocsr()
         slides = np.flatnonzero((self.mu > 0.0) & np.isfinite(self.mu))
@@ -441,10 +446,14 @@ class SolidLimit:
             cones += [clarabel.SecondOrderConeT(3)] * len(weak)
             cost = np.concatenate([cost, strength[weak]])
             lines = np.concatenate([lines, np.column_stack([np.full(len(weak), -1), own]).ravel()])
+            factor = np.concatenate([factor, np.ones(3 * len(weak))])
         right = np.zeros(matrix.shape[0])
+        if counted is not None:
+            on = np.flatnonzero(lines >= 0)
+            right[1 + on] = factor[on] * counted[lines[on]]
         if live is not None:
             right[0] = 1.0
-        elif not len(sized):
+        elif not len(sized) and counted is None:
             own = sparse.eye_array(len(dead), len(cost))
             matrix = sparse.vstack([matrix, own, -own])
             right = np.concatenate([right, np.ones(2 * len(dead))])
@@ -467,7 +476,7 @@ class SolidLimit:
             cost = np.concatenate([cost, np.where(free, 0.0, most)[yields]])
             right = np.concatenate([right, np.zeros(len(yields) + len(strand))])
             lines = np.concatenate([lines, np.full(len(yields) + len(strand), -1)])
-        return _Stated(matrix, cost, right, cones, lines, number)
+        return Stated(matrix, cost, right, cones, lines, number)
 
     @cached_property
     def _limits(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -514,8 +523,18 @@ class SolidLimit:
             spent += float(most[yields] @ longer[yields])
         return wrong / fastest, spent
 
-    def _excess(self, force: np.ndarray, keys: np.ndarray, tension: np.ndarray) -> float:
-        """Greatest excess of shear over friction, of tension, or of a dowel or strand over its strength."""
+    def forces_of(self, multipliers: np.ndarray, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Forces by the columns of the matrix and tensions of the strands, over the scale, of the multipliers of a programme."""
+        forces = np.zeros(self.matrix.shape[1])
+        forces[lines[lines >= 0]] = multipliers[1 : len(lines) + 1][lines >= 0]
+        slides = np.flatnonzero((self.mu > 0.0) & np.isfinite(self.mu))
+        forces[3 * slides] /= self.mu[slides]
+        return forces, self._tensions(multipliers[len(multipliers) - len(self._limits[0]) :])
+
+    def excess(self, forces: np.ndarray, tension: np.ndarray) -> float:
+        """Greatest excess of shear over friction, of tension, or of a dowel or strand over its strength, over the scale."""
+        corners = len(self.mu)
+        force, keys = forces[: 3 * corners].reshape(-1, 3), forces[3 * corners :].reshape(-1, 2)
         shear = np.hypot(force[:, 1], force[:, 2])
         with np.errstate(invalid="ignore"):
             most = np.where(np.isfinite(self.mu), self.mu * force[:, 0], np.inf)
@@ -531,7 +550,9 @@ class SolidLimit:
         overlap, spent = self._hindered(motion, rigid)
         power = (float(dead @ motion) - spent) / falling
         if power < POWERLESS or overlap > PROOF:
-            raise NoAnswer(f"no forces were found, but no motion proves that there are none (power {power:.1e}, overlap {overlap:.1e})")
+            raise NoAnswer(
+                f"no equilibrium forces were found, and no mechanism proves that none exist (power {power:.1e}, overlap {overlap:.1e})"
+            )
         return Falls(self._rates(motion), power, overlap)
 
     def pyramids(self, direction: float, sides: int) -> tuple[float, float]:
@@ -612,4 +633,4 @@ def _most(matrix: sparse.csc_array, right: np.ndarray, low: np.ndarray, high: np
         return -np.inf
     if status in (highspy.HighsModelStatus.kUnbounded, highspy.HighsModelStatus.kUnboundedOrInfeasible):
         return np.inf
-    raise NoAnswer(f"the linear solver gave up: {solver.modelStatusToString(status)}")
+    raise NoAnswer(f"the linear solver found no solution: {solver.modelStatusToString(status)}")

@@ -94,25 +94,7 @@ class Programme:
             row_lower = np.concatenate([system.right, lower])
             row_upper = np.concatenate([system.right, np.full(k, INFINITY)])
         basis = solver.getBasis()
-        passed = solver.passModel(
-            n,
-            e + k,
-            len(value),
-            int(highspy.MatrixFormat.kRowwise),
-            int(highspy.ObjSense.kMinimize),
-            0.0,
-            np.zeros(n),
-            self._least,
-            self._most,
-            row_lower,
-            row_upper,
-            start,
-            index,
-            value,
-            np.zeros(n, dtype=np.int32),
-        )
-        if passed == highspy.HighsStatus.kError:
-            raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
+        _pass_model(solver, (start, index, value), (row_lower, row_upper), np.zeros(n), (self._least, self._most))
         if basis.valid:
             solver.setBasis(basis)
 
@@ -127,12 +109,7 @@ class Programme:
         solver = self._highs or self._start()
         solver.changeColsCost(self.columns, np.arange(self.columns, dtype=np.int32), cost)
         solver.changeColBounds(self._gamma, *gamma)
-        status = _decided(solver)
-        if status in _INFEASIBLE:
-            raise NoEquilibrium("no admissible thrust line")
-        if status != highspy.HighsModelStatus.kOptimal:
-            raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
-        solution = solver.getSolution()
+        solution = _optimum(solver)
         dual = np.array(solution.row_dual)
         e = self.system.equations
         return Solution(np.array(solution.col_value), dual[e:], dual[:e], np.array(solution.col_dual), solver.getObjectiveValue())
@@ -144,6 +121,45 @@ class Programme:
         self._highs.passOptions(_options(self.system.equations > 0, more_than_pressing))
         self._pass_to(self._highs)
         return self._highs
+
+
+def _pass_model(
+    solver: highspy.Highs,
+    rows: tuple[np.ndarray, np.ndarray, np.ndarray],
+    sides: tuple[np.ndarray, np.ndarray],
+    cost: np.ndarray,
+    bounds: tuple[np.ndarray, np.ndarray],
+) -> None:
+    """Minimise `cost` @ x within `bounds`, with rows (starts, columns, values) between their `sides`; NoAnswer of numbers that
+    are not finite."""
+    start, index, value = rows
+    passed = solver.passModel(
+        len(cost),
+        len(sides[0]),
+        len(value),
+        int(highspy.MatrixFormat.kRowwise),
+        int(highspy.ObjSense.kMinimize),
+        0.0,
+        cost,
+        *bounds,
+        *sides,
+        start,
+        index,
+        value,
+        np.zeros(len(cost), dtype=np.int32),
+    )
+    if passed == highspy.HighsStatus.kError:
+        raise NoAnswer("the solver rejected the linear programme, because it contains a number that is not finite")
+
+
+def _optimum(solver: highspy.Highs) -> Any:
+    """The solution of HiGHS; NoEquilibrium or NoAnswer without one."""
+    status = _decided(solver)
+    if status in _INFEASIBLE:
+        raise NoEquilibrium("no admissible thrust line")
+    if status != highspy.HighsModelStatus.kOptimal:
+        raise NoAnswer(f"the linear programme ended with this status: {solver.modelStatusToString(status)}")
+    return solver.getSolution()
 
 
 def _decided(solver: highspy.Highs) -> highspy.HighsModelStatus:
@@ -185,34 +201,11 @@ def linear_programme(
     NoEquilibrium where nothing obeys all of them, NoAnswer where the solver gives up.
     """
     rows = sparse.csr_array(matrix)
-    count = len(cost)
     solver = highspy.Highs()
     solver.passOptions(_options(True, False))
-    passed = solver.passModel(
-        count,
-        rows.shape[0],
-        rows.nnz,
-        int(highspy.MatrixFormat.kRowwise),
-        int(highspy.ObjSense.kMinimize),
-        0.0,
-        cost,
-        lower,
-        upper,
-        row_lower,
-        row_upper,
-        rows.indptr.astype(np.int32),
-        rows.indices.astype(np.int32),
-        rows.data,
-        np.zeros(count, dtype=np.int32),
-    )
-    if passed == highspy.HighsStatus.kError:
-        raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
-    status = _decided(solver)
-    if status in _INFEASIBLE:
-        raise NoEquilibrium("no admissible thrust line")
-    if status != highspy.HighsModelStatus.kOptimal:
-        raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
-    found = solver.getSolution()
+    matrix_rows = rows.indptr.astype(np.int32), rows.indices.astype(np.int32), rows.data
+    _pass_model(solver, matrix_rows, (row_lower, row_upper), cost, (lower, upper))
+    found = _optimum(solver)
     return Optimum(np.array(found.col_value), solver.getObjectiveValue(), np.array(found.row_dual), np.array(found.col_dual))
 
 

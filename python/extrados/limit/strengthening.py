@@ -162,7 +162,7 @@ def least_forces(limits: list[LimitAnalysis], gammas: list[float], ties: int, we
                 settled = False
         if settled:
             return np.asarray(x[-1] * scale)
-    raise NoAnswer("the crushing of the joints did not settle")
+    raise NoAnswer("the iteration for crushing of the joints did not converge")
 
 
 def _solved(

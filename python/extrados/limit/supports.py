@@ -44,7 +44,7 @@ class _Chain:
         (self.joints,) = assembly.chains.values()
         count = len(assembly.mass)
         if len(self.joints) != count + 1 or assembly.a[self.joints[-1]] != GROUND:
-            raise ValueError("support movements are computed for a single arch on two supports")
+            raise ValueError("support movements are calculated only for a single arch on two supports")
         self.p, self.q = assembly.p[self.joints], assembly.q[self.joints]
         self.weight = assembly.mass * GRAVITY
 
@@ -61,12 +61,12 @@ class _Chain:
         cost[j] = a.normal[j] @ self.direction, a.normal[j] @ self.direction, a.tangent[j] @ self.direction
         solution, rows, _ = limit.optimise(limit.system.cost(cost), (0.0, 0.0))
         if solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
-            raise NoEquilibrium("the blocks are wedged, and would have to be crushed")
+            raise NoEquilibrium("the blocks are wedged: they cannot follow the movement without crushing")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(a.a))[self.joints]
         active = np.flatnonzero(np.abs(motion).max(axis=1) > 1e-9 * np.abs(motion).max())
         hinges: Hinges = tuple((int(k), "intrados" if motion[k, 0] < motion[k, 1] else "extrados") for k in active)
         if len(hinges) != 3:
-            raise NoEquilibrium(f"the first movement opens {len(hinges)} hinges, not three")
+            raise NoEquilibrium(f"the first movement opens {len(hinges)} hinges instead of three")
         return hinges
 
     def state(self, hinges: Hinges, movement: float) -> SupportState | None:
@@ -164,7 +164,7 @@ def support_movement(assembly: Assembly, direction: tuple[float, float], steps: 
     chain = _Chain(assembly, unit / np.hypot(*unit))
     state = chain.settle(chain.first(), 0.0)
     if state is None:
-        raise NoEquilibrium("the three hinges of the first movement carry no admissible thrust line")
+        raise NoEquilibrium("the three hinges of the first movement have no admissible thrust line")
     # The fall, by doubling and bisection, each state starting from the hinges of the last that stood.
     step, last = 1e-4 * assembly.size, state
     while (after := chain.settle(last.hinges, last.movement + step)) is not None:

@@ -2,7 +2,8 @@
 
 from pydantic import model_validator
 
-from extrados.model.ties import Point
+from extrados.model.errors import BadGeometry
+from extrados.model.ties import Place
 from extrados.schema.quantities import AxialStiffness, Damping, Force, Moment, TurningDamping
 from extrados.schema.table import Table, key
 
@@ -14,27 +15,29 @@ class Damper(Table):
     force in both senses.
     """
 
-    name: str | None = key(None, "name in results; default damper 1, damper 2 and so on", max_length=80)
-    start: Point = key(about="[x, y] of the anchorage in a stone")
-    end: Point | None = key(None, "[x, y] of the anchorage in another stone; or give `ground`")
-    ground: Point | None = key(None, "[x, y] of the anchorage in the ground, which moves with the supports")
-    start_stone: str | None = key(None, "name of the stone at `start`; needed if that point lies between two stones", max_length=80)
-    end_stone: str | None = key(None, "name of the block at `end`; required if that point lies between two blocks", max_length=80)
-    damping: Damping | None = key(None, "c of a viscous damper: force per rate, of a power n of the rate in N (s/m)^n", gt=0)
-    power: float = key(1.0, "n: 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
+    name: str | None = key(None, "name in the results; default: damper 1, damper 2 and so on", max_length=80)
+    start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block")
+    end: Place | None = key(None, "position of the anchorage in another block; or give `ground`")
+    ground: Place | None = key(None, "position of the anchorage in the ground, which moves with the supports")
+    start_stone: str | None = key(None, "name of the block at `start`; required if this point lies between two blocks", max_length=80)
+    end_stone: str | None = key(None, "name of the block at `end`; required if this point lies between two blocks", max_length=80)
+    damping: Damping | None = key(None, "c of a viscous damper: force per n-th power of the rate, in N (s/m)^n", gt=0)
+    power: float = key(1.0, "power n of the rate; 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
     slip_force: Force | None = key(None, "force at which a friction damper slides", gt=0)
-    stiffness: AxialStiffness | None = key(None, "of the brace of a friction damper, before it slides", gt=0)
+    stiffness: AxialStiffness | None = key(None, "stiffness of the brace of a friction damper, before it slides", gt=0)
 
     @model_validator(mode="after")
     def _whole(self) -> "Damper":
         if (self.end is None) == (self.ground is None):
-            raise ValueError("expected either end, in another stone, or ground")
+            raise ValueError("expected either end (in another block) or ground")
         if self.start == self.far:
-            raise ValueError("start: both ends are at one point")
+            raise ValueError("start: both ends have the same position")
+        if len(self.start) != len(self.far):
+            raise ValueError("start: expected as many coordinates at both ends")
         if (self.damping is None) == (self.slip_force is None):
-            raise ValueError("expected either damping, of a viscous damper, or slip_force with stiffness, of friction")
+            raise ValueError("expected either damping (viscous damper), or slip_force with stiffness (friction damper)")
         if (self.slip_force is None) != (self.stiffness is None):
-            raise ValueError("slip_force and stiffness go together: one of them is missing")
+            raise ValueError("slip_force and stiffness require each other: give both")
         return self
 
     @property
@@ -42,17 +45,28 @@ class Damper(Table):
         """The point at its other end, in a stone or in the ground [m]."""
         return (self.end if self.ground is None else self.ground) or []
 
+    def flat(self) -> list[list[float]]:
+        """Both ends in a plane section [m]; BadGeometry of a damper in space."""
+        if len(self.start) != 2:
+            raise BadGeometry(f"{self.name}: this analysis takes a plane section, where the points of a damper are [x, y]")
+        return [self.start, self.far]
+
+    @property
+    def most(self) -> float:
+        """Force at which a friction damper slides [N], in both senses; 0 of a viscous one, which has no spring."""
+        return self.slip_force or 0.0
+
 
 class AddedHinge(Table):
     """Damping and stiffness added at joints, against the turn of the stones on both sides: [[hinges]]."""
 
-    name: str | None = key(None, "name in results; default hinge 1, hinge 2 and so on", max_length=80)
+    name: str | None = key(None, "name in the results; default: hinge 1, hinge 2 and so on", max_length=80)
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground, "all" every joint', min_length=1, max_length=10000
+        about='names of joints; "ground" means all joints at the ground, "all" means every joint', min_length=1, max_length=10000
     )
     stiffness: Moment | None = key(None, "moment per radian of rotation", gt=0)
-    yield_moment: Moment | None = key(None, "moment at which it yields, in both senses; needs stiffness", gt=0)
-    damping: TurningDamping | None = key(None, "moment per radian per second of rotation", gt=0)
+    yield_moment: Moment | None = key(None, "moment at which the hinge yields, in both senses; requires stiffness", gt=0)
+    damping: TurningDamping | None = key(None, "ratio of the moment to the angular velocity of the hinge", gt=0)
 
     @model_validator(mode="after")
     def _whole(self) -> "AddedHinge":

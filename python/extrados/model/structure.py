@@ -54,4 +54,4 @@ class Structure(Table):
 
     def pier_assembly(self, density: float) -> Assembly:
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where it is no wall."""
-        raise NoView(f"a structure of kind '{self.kind}' is no wall of piers", ("structure", "kind"))
+        raise NoView(f"a structure of kind '{self.kind}' is not a wall with piers", ("structure", "kind"))

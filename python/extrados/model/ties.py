@@ -17,60 +17,71 @@ class Tie(Table):
     """A straight tie, strut or spring between two stones, or from a stone to the ground; in space also a chain or a hoop:
     [[ties]]."""
 
-    name: str | None = key(None, "name in results; default tie 1, tie 2 and so on", max_length=80)
-    start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a stone; of a hoop any point at its height")
-    end: Place | None = key(None, "the anchorage in another stone; or give `ground`")
-    ground: Place | None = key(None, "the anchorage in the ground, which does not move with the supports")
-    via: list[Place] = key([], "in space: points of stones over which a chain runs from start to end, in order", max_length=1000)
-    hoop: bool = key(False, "in space: closed around the convex outline of the structure at the height z of `start`, as a chain of a dome")
+    name: str | None = key(None, "name in the results; default: tie 1, tie 2 and so on", max_length=80)
+    start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block; for a hoop, any point at its height")
+    end: Place | None = key(None, "anchorage in another block; or give `ground`")
+    ground: Place | None = key(None, "anchorage in the ground, which does not move with the supports")
+    via: list[Place] = key([], "in space: points of blocks over which a chain runs from start to end, in order", max_length=1000)
+    hoop: bool = key(
+        False, ("in space: closed hoop around the convex outline of the structure at the height z of `start`, as the chain of a dome")
+    )
     bonded: bool = key(
         False,
-        "of a chain or hoop: anchored at every point, so that each segment has a force of its own; else it runs over them without friction",
+        (
+            "for a chain or hoop: true: anchored at every point, so that each segment has its own force; false: the chain "
+            "runs over the points without friction"
+        ),
     )
     start_stone: str | None = key(
-        None, "name of the stone at `start`; needed if that point lies between two stones or in none", max_length=80
+        None, "name of the block at `start`; required if this point lies between two blocks or outside all blocks", max_length=80
     )
     end_stone: str | None = key(
-        None, "name of the block at `end`; required if that point lies between two blocks or outside all blocks", max_length=80
+        None, "name of the block at `end`; required if this point lies between two blocks or outside all blocks", max_length=80
     )
     works_in: Literal["tension", "compression", "both"] = key(
-        "tension", "a tie is slack in compression, a strut in tension; a spring works in both"
+        "tension", "senses in which it acts: a tie is slack in compression, a strut in tension; a spring acts in both senses"
     )
     yield_force: Force | None = key(
-        None, "force at which it yields and from then on carries on, in the senses it works in; without it it never yields", gt=0
+        None, "yield force, which remains constant after yielding; without this value the tie never yields", gt=0
     )
     stiffness: AxialStiffness | None = key(
-        None, "force per change of length, EA/L; without it it is rigid until it yields, as limit analysis takes every tie", gt=0
+        None,
+        (
+            "stiffness EA/L: force per change of length. Without this value the tie is rigid until it yields; limit analysis "
+            "always assumes this"
+        ),
+        gt=0,
     )
-    prestress: Force = key(0.0, "force in it before any load, tension positive; it changes no load of plastic collapse")
+    prestress: Force = key(0.0, "force in the tie before any load, tension positive; it does not change a plastic collapse load")
 
     @model_validator(mode="after")
     def _whole(self) -> "Tie":
         if self.hoop:
             if self.end is not None or self.ground is not None or self.via or self.start_stone or self.end_stone:
-                raise ValueError("hoop: a closed hoop has no end, ground, via or stones; `start` gives its height")
+                raise ValueError("hoop: a closed hoop has no end, ground, via or block names; `start` gives its height")
             if len(self.start) != 3:
-                raise ValueError("start: expected [x, y, z] of a hoop, whose height is z")
+                raise ValueError("start: a hoop requires [x, y, z], where z is its height")
         elif (self.end is None) == (self.ground is None):
-            raise ValueError("expected either end, in another stone, or ground")
+            raise ValueError("expected either end (in another block) or ground")
         if len({len(point) for point in (self.start, *self.via, *([] if self.hoop else [self.far]))}) != 1:
-            raise ValueError("start: expected as many coordinates at all points of a tie")
+            raise ValueError("start: expected the same number of coordinates for all points of a tie")
         if self.bonded and not self.hoop and not self.via:
-            raise ValueError("bonded: belongs to a hoop, or to a chain with `via`")
+            raise ValueError("bonded belongs to a hoop, or to a chain with `via`")
         if self.start == self.far:
-            raise ValueError("start: both ends are at one point")
+            raise ValueError("start: both ends have the same position")
         if self.ground is not None and self.end_stone is not None:
-            raise ValueError("end_stone: belongs to end, not to ground")
+            raise ValueError("end_stone belongs to end, not to ground")
         if self.prestress > self.most or self.prestress < self.least:
             raise ValueError(
-                f"prestress: {self.prestress:g} N is more than it can carry, {self.least:g} to {self.most:g} N (tension positive)"
+                f"prestress: {self.prestress:g} N exceeds the range that the tie can carry, {self.least:g} to {self.most:g} N "
+                "(tension positive)"
             )
         return self
 
     def flat(self) -> list[list[float]]:
         """Both ends in a plane section [m]; BadGeometry of a tie in space."""
         if len(self.start) != 2 or self.via:
-            raise BadGeometry(f"{self.name}: this analysis takes a plane section, where a tie is straight and its points are [x, y]")
+            raise BadGeometry(f"{self.name}: in a plane section a tie must be straight, with points [x, y]")
         return [self.start, self.far]
 
     @property

@@ -118,7 +118,7 @@ def tabulated(period: np.ndarray, acceleration: np.ndarray) -> Spectrum:
 
     def at(t: np.ndarray) -> np.ndarray:
         if np.max(t) > period[-1] * (1.0 + 1e-9):
-            raise ValueError(f"the table ends at {period[-1]:g} s, {np.max(t):g} s is requested")
+            raise ValueError(f"the table of the spectrum ends at {period[-1]:g} s, but a period of {np.max(t):g} s is required")
         return np.interp(t, period, acceleration)
 
     return at
@@ -138,7 +138,7 @@ def conditional_mean(name: str | Path, folder: Path | None, at: float, accelerat
     """
     period, median, sigma = _columns(name, folder, ("period_s", "sa_g", "sigma_ln")).T
     if not period[0] <= at <= period[-1]:
-        raise ValueError(f"conditional_period {at:g} s lies outside the table, {period[0]:g} to {period[-1]:g} s")
+        raise ValueError(f"conditional_period {at:g} s lies outside the table, which covers {period[0]:g} to {period[-1]:g} s")
     low, high = max(period[0], 0.01), min(period[-1], 10.0)
     t = np.unique(np.concatenate([period[(period >= low) & (period <= high)], [low, at, high]]))
     middle, spread = np.exp(np.interp(t, period, np.log(median))), np.interp(t, period, sigma)
@@ -164,14 +164,14 @@ def _columns(name: str | Path, folder: Path | None, names: tuple[str, ...]) -> n
         file = read(name, LARGEST, folder)
         return _parse(file.path, file.text(), names)
     except (BadFile, csv.Error) as error:
-        raise ValueError(f"{error}; expected a CSV file {','.join(names)}") from None
+        raise ValueError(f"{error}; expected a CSV file with the columns {','.join(names)}") from None
 
 
 def _parse(path: Path, text: str, names: tuple[str, ...]) -> np.ndarray:
     reader = csv.reader(text.splitlines())
     header = [word.strip() for word in next(reader, [])]
     if tuple(header[: len(names)]) != names:
-        raise ValueError(f"{path}:1: header is {','.join(header)[:60]!r}, expected {','.join(names)}")
+        raise ValueError(f"{path}:1: the header is {','.join(header)[:60]!r}, expected {','.join(names)}")
     rows: list[list[float]] = []
     for row in reader:
         if not row:
@@ -179,11 +179,11 @@ def _parse(path: Path, text: str, names: tuple[str, ...]) -> np.ndarray:
         try:
             period, *values = (float(word) for word in row[: len(names)])
         except ValueError:
-            raise ValueError(f"{path}:{reader.line_num}: expected {len(names)} numbers, got {','.join(row)[:60]!r}") from None
+            raise ValueError(f"{path}:{reader.line_num}: expected {len(names)} numbers, found {','.join(row)[:60]!r}") from None
         good = len(values) == len(names) - 1 and all(0.0 < v < 100.0 for v in values)
         if not (good and 0.0 <= period < 100.0) or (rows and period <= rows[-1][0]):
-            raise ValueError(f"{path}:{reader.line_num}: expected ascending periods and accelerations above zero")
+            raise ValueError(f"{path}:{reader.line_num}: the periods must increase, and the accelerations must be above zero")
         rows.append([period, *values])
     if len(rows) < 2:
-        raise ValueError(f"{path}: expected two rows or more")
+        raise ValueError(f"{path}: expected at least two rows")
     return np.array(rows)

@@ -49,7 +49,7 @@ def _make_motion(model: Model, folder: Path) -> Motion:
         case models.Suite():
             members = suite_members(model, folder)
             if model.member > len(members):
-                raise RecordError(f"member is {model.member}, but the suite holds {len(members)} records")
+                raise RecordError(f"member is {model.member}, but the suite has {len(members)} records")
             return suite_motion(model, members[model.member - 1], folder)
         case models.Generated():
             made = generated_set(model, folder)
@@ -81,7 +81,7 @@ def refuse_set(model: Sets, folder: Path) -> None:
             if isinstance(found, Motion):
                 return
             wrong.append(found)
-        raise RecordError(f"none of the {len(wrong)} records of the suite can be read; the first: {wrong[0]}")
+        raise RecordError(f"none of the {len(wrong)} records of the suite can be read. First reason: {wrong[0]}")
     if isinstance(model, models.Generated):
         generated_set(model, folder)
     else:
@@ -145,7 +145,10 @@ def _selected(wanted: _Wanted) -> tuple[models.Components, ...]:
         if not members:
             raise ValueError(f"{chosen.flatfile}: no record of the suite lies within the limits")
         if missing:
-            notes.append(f"The flatfile {chosen.flatfile} does not list {_first_few(sorted(missing))}: not selected.")
+            notes.append(
+                f"The flatfile {chosen.flatfile} does not list these records, which are therefore not selected: "
+                f"{_first_few(sorted(missing))}."
+            )
     at = chosen.conditional_period
     # the spectrum at the conditional period itself, so that the factor is exact
     periods = np.append(np.geomspace(chosen.shortest, chosen.longest, PERIODS), [] if at is None else [at])
@@ -165,10 +168,10 @@ def _selected(wanted: _Wanted) -> tuple[models.Components, ...]:
     target = target_spectrum(chosen, place, chosen.damping)
     best = choose(found, periods, target, chosen.count, (chosen.least_factor, chosen.greatest_factor), at is not None)
     if not best:
-        raise ValueError(f"none of the {len(members)} records can be read; the first: {wrong[0]}")
+        raise ValueError(f"none of the {len(members)} records can be read. First reason: {wrong[0]}")
     if len(best) < chosen.count or wrong:
-        reasons = f"; {len(wrong)} cannot be read: {_first_few(wrong)}" if wrong else ""
-        notes.append(f"[motion.selection]: {len(best)} of {chosen.count} requested records are selected{reasons}.")
+        reasons = f"; {len(wrong)} record(s) cannot be read: {_first_few(wrong)}" if wrong else ""
+        notes.append(f"[motion.selection]: {chosen.count} records were requested, and {len(best)} are selected{reasons}.")
     notes += _cut_factors([(member_name(members[one.number]), one) for one in best], chosen)
     # model_construct: its paths were found
     return tuple(
@@ -194,8 +197,8 @@ def _cut_factors(best: list[tuple[str, Chosen]], chosen: models.Selection) -> li
         if cut:
             wanted = _first_few([f"{n} ({one.unbounded:.3g})" for n, one in cut])
             notes.append(
-                f"[motion.selection]: {len(cut)} of {len(best)} factors are cut to {name} = {bound:g}: {wanted}. These records do not reach "
-                f"the target. Change {name}, or extend the suite."
+                f"[motion.selection]: {len(cut)} of {len(best)} scale factors are limited to {name} = {bound:g} (required: "
+                f"{wanted}). These records do not reach the target. Change {name}, or extend the suite."
             )
     return notes
 
@@ -224,8 +227,8 @@ def suite_motion(model: models.Suite, member: models.Components, folder: Path) -
     if isinstance(member, Selected):
         cut = "" if member.factor == member.unbounded else f" (cut from {member.unbounded:.3g})"
         note = (
-            f"{made.name}: selected with the factor {member.factor:.3g}{cut}; "
-            f"its ground spectrum lies {member.misfit:.2f} (rms of ln) from the target."
+            f"{made.name}: selected with the factor {member.factor:.3g}{cut}. Its ground spectrum differs from the target by "
+            f"{member.misfit:.2f} (root mean square of the logarithms)."
         )
         made = replace(made, notes=[*member.notes, *made.notes, note])
     return on_floor(made, model.floor)
@@ -334,7 +337,7 @@ def _record(model: models.Components, treatment: records.Treatment, folder: Path
         file = model.file if file is None else file
         place = (records.locate(file, folder), channel)
         if place in seen:
-            raise RecordError(f"{place[0]}: is named for two components of one record")
+            raise RecordError(f"{place[0]}: this file is named for two components of one record")
         seen.add(place)
         return records.read_record(records.read_file(file, folder), channel, treatment.columns)
 

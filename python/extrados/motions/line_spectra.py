@@ -41,11 +41,13 @@ class LineSpectrum:
         (low, high), lines = self.band, np.asarray(lines, dtype=float)
         if not self.intensity[0] <= intensity <= self.intensity[-1]:
             raise ValueError(
-                f"intensity {intensity:g} is outside the spectrum '{self.name}': expected {self.intensity[0]:g} to {self.intensity[-1]:g}"
+                f"intensity {intensity:g} is outside the range of the spectrum '{self.name}': expected {self.intensity[0]:g} to "
+                f"{self.intensity[-1]:g}"
             )
         if lines.min() < low * (1.0 - 1e-9) or lines.max() > high * (1.0 + 1e-9):
             raise ValueError(
-                f"lines from {lines.min():g} to {lines.max():g} Hz are outside the spectrum '{self.name}': expected {low:g} to {high:g} Hz"
+                f"lines from {lines.min():g} to {lines.max():g} Hz are outside the range of the spectrum '{self.name}': expected "
+                f"{low:g} to {high:g} Hz"
             )
         return core.line_spectrum(self.intensity, self.frequency, self.amplitude, intensity, lines)
 
@@ -58,7 +60,7 @@ def load_spectrum(name: str = SHIPPED, folder: Path | None = None) -> LineSpectr
         file = read(name, LARGEST, folder)
         return _parse(file.text(), str(file.path))
     except (BadFile, csv.Error) as error:
-        raise SpectrumFileError(f"{error}; expected '{SHIPPED}' or a CSV file {','.join(COLUMNS)}") from None
+        raise SpectrumFileError(f"{error}; expected '{SHIPPED}' or a CSV file with the columns {','.join(COLUMNS)}") from None
 
 
 def _parse(text: str, name: str) -> LineSpectrum:
@@ -66,22 +68,22 @@ def _parse(text: str, name: str) -> LineSpectrum:
     reader = csv.reader(text.splitlines())
     header = tuple(word.strip() for word in next(reader, ()))
     if header != COLUMNS:
-        raise SpectrumFileError(f"{name}:1: header is {','.join(header)[:80]!r}, expected {','.join(COLUMNS)}")
+        raise SpectrumFileError(f"{name}:1: the header is {','.join(header)[:80]!r}, expected {','.join(COLUMNS)}")
     for row in reader:
         if not row or row[0].lstrip().startswith("#"):
             continue
         try:
             intensity, frequency, amplitude = (float(word) for word in row)
         except ValueError:
-            raise SpectrumFileError(f"{name}:{reader.line_num}: expected three numbers, got {','.join(row)[:80]!r}") from None
+            raise SpectrumFileError(f"{name}:{reader.line_num}: expected three numbers, found {','.join(row)[:80]!r}") from None
         if not (0.0 < frequency < 1e4 and 0.0 < amplitude < 1e6 and 0.0 <= intensity <= 12.0):
             raise SpectrumFileError(f"{name}:{reader.line_num}: expected intensity 0 to 12, frequency and amplitude above zero")
         if frequency in rows.setdefault(intensity, {}):
-            raise SpectrumFileError(f"{name}:{reader.line_num}: intensity {intensity:g} at {frequency:g} Hz stands twice")
+            raise SpectrumFileError(f"{name}:{reader.line_num}: intensity {intensity:g} at {frequency:g} Hz occurs twice")
         rows[intensity][frequency] = amplitude
     grids = {tuple(sorted(row)) for row in rows.values()}
     if len(rows) < 2 or len(grids) != 1 or len(next(iter(grids))) < 2:
-        raise SpectrumFileError(f"{name}: expected two or more intensities, all at the same two or more frequencies")
+        raise SpectrumFileError(f"{name}: expected at least two intensities, all of them at the same frequencies (at least two)")
     intensities, frequencies = sorted(rows), next(iter(grids))
     table = np.array([[rows[i][f] for f in frequencies] for i in intensities]) / 100.0
     return LineSpectrum(name, np.array(intensities), np.array(frequencies), table)

@@ -41,13 +41,16 @@ def drift(acceleration: np.ndarray, step: float) -> tuple[str, str]:
     if abs(v) > 0.1 * np.abs(velocity).max():
         mean = v / (step * (len(acceleration) - 1)) / GRAVITY
         return (
-            f"the ground ends at {v:.3g} m/s and {d:.3g} m, by a mean acceleration of {mean:.2g} g",
-            'A structure feels this mean as a sustained load. Remove it by baseline = "quadratic" or low_cut.',
+            (
+                f"at the end of the motion, the ground has a velocity of {v:.3g} m/s and a displacement of {d:.3g} m, from a mean "
+                f"acceleration of {mean:.2g} g"
+            ),
+            'This mean acts on a structure as a sustained load. To remove it, give baseline = "quadratic" or low_cut.',
         )
     if abs(d) > 0.5 * np.abs(displacement).max(initial=1e-300):
         return (
-            f"the ground ends displaced by {d:.3g} m from its position at the start",
-            "This is a permanent displacement, or an error of the baseline that hardly acts on a structure.",
+            f"at the end of the motion, the ground is displaced by {d:.3g} m from its initial position",
+            "This is a permanent displacement, or an error of the baseline with little effect on a structure.",
         )
     return "", ""
 
@@ -64,9 +67,9 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
     """Zero-phase Butterworth filter of order 4, run forth and back over zero-padded ends; corners in Hz."""
     nyquist = 0.5 / step
     if (low is not None and not 0.0 < low < nyquist) or (high is not None and not 0.0 < high < nyquist):
-        raise ValueError(f"filter corners must lie between 0 and {nyquist:g} Hz, half the sampling rate")
+        raise ValueError(f"corner frequencies of the filter must lie between 0 and {nyquist:g} Hz (half of the sampling rate)")
     if low is not None and high is not None and low >= high:
-        raise ValueError(f"low cut {low:g} Hz is not below high cut {high:g} Hz")
+        raise ValueError(f"low_cut {low:g} Hz is not below high_cut {high:g} Hz")
     if low is None and high is None:
         return acceleration
     kind = "band" if low and high else "high" if low else "low"
@@ -76,7 +79,7 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
     sections = signal.butter(_ORDER, corner, kind, fs=1.0 / step, output="sos")
     # Long enough for the slowest part to die out (Converse and Brady 1992: 1.5 n / f)
     slowest = low or high or nyquist
-    pad = _countable(np.ceil(1.5 * _ORDER / slowest / step), f"a filter at {slowest:g} Hz and its run-in take")
+    pad = _countable(np.ceil(1.5 * _ORDER / slowest / step), f"a filter at {slowest:g} Hz with its run-in requires")
     ends = [(0, 0)] * (acceleration.ndim - 1) + [(pad, pad)]
     filtered = signal.sosfiltfilt(sections, np.pad(acceleration, ends), axis=-1, padtype=None)
     return filtered[..., pad : pad + acceleration.shape[-1]]
@@ -85,12 +88,12 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
 def resample(acceleration: np.ndarray, step: float, new_step: float) -> np.ndarray:
     """The motion at another step: the same straight lines for a finer one, low-passed first for a coarser one."""
     if not new_step > 0.0:
-        raise ValueError(f"time step is {new_step:g} s, expected above zero")
+        raise ValueError(f"the time step is {new_step:g} s, expected above zero")
     if new_step > step * (1.0 + 1e-9):
         acceleration = band_pass(acceleration, step, None, 0.4 / new_step)
     points = acceleration.shape[-1]
     old = np.arange(points) * step
-    count = _countable(np.floor(old[-1] / new_step * (1.0 + 1e-12)) + 1.0, f"{new_step:g} s for {old[-1]:g} s are")
+    count = _countable(np.floor(old[-1] / new_step * (1.0 + 1e-12)) + 1.0, f"a step of {new_step:g} s for {old[-1]:g} s requires")
     new = np.arange(count) * new_step
     rows = np.atleast_2d(acceleration)
     out = np.stack([np.interp(new, old, row) for row in rows])
@@ -118,7 +121,7 @@ def factor_to(
     """The factor that brings a motion (points) to PGA [m/s^2], PGV [m/s], Arias intensity [m/s] or Sa(T) [m/s^2]."""
     wanted = {k: v for k, v in {"pga": pga, "pgv": pgv, "arias": arias, "sa": sa}.items() if v is not None}
     if len(wanted) != 1:
-        raise ValueError("name one of pga, pgv, arias and sa")
+        raise ValueError("expected one of pga, pgv, arias and sa")
     name, target = next(iter(wanted.items()))
     if name == "sa":
         if period is None:
@@ -127,5 +130,5 @@ def factor_to(
     else:
         have = float(getattr(core.measures(acceleration, step), name)[0])
     if not have > 0.0:
-        raise ValueError(f"the motion has no {name}: it is zero")
+        raise ValueError(f"the motion has no {name}, because the motion is zero")
     return float(np.sqrt(target / have)) if name == "arias" else target / have

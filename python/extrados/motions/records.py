@@ -91,11 +91,11 @@ def list_suite(names: list[str] | None, pattern: str | None, subfolder: str | No
         try:
             found = _matching(pattern, root) if pattern is not None else _records_in(locate(subfolder or ".", folder))
         except OSError as error:  # a name that is too long, a folder that may not be read
-            raise RecordError(f"{pattern or subfolder}: cannot be searched: {error.strerror}") from None
+            raise RecordError(f"{pattern or subfolder}: this folder cannot be searched: {error.strerror}") from None
     if not found:
         raise RecordError(f"{folder}: no records match {pattern or subfolder or names}")
     if len(found) > MOST_RECORDS:
-        raise RecordError(f"{folder}: {len(found)} records, a suite has at most {MOST_RECORDS}")
+        raise RecordError(f"{folder}: this folder has {len(found)} records, and a suite can have at most {MOST_RECORDS}")
     # told from the deck's folder on, so that the door asks of each whether it lies within
     return [p.relative_to(root) if p.is_relative_to(root) else p for p in found]
 
@@ -104,15 +104,15 @@ def _matching(pattern: str, root: Path) -> list[Path]:
     """The files below `root` that match, sorted."""
     asked = Path(pattern)
     if asked.is_absolute() or ".." in asked.parts:
-        raise RecordError(f"{pattern}: leads out of the deck's folder")
+        raise RecordError(f"{pattern}: this path leads out of the deck's folder")
     if not asked.parts:  # "." and "./", which Path.glob of Python 3.11 answers by errors of its own
-        raise RecordError(f"{pattern}: is no pattern: it names no file")
+        raise RecordError(f"{pattern}: this pattern names no file")
     if (wild := asked.parts.count("**")) > MOST_WILD:
-        raise RecordError(f"{pattern}: says ** {wild} times, at most {MOST_WILD} are followed")
+        raise RecordError(f"{pattern}: this pattern contains ** {wild} times; at most {MOST_WILD} are allowed")
     try:
         return sorted(p for p in root.glob(pattern) if p.is_file())
     except ValueError as error:
-        raise RecordError(f"{pattern}: is no pattern: {error}") from None
+        raise RecordError(f"{pattern}: this is not a valid pattern: {error}") from None
 
 
 def _records_in(folder: Path) -> list[Path]:
@@ -130,25 +130,25 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
     if record.step is not None and step is not None and abs(record.step - step) > 1e-6 * record.step:
         # Rounded times tell the step no closer than their rounding spread over the record.
         if abs(record.step - step) * (len(record.values) - 1) > 1.001 * record.rounded:
-            raise RecordError(f"{name}: the file says a step of {record.step:g} s, the deck {step:g} s; drop time_step")
-        notes = [note for note in notes if "their mean step is taken" not in note]
-        notes.append(f"{record.name}: time_step of the deck is taken, the times of the file are rounded")
+            raise RecordError(f"{name}: the file states a time step of {record.step:g} s, and the deck {step:g} s: remove time_step")
+        notes = [note for note in notes if "the program uses their mean step" not in note]
+        notes.append(f"{record.name}: the time_step of the deck is used, because the times of the file are rounded")
     elif record.step is not None:
         step = record.step
     if step is None:
-        raise RecordError(f"{name}: the file has no time step; give time_step")
+        raise RecordError(f"{name}: the file gives no time step: give time_step")
     units = QUANTITIES[record.quantity]
     unit = treatment.unit
     if record.unit is not None and unit is not None and units.get(record.unit) != ACCELERATION.get(unit):
-        raise RecordError(f"{name}: the file says '{record.unit}', the deck '{unit}'; drop unit")
+        raise RecordError(f"{name}: the file states the unit '{record.unit}', and the deck '{unit}': remove unit")
     known = record.unit or unit
     if known is None:
-        raise RecordError(f'{name}: the file names no unit, or several; give unit = "g", "m/s^2", "cm/s^2" ...')
+        raise RecordError(f'{name}: the file states no unit, or several: give unit = "g", "m/s^2", "cm/s^2" ...')
     if known not in units:
-        raise RecordError(f"{name}: '{known}' is no unit of {record.quantity}; expected one of {', '.join(units)}")
+        raise RecordError(f"{name}: '{known}' is not a unit of {record.quantity}; expected one of {', '.join(units)}")
     values = record.values * units[known]
     if len(values) < 3:
-        raise RecordError(f"{name}: only {len(values)} samples; a record has at least three")
+        raise RecordError(f"{name}: the file has only {len(values)} samples; a record has at least three")
     for _ in range({"acceleration": 0, "velocity": 1, "displacement": 2}[record.quantity]):
         values = np.gradient(values, step)
     if record.quantity != "acceleration":
@@ -156,8 +156,8 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
     if not WEAKEST <= (peak := np.abs(values).max()) <= STRONGEST:
         side = "above 5 g" if peak > STRONGEST else "below 0.0001 g"
         fits = [u for u, size in ACCELERATION.items() if 0.02 <= peak / units[known] * size / GRAVITY <= 2.0]
-        hint = f"; in {' or '.join(fits)} it would be plausible" if fits and record.quantity == "acceleration" else ""
-        raise RecordError(f"{name}: the peak is {peak / GRAVITY:.3g} g in '{known}': {side}, the unit is probably wrong{hint}")
+        hint = f"; with the unit {' or '.join(fits)} the peak would be plausible" if fits and record.quantity == "acceleration" else ""
+        raise RecordError(f"{name}: the peak is {peak / GRAVITY:.3g} g with the unit '{known}': {side}. The unit is probably wrong{hint}")
     return values, step, notes
 
 
@@ -181,7 +181,7 @@ def record_motion(
     try:
         step *= do.time_scale
         if (lasts := step * (rows.shape[1] - 1)) > LONGEST:
-            raise ValueError(f"{rows.shape[1]} samples every {step:g} s last {lasts:g} s, at most {LONGEST:g} s are taken")
+            raise ValueError(f"{rows.shape[1]} samples with a step of {step:g} s last {lasts:g} s; at most {LONGEST:g} s are allowed")
         rows = processing.band_pass(rows, step, do.low_cut, do.high_cut)
         rows = processing.baseline(rows, step, do.baseline)
         if do.resample is not None:
@@ -196,7 +196,7 @@ def record_motion(
     except ValueError as error:
         raise RecordError(f"{name}: {error}") from None
     if rows.shape[1] < 3:
-        raise RecordError(f"{name}: only {rows.shape[1]} samples are left after resampling")
+        raise RecordError(f"{name}: resampling leaves only {rows.shape[1]} samples")
     rows = rows * factor
     horizontal = None if horizontal is None else horizontal * factor
     parts = [("", rows[0])] if horizontal is None else [("first component: ", horizontal[0]), ("second component: ", horizontal[1])]
@@ -223,11 +223,13 @@ def _together(record: Record, others: list[Record], do: Treatment, name: str) ->
         # a unit in the deck stands in for all files, a unit in a file for that one
         values, its_step, more = acceleration_of(other, replace(do, unit=None if other.unit else do.unit), other.name)
         if abs(its_step - step) > 1e-9 * step:
-            raise RecordError(f"{name}: the components have steps of {step:g} and {its_step:g} s ({other.name}); expected the same")
+            raise RecordError(
+                f"{name}: the components have different time steps, {step:g} and {its_step:g} s ({other.name}); expected the same step"
+            )
         found.append(values)
         notes += more
     lengths = [len(row) for row in found]
     if min(lengths) < max(lengths):
         shown = ", ".join(map(str, lengths))
-        notes.append(f"{name}: components of {shown} samples, cut to the shortest")
+        notes.append(f"{name}: the components have {shown} samples and are cut to the shortest")
     return np.stack([row[: min(lengths)] for row in found]), step, notes

@@ -114,12 +114,12 @@ def _rows_of(paths: dict[str, str], rows: list[Row], table: str) -> dict[str, Ro
         base = Path(path).name
         fit = by_path[path] if path in exact else by_name.get(base, [])
         if len(fit) > 1:
-            raise ValueError(f"{table}:{fit[1].line}: {fit[0].path} (line {fit[0].line}) and {fit[1].path} both fit the record {path}")
+            raise ValueError(f"{table}:{fit[1].line}: {fit[0].path} (line {fit[0].line}) and {fit[1].path} both match the record {path}")
         rivals = [path] if path in exact else same_name[base]
         if fit and len(rivals) > 1:
             raise ValueError(
-                f"{table}:{fit[0].line}: {fit[0].path} fits the records {rivals[0]} and {rivals[1]}; "
-                "write paths from the deck's folder in the column `file`"
+                f"{table}:{fit[0].line}: {fit[0].path} matches the records {rivals[0]} and {rivals[1]}. In the column `file`, "
+                "write paths that begin in the folder of the deck"
             )
         if fit:
             found[file] = fit[0]

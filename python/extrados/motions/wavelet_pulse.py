@@ -1,4 +1,5 @@
-"""Baker's classification of near-fault pulses (2007, Bull. Seism. Soc. Am. 97:1486-1501)."""
+"""Classification of near-fault pulses of one component (Baker 2007, Bull. Seism. Soc. Am. 97:1486-1501) and over all directions (Shahi
+and Baker 2014, Bull. Seism. Soc. Am. 104:2456-2466)."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -21,9 +22,14 @@ _DB4 = np.array(
     ]
 )
 _CENTRE = 5.0 / 7.0  # cycles per unit of the mother wavelet's time, whose support is 7 units
+SHORTEST, LONGEST = 0.25, 15.0  # s: periods of pulses
 _WAVELETS = 10  # of one scale make up the pulse
 LEAST_PGV = 0.30  # m/s
 LIKE = 0.85  # indicator
+_SCALES = 50  # over all directions
+_CANDIDATES = 5
+_NEAR = 10.0 / 25.0  # of a scale (a seventh of a wavelet): where further wavelets lie, and what a candidate blocks
+LATE = 0.17  # share of the energy of the motion before the pulse begins
 
 
 @dataclass(frozen=True)
@@ -62,7 +68,7 @@ def _wavelet(length: int) -> np.ndarray:
     return wave / np.sqrt(wave @ wave)
 
 
-def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, longest: float = 15.0) -> PulseClass:
+def classify(acceleration: np.ndarray, step: float) -> PulseClass:
     """Extract the strongest velocity pulse of an acceleration (points) [m/s^2] and classify the motion by it.
 
     The pulse is the wavelet of the greatest coefficient over all scales and times, and up to nine more of the same
@@ -74,11 +80,11 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     pgv = float(np.abs(velocity).max())
     if pgv == 0.0:
         return _none(velocity, "nothing moves")
-    if step * len(velocity) < 0.1 * shortest:  # a wavelet would have samples without end
+    if step * len(velocity) < 0.1 * SHORTEST:  # a wavelet would have samples without end
         return _none(velocity, f"the motion is over within {step * len(velocity):.3g} s, much before any pulse")
     # energy off the time grid's ends: a wavelet may reach beyond the record
-    top = min(longest, 0.9 * step * len(velocity) * _CENTRE)
-    periods = np.geomspace(shortest, max(top, 1.01 * shortest), 80)
+    top = min(LONGEST, 0.9 * step * len(velocity) * _CENTRE)
+    periods = np.geomspace(SHORTEST, max(top, 1.01 * SHORTEST), 80)
     lengths = np.unique(np.maximum(8, np.round(7.0 * _CENTRE * periods / step).astype(int)))
     best = (0.0, 0, 0)
     for length in lengths:
@@ -87,15 +93,7 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
         if coefficient[k] > best[0]:
             best = (float(coefficient[k]), int(length), k)
     _, length, centre = best
-    wave = _wavelet(length)
-    rest, near = velocity.copy(), length // 2
-    for _ in range(_WAVELETS):
-        coefficient = fftconvolve(rest, wave[::-1])
-        low, high = max(0, centre - near), min(len(coefficient), centre + near + 1)
-        k = low + int(np.argmax(np.abs(coefficient[low:high])))
-        start = k - (length - 1)
-        a, b = max(0, start), min(len(rest), start + length)
-        rest[a:b] -= coefficient[k] * wave[a - start : b - start]
+    rest = _without(velocity, length, centre, length // 2)
     pulse = velocity - rest
     pgv_ratio = float(np.abs(rest).max()) / pgv
     energy_ratio = float((rest / pgv) @ (rest / pgv)) / float((velocity / pgv) @ (velocity / pgv))
@@ -103,11 +101,11 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     early = _time_of(pulse, 0.10) < _time_of(velocity, 0.20)
     fails = []
     if indicator <= LIKE:
-        fails.append(f"the indicator {indicator:.2f} is not above {LIKE:g}")
+        fails.append(f"the pulse indicator {indicator:.2f} is not above {LIKE:g}")
     if not early:
         fails.append("the pulse does not arrive early in the motion")
     if pgv <= LEAST_PGV:
-        fails.append(f"the peak velocity of {100.0 * pgv:.3g} cm/s is not above {100.0 * LEAST_PGV:g}")
+        fails.append(f"the peak velocity of {100.0 * pgv:.3g} cm/s is not above {100.0 * LEAST_PGV:g} cm/s")
     return PulseClass(
         indicator,
         float(length * step / (7.0 * _CENTRE)),
@@ -119,6 +117,101 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
         pulse,
         tuple(fails),
     )
+
+
+def _without(velocity: np.ndarray, length: int, centre: int, near: int) -> np.ndarray:
+    """What ten wavelets of a length leave of a velocity (points), each taken from what the ones before left: the strongest within `near`
+    samples of `centre`, the others of the first one; centre: last sample of a wavelet."""
+    from scipy.signal import fftconvolve
+
+    wave, rest = _wavelet(length), velocity.copy()
+    for number in range(_WAVELETS):
+        coefficient = fftconvolve(rest, wave[::-1])
+        low, high = max(0, centre - near), min(len(coefficient), centre + near + 1)
+        k = low + int(np.argmax(np.abs(coefficient[low:high])))
+        centre = centre if number else k
+        start = k - (length - 1)
+        a, b = max(0, start), min(len(rest), start + length)
+        rest[a:b] -= coefficient[k] * wave[a - start : b - start]
+    return rest
+
+
+@dataclass(frozen=True)
+class DirectedPulse:
+    """A pulse in its own direction, `angle` from the first component [rad]: period [s], peak velocity of the motion in that direction [m/s],
+    ratios of peak velocity and of energy that the motion without the pulse has, share of its energy before the pulse begins; indicator:
+    above 0 pulse-like, if not late."""
+
+    indicator: float
+    period: float
+    angle: float
+    pgv: float
+    pgv_ratio: float
+    energy_ratio: float
+    before: float
+
+    @property
+    def pulse_like(self) -> bool:
+        """Whether the motion is pulse-like by this pulse."""
+        return self.indicator > 0.0 and self.before < LATE
+
+
+def classify_directions(components: np.ndarray, step: float, shortest: float = 0.25, longest: float = 15.0) -> list[DirectedPulse]:
+    """Up to five candidates, strongest first, of two horizontal accelerations (2, points) [m/s^2]; none where nothing moves or the motion is
+    over before a pulse. The sum of both squared coefficients of a wavelet is that in the direction of its greatest one."""
+    from scipy.signal import fftconvolve
+
+    velocity = np.array([core.kinematics(row, step)[0] for row in components])
+    points = velocity.shape[1]
+    unit = _CENTRE / step  # samples of the wavelet's time unit for a period of 1 s
+    least = max(2.0, np.floor(shortest * unit))
+    if not velocity.any() or step * points < shortest:
+        return []
+    scales = least + np.ceil((longest * unit - least) / _SCALES) * np.arange(_SCALES + 1)
+    waves = [_wavelet(round(7.0 * scale)) for scale in scales]
+    pairs = np.array([[fftconvolve(row, wave[::-1])[_middle(len(wave), points)] for row in velocity] for wave in waves])
+    energy = (pairs**2).sum(axis=1)
+    found = []
+    for _ in range(_CANDIDATES):
+        row, at = np.unravel_index(int(energy.argmax()), energy.shape)
+        if energy[row, at] == 0.0:
+            break
+        angle = float(np.arctan2(pairs[row, 1, at], pairs[row, 0, at]))
+        angle -= np.pi * np.round(angle / np.pi)  # a pulse and its opposite have one direction
+        signal = np.cos(angle) * velocity[0] + np.sin(angle) * velocity[1]
+        finer = np.arange(scales[max(row - 1, 0)], scales[min(row + 1, _SCALES)] + 1.0)
+        scale = float(finer[int(np.argmax([abs(_coefficient(signal, round(7.0 * one), int(at))) for one in finer]))])
+        found.append(_directed(signal, scale, int(at), float(angle), step))
+        near = _NEAR * scales[row]
+        energy[:, max(0, int(np.ceil(at - near))) : int(at + near) + 1] = 0.0
+    return found
+
+
+def _middle(length: int, points: int) -> slice:
+    """Of a whole convolution with a wavelet of a length, those centred on the samples of the motion."""
+    return slice(length // 2, length // 2 + points)
+
+
+def _coefficient(velocity: np.ndarray, length: int, centre: int) -> float:
+    """Of the wavelet of a length that is centred on a sample."""
+    start = centre + length // 2 - (length - 1)
+    a, b = max(0, start), min(len(velocity), start + length)
+    return float(velocity[a:b] @ _wavelet(length)[a - start : b - start])
+
+
+def _directed(signal: np.ndarray, scale: float, at: int, angle: float, step: float) -> DirectedPulse:
+    """The pulse of a scale [samples] about a sample of the velocity in its direction, and the indicator of Shahi and Baker (cm/s)."""
+    length = round(7.0 * scale)
+    rest = _without(signal, length, at + length // 2, int(np.ceil(_NEAR * scale)))
+    pgv = float(np.abs(signal).max())
+    pgv_ratio, energy_ratio = float(np.abs(rest).max()) / pgv, float(rest @ rest) / float(signal @ signal)
+    pulse = np.cumsum((signal - rest) ** 2)
+    begins = max(int(np.searchsorted(pulse, 0.05 * pulse[-1], side="right")) - 1, 0)
+    total = np.cumsum(signal**2)
+    p = (0.63 * pgv_ratio + 0.777 * energy_ratio - 1.208421) / 0.2462717
+    v = (100.0 * pgv - 11.58861) / 18.88015
+    indicator = -7.817 - 0.5679 * p**2 - 0.1516 * v**2 - 3.0253 * p - 1.7396 * v - 2.7156 * p * v
+    return DirectedPulse(float(indicator), scale * step / _CENTRE, angle, pgv, pgv_ratio, energy_ratio, float(total[begins] / total[-1]))
 
 
 def _none(velocity: np.ndarray, reason: str) -> PulseClass:

@@ -19,33 +19,33 @@ class AssessHazard(ResultModel):
     kind: str = fact("kind of [motion]")
     told: str = fact("in words")
     motions: int = fact("number of motions")
-    member: int = maybe("of a set: the motion that strategies of one motion take, from 1")
-    chosen_by: str = maybe("of a set: the rule by which it was taken")
-    peak_ground_acceleration_g: float = fact("demand of strategies with a constant acceleration", "g")
+    member: int = maybe("number, from 1, of the motion in the set that strategies of a single motion use")
+    chosen_by: str = maybe("rule that selected this motion from the set")
+    peak_ground_acceleration_g: float = fact("peak ground acceleration: the demand for strategies that apply a constant acceleration", "g")
     peak_told: str = fact("source of that peak")
-    pulse_amplitude_g: float | None = fact("amplitude of the primary impulse; null: none", "g")
+    pulse_amplitude_g: float | None = fact("amplitude of the primary impulse; null if the motion has none", "g")
     pulse_period_s: float | None = fact("its period; null: none", "s")
 
 
 class StrategyVerdict(ResultModel):
     """Verdict of one strategy."""
 
-    strategy: str = fact("kind of analysis; `probability` is `fragility` with uncertain sizes or many motions")
+    strategy: str = fact("kind of analysis; `probability` means `fragility` with uncertain sizes or many motions")
     label: str = fact("its name in words")
-    part: str | None = fact("name of the analysis of this run with its results; null without a result")
+    part: str | None = fact("name of the analysis of this run that holds the results; null without a result")
     status: RowStatus = fact("whether it has a result")
-    reason: str = fact("reason without a result; else empty")
+    reason: str = fact("reason why the strategy has no result; empty if it has one")
     axis: Axis = fact("quantity that is compared")
     demand: float | None = fact("demand, in `unit`")
     capacity: float | None = fact("capacity, in `unit`")
     unit: str = fact("unit of both")
-    outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
-    bound: Bound | None = fact("capacity as a bound: exact, upper or lower; null: an estimate")
-    violated: list[str] = fact("assumptions of the strategy that were checked and do not hold; the outcome is then open")
-    margin: float | None = fact("critical scale factor of the hazard; null: not known")
-    margin_at_least: float | None = fact("greatest factor on the hazard that was run without collapse; null: none")
-    margin_below: float | None = fact("least factor on the hazard that was run with collapse; null: none")
-    parameters: str = fact("settings of the strategy, and the rule that gave them")
+    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open or not-applicable")
+    bound: Bound | None = fact("type of the capacity: exact, lower bound or upper bound; null for an estimate")
+    violated: list[str] = fact("assumptions of the strategy that were checked and are violated; the outcome is then open")
+    margin: float | None = fact("critical scale factor of the hazard; null if not known")
+    margin_at_least: float | None = fact("greatest scale factor of the hazard that was run without collapse; null if no such run")
+    margin_below: float | None = fact("least scale factor of the hazard that was run with collapse; null if no such run")
+    parameters: str = fact("settings of the strategy, and the rule that selected them")
     assumes: str = fact("assumptions of the strategy")
     statement: str = fact("its verdict in one sentence")
 
@@ -69,10 +69,10 @@ class Reason(ResultModel):
     """Why strategies differ, by a rule whose numbers show it."""
 
     rule: str = fact("name of the rule")
-    headline: str = fact("the reason in a few words")
-    explains: list[list[str]] = fact("pairs of strategies whose difference it explains")
-    text: str = fact("the reason in words, with the numbers")
-    numbers: dict[str, float | None] = fact("the numbers that the rule has compared")
+    headline: str = fact("short form of the reason")
+    explains: list[list[str]] = fact("pairs of strategies whose difference this reason explains")
+    text: str = fact("full statement of the reason, with numbers")
+    numbers: dict[str, float | None] = fact("numbers that the rule compared")
 
 
 class Probe(ResultModel):
@@ -81,7 +81,7 @@ class Probe(ResultModel):
     strategy: str = fact("kind of analysis")
     changed: str = fact("difference from the deck")
     outcome: Outcome = fact("its verdict")
-    value: float | None = fact("its demand over its capacity; null: not known")
+    value: float | None = fact("demand divided by capacity of this further run; null if not known")
 
 
 class TurningValue(ResultModel):
@@ -93,21 +93,27 @@ class TurningValue(ResultModel):
     unit: str = fact("unit of the value")
     low: float = fact("a value below")
     high: float = fact("a value above")
-    tilt_base: float | None = fact("margin of limit analysis at the value of the deck; null: none")
-    rocking_base: float | None = fact("margin of rocking at the value of the deck; null: none")
-    tilt_low: float | None = fact("margin of limit analysis at the value below; null: none")
-    tilt_high: float | None = fact("margin of limit analysis at the value above")
-    rocking_low: float | None = fact("margin of rocking at the value below")
-    rocking_high: float | None = fact("margin of rocking at the value above")
-    tilt_turns: float | None = fact("value at which the verdict of limit analysis changes; null: at none that was run")
-    rocking_turns: float | None = fact("value at which the verdict of rocking changes; null: at none that was run")
+    tilt_base: float | None = fact("safety factor by limit analysis at the value in the deck; null without a result")
+    rocking_base: float | None = fact("safety factor by rocking at the value in the deck; null without a result")
+    tilt_low: float | None = fact("safety factor by limit analysis at the lower value; null without a result")
+    tilt_high: float | None = fact("safety factor by limit analysis at the higher value")
+    rocking_low: float | None = fact("safety factor by rocking at the lower value")
+    rocking_high: float | None = fact("safety factor by rocking at the higher value")
+    tilt_turns: float | None = fact("value at which the verdict of limit analysis changes; null if no calculated value changes the verdict")
+    rocking_turns: float | None = fact("value at which the verdict of rocking changes; null if no calculated value changes the verdict")
     dem_base: float | None = fact(
-        "ratio of the displacement of discrete elements to the one that counts as collapse, at the value of the deck; null: not run"
+        "ratio of the displacement by discrete elements to the displacement that counts as collapse, at the value in the "
+        "deck; null without a run"
     )
-    dem_low: float | None = fact("ratio of the displacements at the value below")
-    dem_high: float | None = fact("ratio of the displacements at the value above")
+    dem_low: float | None = fact(
+        "ratio of the displacement by discrete elements to the displacement that counts as collapse, at the lower value"
+    )
+    dem_high: float | None = fact(
+        "ratio of the displacement by discrete elements to the displacement that counts as collapse, at the higher value"
+    )
     dem_turns: float | None = fact(
-        "value at which the verdict of discrete elements changes; null: at none that was run, or the response is chaotic"
+        "value at which the verdict of discrete elements changes; null if no calculated value changes the verdict, or if "
+        "the response is chaotic"
     )
 
 
@@ -115,15 +121,15 @@ class Contribution(ResultModel):
     """Probability of collapse by one strategy, from its agreement with tests."""
 
     strategy: str = fact("strategy")
-    quantity: str = fact("quantity of the verification book that the tests measured")
+    quantity: str = fact("quantity measured in the tests, as named in the verification book")
     count: int = fact("number of tests")
-    bias: float = fact("geometric mean of computed over measured values")
-    scatter: float = fact("standard deviation of the natural logarithm of computed over measured values")
+    bias: float = fact("geometric mean of the ratio of calculated to measured values")
+    scatter: float = fact("standard deviation of the natural logarithm of the ratio of calculated to measured values")
     margin: float = fact("critical scale factor of the hazard by the strategy")
     probability: float = fact("probability that the true critical scale factor is below 1")
-    low: float = fact("lower end of its 90 % confidence interval")
-    high: float = fact("upper end of its 90 % confidence interval")
-    weight: float = fact("weight in the overall probability: its share of the tests")
+    low: float = fact("lower end of the 90 % confidence interval of this probability")
+    high: float = fact("upper end of the 90 % confidence interval of this probability")
+    weight: float = fact("weight of this strategy in the overall probability: its share of the number of tests")
 
 
 class CollapseInMotion(ResultModel):
@@ -132,9 +138,9 @@ class CollapseInMotion(ResultModel):
     collapsed: int = fact("runs that collapse")
     count: int = fact("runs with a result")
     probability: float = fact("share that collapses")
-    low: float = fact("lower end of its 95 % score interval", source="Wilson 1927")
-    high: float = fact("upper end of its 95 % score interval", source="Wilson 1927")
-    violated: list[str] = fact("assumptions of rocking that do not hold in these runs")
+    low: float = fact("lower end of the 95 % score interval of the share that collapses", source="Wilson 1927")
+    high: float = fact("upper end of the 95 % score interval of the share that collapses", source="Wilson 1927")
+    violated: list[str] = fact("assumptions of the rocking analysis that are violated in these runs")
 
 
 class CollapseProbability(ResultModel):
@@ -143,27 +149,32 @@ class CollapseProbability(ResultModel):
     The first comes from the model uncertainty of the strategies. The second is a count of dynamic runs.
     """
 
-    in_motion: CollapseInMotion = maybe("probability of collapse under the motion itself, by rocking")
+    in_motion: CollapseInMotion = maybe("probability of collapse by rocking under the motion itself")
     probability: float | None = fact(
-        "if the peak acted as a constant horizontal acceleration: weighted mean over the contributions; 1 for a certificate; null: no contribution"
+        "probability of collapse if the peak acted as a constant horizontal acceleration: weighted mean of the "
+        "contributions; 1 if a certificate shows collapse; null without a contribution"
     )
-    low: float | None = fact("least lower end of the contributions' 90 % confidence intervals; null: no contribution")
-    high: float | None = fact("greatest upper end of the contributions' 90 % confidence intervals; null: no contribution")
-    contributions: list[Contribution] = fact("strategies whose capacity the verification book compares with known results")
-    without: dict[str, str] = fact("strategies that contribute nothing, with the reason")
+    low: float | None = fact("least of the lower ends of the 90 % confidence intervals of all contributions; null without a contribution")
+    high: float | None = fact(
+        "greatest of the upper ends of the 90 % confidence intervals of all contributions; null without a contribution"
+    )
+    contributions: list[Contribution] = fact("strategies whose capacity is compared with known results in the verification book")
+    without: dict[str, str] = fact("strategies without a contribution, each with the reason")
     statement: str = fact("the probability in words")
-    method: str = fact("derivation of the probability in words")
+    method: str = fact("text that explains how the probability is derived")
 
 
 class Advice(ResultModel):
     """What to do, by limit analysis: interventions that carry the peak of the hazard as a constant horizontal acceleration."""
 
-    target_g: float = fact("constant horizontal acceleration that the interventions carry: the peak of the hazard", "g")
-    capacity_g: float | None = fact("capacity of the existing building; null: none", "g")
-    mechanism: str = fact("governing mechanism of the existing building")
-    interventions: list[Intervention] = fact("alternatives, the cheapest that meets the target first")
-    by_rocking: Intervention = maybe("the first tie, with the least force by which rocking under the hazard stands")
-    rocking: dict[str, str] = fact("outcome of rocking under the hazard with each intervention that meets the target")
+    target_g: float = fact("constant horizontal acceleration that the interventions must carry: the peak of the hazard", "g")
+    capacity_g: float | None = fact("capacity of the existing building; null without a result", "g")
+    mechanism: str = fact("governing collapse mechanism of the existing building")
+    interventions: list[Intervention] = fact("alternative interventions; the cheapest that reaches the target comes first")
+    by_rocking: Intervention = maybe(
+        "the first tie of the list, with the least force at which the building survives rocking under the hazard"
+    )
+    rocking: dict[str, str] = fact("outcome of rocking under the hazard, for each intervention that reaches the target")
     statement: str = fact("recommendation in words")
 
 
@@ -177,18 +188,19 @@ class Assess(KindResults):
     hazard: AssessHazard = fact("the hazard")
     verdicts: list[StrategyVerdict] = fact("one row a strategy")
     agreement: dict[str, dict[str, Agreement]] = fact(
-        "of each pair of strategies with a verdict: the same verdict, the same with margins far apart, another one, or open"
+        "comparison of each pair of strategies with a verdict: same verdict, same verdict with very different safety "
+        "factors, different verdicts, or open"
     )
     collapse_probability: CollapseProbability = fact("probability of collapse from the model uncertainty of the strategies")
     reasons: list[Reason] = fact("why strategies differ")
-    unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
-    parts: dict[str, str] = fact("analyses of this run that the assessment requested: name -> description")
+    unexplained: list[list[str]] = fact("pairs of strategies that differ, and whose difference no rule explains")
+    parts: dict[str, str] = fact("analyses of this run that the assessment requested: name and description")
     probes: list[Probe] = fact("further runs")
-    sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts, the most decisive value first")
-    advice: Advice = maybe("strengthening, if the building does not stand under all strategies")
-    not_done: list[str] = fact("steps that the budget did not allow, and further runs that decided nothing")
+    sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts to each uncertain value; the most decisive value comes first")
+    advice: Advice = maybe("strengthening, if any strategy predicts collapse")
+    not_done: list[str] = fact("steps for which the budget of time did not suffice, and further runs that did not decide anything")
     least_margin: float | None = fact(
-        "least critical scale factor of the hazard of all strategies; 0 where the building cannot stand; null: none known"
+        "least critical scale factor of the hazard among all strategies; 0 if the building cannot stand; null if no factor is known"
     )
     least_margin_strategy: str | None = fact("whose it is")
     budget_s: float = fact("time that it was given", "s")

@@ -15,12 +15,16 @@ NO_SLIDING = "no-sliding"
 class Assumption(ResultModel):
     """One property of the building as an analysis used it."""
 
-    value: Any = fact("the value, in `unit`; null where the deck gives none and the analysis does without")
+    value: Any = fact("the value, in `unit`; null if the deck gives no value and the analysis needs none")
     unit: str = fact("unit of the value")
     origin: Origin = fact(
-        "default, the deck's own table, an override in the table of the analysis, or the method, which has one value only", name="from"
+        (
+            "origin of the value: program default, table of the deck, override in the table of the analysis, or the method, "
+            "which allows one value only"
+        ),
+        name="from",
     )
-    exceptions: bool = fact("whether some joints or parts have values of their own")
+    exceptions: bool = fact("whether some joints or parts have different values")
 
 
 def spoken(assumptions: dict[str, Assumption]) -> str:

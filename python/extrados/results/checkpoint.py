@@ -120,7 +120,8 @@ def _hold(out: Path) -> None:
     except BlockingIOError:
         os.close(handle)
         raise StoreError(
-            f"{folder}: another run keeps its unfinished batches there now; wait for its end, or name another folder with --out"
+            f"{folder}: another run is writing its unfinished batches to this folder. Wait until that run ends, or give "
+            "another folder with --out"
         ) from None
     except OSError:  # a file system that knows no locks
         os.close(handle)
@@ -140,16 +141,16 @@ def refuse_other_deck(out: Path, deck: str) -> None:
             found = head["deck"]["sha256"] if results else head["sha256"]
             by = program() if results else head["program"]
         except (ValueError, KeyError, TypeError, RecursionError) as error:
-            raise StoreError(f"{path}: cannot be read, so nothing is resumed from it: {error}") from None
+            raise StoreError(f"{path}: this file cannot be read, so the run cannot resume from it: {error}") from None
         if found != deck:
             raise StoreError(
-                f"{folder}: holds {'results' if results else 'unfinished batches'} of another deck "
-                f"(sha256 {str(found)[:16]}, this one is {deck[:16]}): not resumed; name another folder with --out"
+                f"{folder}: holds {'results' if results else 'unfinished batches'} of another deck (sha256 {str(found)[:16]}, "
+                f"this one is {deck[:16]}). The run cannot be resumed. Give another folder with --out"
             )
         if by != program():
             raise StoreError(
-                f"{folder}: was begun by extrados {by}, this one is {program()}: not resumed, for the two may compute "
-                "another result; run anew without --resume, or continue with that version"
+                f"{folder}: this run was begun by extrados {by}, and the present version is {program()}. The two versions can "
+                "give different results, so the run is not resumed. Start again without --resume, or continue with that version"
             )
 
 
@@ -163,14 +164,16 @@ class Checkpoint:
                 refuse_other_deck(out, deck)
             elif os.path.lexists(self.folder):
                 if not (self.folder / HEAD).exists():
-                    raise StoreError(f"{self.folder}: is in the way and was not written by extrados; remove it or use --out")
+                    raise StoreError(
+                        f"{self.folder}: this folder exists and was not written by extrados. Remove it, or give another folder with --out"
+                    )
                 _hold(out)
                 _clear(self.folder)
             self.folder.mkdir(parents=True, exist_ok=True)
             _hold(out)
             _write(self.folder / HEAD, json.dumps({"sha256": deck, "program": program()}).encode())
         except OSError as error:
-            raise StoreError(f"{self.folder}: cannot write here: {error.strerror or error}") from None
+            raise StoreError(f"{self.folder}: extrados cannot write to this folder: {error.strerror or error}") from None
 
     def load(self, name: str, warnings: list[str]) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
         """(first member, arrays) of every batch of a sweep that was kept whole; `warnings` tells of damaged ones."""
@@ -188,7 +191,7 @@ class Checkpoint:
                     yield int(path.name.partition("-")[0]), {key: store[key] for key in store.files}, path
             else:
                 told = f"{path.parent.name}/{path.name}"
-                warnings.append(f"a kept batch was damaged and is computed again: {told} is now {path.name}.damaged")
+                warnings.append(f"a saved batch of results is damaged and is calculated again: {told} is now {path.name}.damaged")
                 with contextlib.suppress(FileNotFoundError):  # another run may have done so
                     path.rename(path.with_name(f"{path.name}.damaged"))
 
@@ -198,7 +201,7 @@ class Checkpoint:
             with np.load(path, allow_pickle=False) as store:
                 return {key: store[key] for key in names}
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-            raise StoreError(f"{path}: a kept batch cannot be read again: {error}; run with --resume") from None
+            raise StoreError(f"{path}: a saved batch of results cannot be read: {error}. Run again with --resume") from None
 
     def keep(self, name: str, first: int, arrays: dict[str, np.ndarray]) -> Path:
         """Store a batch; it is there whole or not at all."""
@@ -211,7 +214,7 @@ class Checkpoint:
             path.parent.mkdir(exist_ok=True)
             _write(path, content)
         except OSError as error:
-            raise StoreError(f"{path.parent}: a batch could not be kept: {error.strerror or error}") from None
+            raise StoreError(f"{path.parent}: a batch of results could not be saved: {error.strerror or error}") from None
         return path
 
 
@@ -248,7 +251,7 @@ def _clear(folder: Path) -> None:
         if path.is_file() and not path.is_symlink():
             path.unlink()
     if not written.prune(folder):
-        log.warning("%s: holds files that extrados did not write or that are damaged; they are left there", folder)
+        log.warning("%s: this folder contains files that extrados did not write or that are damaged. They were not removed", folder)
 
 
 def _write(path: Path, content: bytes) -> None:

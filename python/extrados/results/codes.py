@@ -14,20 +14,23 @@ Applied = Literal["holds", "fails", "not-applicable", ""]
 class Check(ResultModel):
     """One rule of a code."""
 
-    capacity: float | None = fact("capacity by the rule, in `unit`; null where the rule gives none for this element")
-    demand: float | None = fact("demand, in `unit`; null if unknown")
+    capacity: float | None = fact("capacity by the rule, in `unit`; null if the rule gives no capacity for this element")
+    demand: float | None = fact("demand, in `unit`; null if not known")
     unit: str = fact("unit of capacity and demand")
-    quantity: str = fact("quantity that is compared: displacement, acceleration, lateral strength, drift, slenderness")
-    verdict: Applied = fact("verdict of the rule; not-applicable outside its scope; empty without a demand")
+    quantity: str = fact("quantity compared: displacement, acceleration, lateral strength, drift or slenderness")
+    verdict: Applied = fact("verdict of the rule; not-applicable outside the scope of the rule; empty without a demand")
     source: str = fact("clause of the rule, with edition and equation")
-    note: str = fact("values on which capacity and demand rest")
-    code: str = fact("code whose check it is; empty for a formula for comparison or a strength")
-    limit_state: str = fact("limit state of the demand: SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; ULS; empty of a formula for comparison")
-    scope: str = fact("element, restraint and height that the rule is for")
-    alternative: str = fact(
-        "checks of one code and limit state with the same word are alternatives: one that holds suffices; empty: must hold by itself"
+    note: str = fact("values from which capacity and demand are calculated")
+    code: str = fact("code that requires the check; empty for a formula shown for comparison or for a strength")
+    limit_state: str = fact(
+        "limit state of the demand: SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; or ULS; empty for a formula shown for comparison"
     )
-    reason: str = fact("reason for which the rule does not apply; else empty")
+    scope: str = fact("element, restraint and height to which the rule applies")
+    alternative: str = fact(
+        "group of alternative checks: of the checks with the same code, limit state and word here, one that is satisfied "
+        "suffices; empty if this check must be satisfied by itself"
+    )
+    reason: str = fact("reason why the rule does not apply; empty if it applies")
 
     @property
     def words(self) -> str:
@@ -42,22 +45,28 @@ class Checked(KindResults):
     """Rules of codes, by name, and one verdict for all."""
 
     checks: dict[str, Check] = fact("the rules by name")
-    jurisdiction: Jurisdiction = maybe("code whose rules decide; of a deck without [code] NTC")
+    jurisdiction: Jurisdiction = maybe("code whose rules give the verdict; NTC if the deck has no [code]")
     code: str = maybe("code and edition in words")
-    by_default: bool = maybe("whether the deck has no [code], so that the rules of NTC 2018 are applied")
-    clause: str = maybe("clause of the check that governs, with edition and equation; empty without a verdict")
+    by_default: bool = maybe("whether the deck has no [code]; the rules of NTC 2018 are then applied")
+    clause: str = maybe("clause of the governing check, with edition and equation; empty without a verdict")
     zeta_E: float | None = maybe(
-        "NTC: seismic action that the part carries over that of the code, at SLV; null without a demand", source="NTC 2018 8.3"
+        (
+            "zeta_E of NTC: ratio of the seismic action that the part can carry to the action required by the code, at SLV; "
+            "null without a demand"
+        ),
+        source="NTC 2018 8.3",
     )
-    nbs_percent: float | None = maybe("NZSEE: %NBS, capacity over demand of the check that governs; null without a demand", "%")
-    confidence_factor: float = maybe("confidence factor by which capacities are divided")
-    behaviour_factor: float = maybe("q of the linear check of NTC, and of the demand on a pier")
-    bound: Bound = maybe("which side of the exact capacity the checks lie on")
+    nbs_percent: float | None = maybe(
+        "%NBS of NZSEE: capacity divided by demand in the governing check, in percent; null without a demand", "%"
+    )
+    confidence_factor: float = maybe("confidence factor: capacities are divided by it")
+    behaviour_factor: float = maybe("behaviour factor q of the linear check of NTC, and of the demand on a pier")
+    bound: Bound = maybe("whether the checks give the exact capacity, a lower bound or an upper bound")
     margin_associated: float | None = maybe(
-        "joints slide: capacity / demand of the governing check by associated (dilatant) friction; a check that fails without dilatancy is "
-        "open where this is at least 1; null without a demand"
+        "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. The outcome is "
+        "open if this ratio is at least 1 and the check without dilatancy fails; null without a demand"
     )
-    violated: list[str] = maybe("assumptions on the unsafe side that were checked and do not hold: a check that holds is then open")
+    violated: list[str] = maybe("unsafe assumptions that were checked and are violated; the outcome is then open if the check is satisfied")
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall verdict; the deck's motion is no demand of a code."""
@@ -90,11 +99,14 @@ class Checked(KindResults):
         """One verdict for all: the most unfavourable check that applies, of alternatives the one that allows most. Formulas for
         comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
         decided, undecided = self.governing(), sorted({code for code, _, known in self._groups() if not known})
-        remarks = f" Open, because the deck gives no demand: {', '.join(undecided)}." if undecided else ""
+        remarks = f" The check is open because the deck gives no demand: {', '.join(undecided)}." if undecided else ""
         if self.by_default:
-            remarks += f" The deck names no code: the rules of {self.code} are applied. Give [code] for another."
+            remarks += f" The deck names no code: the rules of {self.code} are applied. Give [code] to apply another code."
         if self.confidence_factor == 1.0 and self.jurisdiction not in ("NZSEE", "none"):
-            remarks += " All partial and confidence factors are 1: the capacity contains no margin for uncertain masonry properties."
+            remarks += (
+                " All partial factors and confidence factors are 1: the capacity includes no margin for uncertain properties of "
+                "the masonry."
+            )
         if decided:
             _, name, worst = decided[0]
             holds = worst.verdict == "holds"  # what is violated errs on the unsafe side: a check that fails, fails all the same
@@ -103,8 +115,8 @@ class Checked(KindResults):
             if not holds and (self.margin_associated or 0.0) >= 1.0:
                 outcome = "open"
                 remarks = (
-                    f" Joints slide: the {DILATANT} satisfies the check (factor {self.margin_associated:.3g}), the state without dilatancy does not. "
-                    f"The outcome is open.{remarks}"
+                    f" Joints slide: the {DILATANT} satisfies the check (factor {self.margin_associated:.3g}), but the state without "
+                    f"dilatancy does not satisfy it. The outcome is open.{remarks}"
                 )
             return judge(
                 f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
@@ -119,18 +131,20 @@ class Checked(KindResults):
         if (weakest := self.weakest()) is not None:
             name, check = weakest
             return judge(
-                f"{name} gives the least strength, {(check.capacity or 0.0) / 1e3:.4g} kN ({check.note}).{remarks}",
+                f"{name} gives the lowest strength, {(check.capacity or 0.0) / 1e3:.4g} kN ({check.note}).{remarks}",
                 None,
                 check.capacity,
                 "N",
             )
         barred = {f"{c.code}, {n}": c.reason for n, c in self.checks.items() if c.code and c.verdict == "not-applicable"}
         if self.jurisdiction == "none":
-            return judge("No code is applied (jurisdiction none). Formulas for comparison give no verdict.")
+            return judge("No code is applied (jurisdiction none). The formulas shown for comparison give no verdict.")
         if undecided or not barred:
-            return judge(f"The deck gives no seismic action, so no check has a demand. Give the action in [code], or a spectrum.{remarks}")
+            return judge(
+                f"The deck gives no seismic action, so the checks have no demand. Give the action in [code], or give a spectrum.{remarks}"
+            )
         told = "; ".join(f"{rule}: {reason}" for rule, reason in barred.items())
-        return judge(f"This program implements no rule of the code for this element. {told[:1].upper()}{told[1:]}.")
+        return judge(f"This program includes no rule of the code for this element. {told[:1].upper()}{told[1:]}.")
 
     def conclusion(self) -> str:
         """The verdict in one sentence, for the head of a report."""
@@ -171,64 +185,77 @@ class Checked(KindResults):
 class CodeChecks(Checked):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
-    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: outcome of the computed rocking")
-    dynamic_peak_rotation_ratio: float = maybe("greatest rotation of the block over its critical rotation")
-    peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
-    peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
+    dynamic_outcome: RockingOutcome = maybe("for a block under a motion: outcome of the calculated rocking")
+    dynamic_peak_rotation_ratio: float = maybe("ratio of the greatest rotation of the block to its critical rotation")
+    peak_ground_acceleration_g: float | None = maybe("for a block: a_g S, the demand in the rules", "g")
+    peak_ground_velocity_m_s: float | None = maybe("for a block: demand by the rule of Ishiyama", "m/s")
 
 
 class WallMechanism(ResultModel):
     """A wall of a building on a plan above the foot of one of its storeys."""
 
     wall: str = fact("its name")
-    storey: int = fact("storey at whose foot it rotates, from 1")
-    foot_m: float = fact("height of that foot above the ground", "m")
+    storey: int = fact("number, from 1, of the storey at whose foot the wall rotates")
+    foot_m: float = fact("height of the foot of this storey above the ground", "m")
     multiplier: float = fact("alpha_0")
     activation_acceleration_g: float = fact("a_0*", "g")
     zero_displacement_m: float | None = fact("d_0*; null: none", "m")
-    margin: float | None = fact("capacity over demand of the check that governs; null without a demand")
+    margin: float | None = fact("capacity divided by demand in the governing check; null without a demand")
 
 
 class LocalMechanism(Checked):
     """local-mechanism: a local mechanism by the kinematic analysis of codes."""
 
     mechanism: str = fact("which")
-    multiplier: float = fact("alpha_0, the horizontal multiplier of the weights that starts it", source="Circ. 7/2019 C8.7.1.2.1")
+    multiplier: float = fact(
+        "alpha_0: horizontal multiplier of the weights at which the mechanism starts", source="Circ. 7/2019 C8.7.1.2.1"
+    )
     participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1")
-    participating_part: float = fact("e* = g M* over the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]")
+    participating_part: float = fact(
+        "e*: participating mass ratio, g M* divided by the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
+    )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(
-        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of the moving blocks; null: none",
+        (
+            "d_0*: horizontal displacement of the centre of the moving blocks at which the multiplier becomes zero; null if "
+            "no such displacement exists"
+        ),
         "m",
         source="Circ. 7/2019 [C8.7.1.4]",
     )
     ultimate_displacement_m: float | None = fact("d_SLV = 0.4 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
     collapse_displacement_m: float | None = fact("d_SLC = 0.6 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
     equivalent_period_s: float | None = fact(
-        "T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
+        "T_SLV: period 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        "weight of the kinematic chain: moving blocks, the loads that rest on them and sway, and the masses that push them", "N"
+        ("weight of the kinematic chain: the moving blocks, the loads on them that move with them, and the masses that push them"), "N"
     )
-    base_height_m: float = fact("z, height of the mechanism above the foundation: at 0 the demand is that of the ground", "m")
-    building_height_m: float = maybe("H, of a mechanism above the ground: the height of the building", "m")
+    base_height_m: float = fact("z: height of the mechanism above the foundation; at z = 0 the demand is the ground acceleration", "m")
+    building_height_m: float = maybe("H, for a mechanism above the ground: height of the building", "m")
     floor_acceleration_g: float = maybe(
-        "of a place above the ground: a_Z, the acceleration there, the demand of the linear check", "g", source="Circ. 7/2019 C7.2.3"
+        "a_Z, for a mechanism above the ground: acceleration at its height, the demand of the linear check",
+        "g",
+        source="Circ. 7/2019 C7.2.3",
     )
     multiplier_associated: float = maybe(
-        "joints slide: alpha_0 by associated (dilatant) friction, the upper end of the interval whose least state found is `multiplier`",
+        (
+            "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between `multiplier`, the least "
+            "state found, and this value"
+        ),
         source="Drucker 1954",
     )
 
     def subject(self) -> str:
         """The mechanism that is checked."""
-        bends = {"vertical-bending": "The wall between its floors", "horizontal-bending": "The wall between its side walls"}
+        bends = {"vertical-bending": "The wall between its transverse walls", "horizontal-bending": "The wall between its side walls"}
         if self.mechanism == "building":
             return "The mechanism of the structure"
         return bends.get(self.mechanism, f"The {self.mechanism}")
 
     walls: list[WallMechanism] = maybe(
-        "of a building on a plan: every wall above the foot of each storey, the worst first; the other numbers are those of the worst"
+        "for a building in plan: every wall that rotates about the foot of a storey; the worst comes first, and the "
+        "other results are those of the worst"
     )
 
 

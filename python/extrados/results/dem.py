@@ -16,9 +16,7 @@ CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "se
 #: Slip over the length of a joint up to which the support that is left is not in doubt: half of the lever arm to the end of
 #: the joint, and so half of the resistance to overturning, is left then
 SLIP_LIMIT = 0.25
-INTERVAL = (
-    "whether blocks slide, on the way to collapse, on statically indeterminate joints: the accelerations are then one state of an interval"
-)
+INTERVAL = "whether blocks slide before collapse on statically indeterminate joints; each acceleration is then one value of an interval"
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
 
@@ -27,280 +25,225 @@ class Variation(ResultModel):
     """A run with another damping, stiffness or friction."""
 
     varied: Literal["damping", "stiffness", "friction"] = fact("value that was varied")
-    value: float = fact("factor on damping or stiffness, or the coefficient of friction")
+    value: float = fact("factor on damping or stiffness, or coefficient of friction, in this run")
     beta_s: float = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
     damping_ratio_rotation: float = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints", source="thesis Eq. 7.13"
+        "damping ratio (fraction of critical damping) at rotational impact, the least of all joints", source="thesis Eq. 7.13"
     )
     damping_ratio_edge: float = fact(
-        "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
+        "damping ratio (fraction of critical damping) at edge impact, the least of all joints", source="thesis Eq. 7.9"
     )
-    outcome: str = fact("at-rest, slid, rocked or collapse, or why the run is not to be trusted")
+    outcome: str = fact("outcome: at-rest, slid, rocked or collapse; or the reason why this run is not reliable")
     peak_rotation_rad: float = fact("greatest rotation of any block", "rad")
-    bounces: int = fact("times that blocks left the ground or each other")
-    airborne_time_s: float = fact("longest time that a block was without contact", "s")
-    peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
-    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
+    bounces: int = fact("number of times that blocks separated from the ground or from each other")
+    airborne_time_s: float = fact("longest time during which a block had no contact", "s")
+    peak_slip_m: float = fact("greatest slip of the joints that are still in contact", "m")
+    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
 
 
 class Convergence(ResultModel):
     """How far the impulses of rigid contacts were found."""
 
     steps: int = fact("time steps")
-    open_steps: int = fact("time steps in which the contacts did not converge")
-    most_rounds: int = fact("greatest number of rounds (new impulses) of a step")
+    open_steps: int = fact("number of time steps in which the contact solver did not converge")
+    most_rounds: int = fact("greatest number of iterations of the contact solver in a step")
     factorisations_per_step: float = fact("sparse factorisations per step")
-    worst_violation_ratio: float = fact("greatest violation of the contact law as a velocity, over that which gravity gives in a step")
+    worst_violation_ratio: float = fact(
+        "greatest violation of the contact law, as a velocity, divided by the velocity that gravity adds in one time step"
+    )
     worst_violation_s: float = fact("when that was", "s")
 
 
 class TieRun(ResultModel):
-    """What a run asked of a tie."""
+    """What a run asked of a tie or a damper."""
 
     name: str = fact("its name")
-    peak_force_N: float = fact("force of the greatest magnitude in any step, tension positive", "N")
+    peak_force_N: float = fact("force of greatest magnitude in any time step; tension is positive", "N")
     end_force_N: float = fact("force at the end", "N")
-    plastic_elongation_m: float = fact("plastic elongation at the end, of shortening negative", "m")
-    state: Literal["slack", "elastic", "yielded"] = fact("without force all along, below its yield force, or at it once")
+    plastic_elongation_m: float = fact("plastic elongation at the end; shortening is negative", "m")
+    state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
+        "state of the tie over the run: never loaded, below its yield or slip force, yielded or slipped at least once, or a viscous damper"
+    )
 
 
-class DemRun(KindResults):
-    """dem: the blocks under a motion."""
+class BlocksRun(KindResults):
+    """What the blocks of a section and those in space have in common under a motion."""
 
-    outcome: DemOutcome = fact("no joint opens or slides, joints slide, joints open and the blocks stand, or collapse")
-    collapse_criterion: CollapseCriterion | None = fact("criterion of collapse besides the displacement; null without collapse")
-    governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
+    outcome: DemOutcome = fact("outcome: no joint opens or slides; joints slide; joints open and the blocks stand; or collapse")
+    collapse_criterion: CollapseCriterion | None = fact("criterion of collapse, if it is not the displacement; null without collapse")
+    governing_block: str = fact("block that collapsed first; without collapse, the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
     stop_time_s: float = fact("when it ended", "s")
-    still_moving: bool = fact("whether it still moved at the end")
-    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse, unless the block only slides", "m")
-    peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
-    peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
-    residual_slip_m: float = fact("greatest slip of joints at the end", "m")
-    slip_ratio: float = fact("greatest slip over the length of its joint")
+    still_moving: bool = fact("whether this block still moved at the end of the run")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse (not applied to a block that only slides)", "m")
+    peak_displacement_m: float = fact("greatest displacement of any block from its position at rest under self-weight", "m")
+    peak_slip_m: float = fact("greatest slip of the joints that are still in contact", "m")
+    residual_slip_m: float = fact("greatest slip of the joints at the end of the run", "m")
+    slip_ratio: float = fact("greatest ratio of the slip to the length of the joint")
     slip_limit_ratio: float = fact(
-        "limit of that ratio (0.25): beyond it more than half of the lever arm to the end of the joint is lost, and the verdict is open"
+        "limit of the ratio of slip to joint length (0.25). Beyond it more than half of the lever arm to the end of the "
+        "joint is lost, and the verdict is open"
     )
-    slipped_joint: str | None = fact("joint of that ratio; null if no joint slides by 1 %")
-    off_footing: list[str] = fact("blocks that slid beyond their footings, without a named floor")
+    slipped_joint: str | None = fact("joint with the greatest ratio of slip to length; null if no joint slides by 1 % of its length")
+    off_footing: list[str] = fact("blocks that slid off their footings; recorded only if the deck names no floor")
     decided_by_last_digits: bool = fact(
-        "chaotic response: under the motion times 1 + 1e-6 the displacements differ by more than a hundredth of the one that counts "
-        "as collapse, or only one of both runs collapses; beyond a thousandth, also under motions up to 1e-4 apart; false without this check"
+        "whether the response is chaotic: if the motion is scaled by 1 + 1e-6, the displacements change by more than "
+        "1/100 of the displacement that counts as collapse, or only one of the two runs collapses. If they change by "
+        "more than 1/1000, scale factors up to 1 + 1e-4 are tried too. False without this check"
     )
     perturbation_growth: float | None = fact(
-        "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
-        "that perturbation, until collapse; null where this was not checked"
+        "growth of a perturbation: the motion is scaled by 1 + 1e-6, and the greatest change of a displacement up to "
+        "collapse is divided by the displacement that counts as collapse and by 1e-6; null without this check"
     )
-    perturbed_outcome: str | None = fact("outcome under the motion times 1 + 1e-6; null where this was not checked")
-    violated: list[str] = fact("assumptions that were checked and do not hold: no chaos, a sentence each")
+    perturbed_outcome: str | None = fact("outcome under the motion scaled by 1 + 1e-6; null without this check")
+    violated: list[str] = fact("violated assumptions that were checked, one sentence each, for instance on chaotic response")
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
-    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
-    restitution_measured: float | None = fact("of a single block: median rate after over before its impacts")
-    restitution_housner: float | None = fact("of a block: the momentum balance", source="Housner 1963")
-    bounces: int = fact("times that blocks left the ground or each other")
-    airborne_time_s: float = fact("longest time that a block was without contact", "s")
-    solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts; these have no stiffness")
-    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
+    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
+    bounces: int = fact("number of times that blocks separated from the ground or from each other")
+    airborne_time_s: float = fact("longest time during which a block had no contact", "s")
+    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints", source="thesis Eq. 7.13"
+        "damping ratio (fraction of critical damping) at rotational impact, the least of all joints", source="thesis Eq. 7.13"
     )
-    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
+    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, the least of all joints")
     damping_ratio_edge: float | None = fact(
-        "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
+        "damping ratio (fraction of critical damping) at edge impact, the least of all joints", source="thesis Eq. 7.9"
     )
     steps: int = fact("time steps")
-    settling_steps: int = fact("time steps until the building settled under its weight")
+    settling_steps: int = fact("number of time steps until the building came to rest under its weight")
     time_step_s: float = fact("time step", "s")
     critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
     animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
-    sensitivity: list[Variation] = maybe("runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
-    friction_threshold: float | None = maybe("least friction at which no joint slides; null where not found")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
-        return _judged_run(self)
+        """The greatest displacement against the one that counts as collapse [m], or the slip against `SLIP_LIMIT` of its joint, whichever
+        is nearer to its limit. Open where blocks still move, slid too far, slid off a footing, or where the response is chaotic."""
+        most, limit, share = self.peak_displacement_m, self.collapse_displacement_m, self.slip_ratio
+        violated = [f"Block {name} slides off the end of its footing." for name in self.off_footing] + self.violated
+        unchecked = (
+            ""
+            if self.perturbation_growth is not None
+            else " The sensitivity of this outcome to small changes of the motion was not checked."
+        )
+        if self.outcome == "collapse":
+            how = f"{self.governing_block} collapses by {self.collapse_criterion}"
+            text = f"{how} and moves by more than the {1e3 * limit:.3g} mm that count as collapse.{unchecked}"
+            return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
+        if self.still_moving:
+            return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
+        slip = (
+            f"Blocks slide by up to {1e3 * self.peak_slip_m:.3g} mm. This is {100 * share:.3g} % of the joint length at "
+            f"{self.slipped_joint} (limit {100 * SLIP_LIMIT:g} %, at which half of the lever arm to the end of the joint is "
+            f"lost). The slip at the end is {1e3 * self.residual_slip_m:.3g} mm"
+        )
+        if share > SLIP_LIMIT:
+            text = f"{slip}. The analysis does not decide whether the remaining contact suffices.{unchecked}"
+            return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
+        text = f"No block moves by more than {1e3 * most:.3g} mm; {1e3 * limit:.3g} mm count as collapse."
+        if self.slipped_joint is not None:
+            text += f" {slip}."
+        text += unchecked
+        if share / SLIP_LIMIT > most / limit:
+            return judge(text, share, SLIP_LIMIT, "of the joint", violated=violated)
+        return judge(text, most, limit, "m", "stands" if most < limit else "open", violated=violated)
+
+
+class DemRun(BlocksRun):
+    """dem: the blocks under a motion."""
+
+    restitution_measured: float | None = fact("for a single block: median ratio of angular velocity after / before its impacts")
+    restitution_housner: float | None = fact(
+        "for a block: ratio of angular velocities after / before impact by the momentum balance", source="Housner 1963"
+    )
+    sensitivity: list[Variation] = maybe("further runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
+    friction_threshold: float | None = maybe("least coefficient of friction at which no joint slides; null if not found")
 
 
 #: What the capacity of a tilt test is where blocks slide on joints whose forces statics does not fix
 ONE_PATH = (
-    "Blocks slide on the way to collapse: the value is one state, of this load path. Without dilatancy such states form an interval, and a lower one may "
-    "exist."
+    "Blocks slide before collapse. The value belongs to this load path only: without dilatancy the possible values "
+    "form an interval, and a lower value may exist."
 )
 
 
-def _tilted(collapse: float, opposite: float, interval: bool, demand: Demand) -> Verdict:
-    """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]; an estimate that no bound is
-    claimed of where it is one state of an interval."""
-    found = judge_acceleration(min(collapse, opposite), demand)
-    return found.model_copy(update={"statement": f"{found.statement} {ONE_PATH}"}) if interval else found
-
-
-class DemTilt(KindResults):
-    """dem: the constant acceleration that brings the blocks down."""
+class BlocksTilt(KindResults):
+    """What the tilt tests of a section and of blocks in space have in common."""
 
     test: Literal["tilt"] = fact("the test")
-    outcome: DemOutcome = fact("collapse occurs, at these accelerations")
-    collapse_acceleration_g: float = fact("constant acceleration that causes collapse, applied to +x", "g")
-    collapse_acceleration_opposite_g: float = fact("constant acceleration that causes collapse, applied to -x", "g")
-    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg")
-    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, to -x", "deg")
-    load_direction: Literal["+x"] = fact("sense of the push that the hinges belong to")
-    hinges: list[NamedHinge] = fact("hinges of the mechanism")
-    hinges_opposite: list[NamedHinge] = fact("hinges of the mechanism to -x")
-    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
-    peak_slip_m: float = fact("greatest slip in the mechanism", "m")
+    outcome: DemOutcome = fact("outcome: no joint opens or slides; joints slide; joints open and the blocks stand; or collapse")
+    collapse_acceleration_g: float = fact("constant acceleration towards +x that causes collapse", "g")
+    collapse_acceleration_opposite_g: float = fact("constant acceleration towards -x that causes collapse", "g")
+    tilt_angle_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards +x", "deg")
+    tilt_angle_opposite_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards -x", "deg")
     interval: bool = fact(INTERVAL)
-    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
+    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
     time_step_s: float = fact("time step", "s")
-    steps: int = fact("time steps of the last run")
-    solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts")
-    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
-    convergence: Convergence | None = maybe("of rigid contacts, in the last runs of both senses")
-    beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
+    steps: int = fact("time steps")
+    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
+    convergence: Convergence | None = maybe("of rigid contacts")
+    beta_s: float | None = fact("stiffness-proportional damping", "s")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        return _tilted(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.interval, demand)
+        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]; an estimate that no bound is
+        claimed of where it is one state of an interval."""
+        found = judge_acceleration(min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g), demand)
+        return found.model_copy(update={"statement": f"{found.statement} {ONE_PATH}"}) if self.interval else found
 
 
-class SolidDemRun(KindResults):
+class DemTilt(BlocksTilt):
+    """dem: the constant acceleration that brings the blocks down."""
+
+    load_direction: Literal["+x"] = fact("direction of the load for which the hinges are listed")
+    hinges: list[NamedHinge] = fact("hinges of the mechanism")
+    hinges_opposite: list[NamedHinge] = fact("hinges of the collapse mechanism towards -x")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
+    peak_slip_m: float = fact("greatest slip in the mechanism", "m")
+
+
+class SolidDemRun(BlocksRun):
     """dem: blocks in space under a motion."""
 
-    outcome: DemOutcome = fact("no contact opens or slides, contacts slide, contacts open and the blocks stand, or collapse")
-    collapse_criterion: CollapseCriterion | None = fact("criterion of collapse besides the displacement; null without collapse")
-    governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
-    collapse_time_s: float | None = fact("when the first block collapsed", "s")
-    direction_deg: float = fact("direction in plan of the horizontal motion, from +x to +y", "deg")
-    horizontal_components: int = fact("2 where a record moves the ground across that direction, too")
-    stopped: str = fact("why the run ended")
-    stopped_by: list[str] = fact("the blocks that ended it")
-    stop_time_s: float = fact("when it ended", "s")
-    still_moving: bool = fact("whether it still moved at the end")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block", "rad")
+    slip_ratio: float = fact("greatest ratio of the slip to the least width of the contact")
+    direction_deg: float = fact("direction of the horizontal motion in plan: angle from +x towards +y", "deg")
+    horizontal_components: int = fact("number of horizontal components: 2 if a second record acts perpendicular to this direction")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest plastic slip of a dowel, slip during the initial settling under self-weight included", "m")
-    dowels_out: int = fact("how many of them came out")
-    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse, unless the block only slides", "m")
-    peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
-    final_displacement_m: float = fact("greatest displacement of any block at the end", "m")
-    peak_opening_m: float = fact("greatest gap at a corner of a contact that still touches", "m")
-    peak_slip_m: float = fact("greatest slip of contacts that still touch", "m")
-    residual_slip_m: float = fact("greatest slip of contacts at the end", "m")
-    slip_ratio: float = fact("greatest slip over the least width of its contact")
-    slip_limit_ratio: float = fact(
-        "limit of that ratio (0.25): beyond it more than half of the lever arm to the end of the joint is lost, and the verdict is open"
-    )
-    slipped_joint: str | None = fact("joint of that ratio; null if no joint slides by 1 %")
-    off_footing: list[str] = fact("blocks that slid beyond their footings, without a named floor")
-    decided_by_last_digits: bool = fact(
-        "chaotic response: under the motion times 1 + 1e-6 the displacements differ by more than a hundredth of the one that counts "
-        "as collapse, or only one of both runs collapses; beyond a thousandth, also under motions up to 1e-4 apart; false without this check"
-    )
-    perturbation_growth: float | None = fact(
-        "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
-        "that perturbation, until collapse; null where this was not checked"
-    )
-    perturbed_outcome: str | None = fact("outcome under the motion times 1 + 1e-6; null where this was not checked")
-    violated: list[str] = fact("assumptions that were checked and do not hold: no chaos, a sentence each")
-    peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
-    friction_loss_J: float = fact("energy lost in friction", "J")
-    damping_loss_J: float = fact("energy lost in damping", "J")
-    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
-    bounces: int = fact("times that blocks left the ground or each other")
-    airborne_time_s: float = fact("longest time that a block was without contact", "s")
-    solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones; these have no stiffness")
-    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
-    convergence: Convergence | None = maybe("of rigid contacts")
-    joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the contacts", "Pa/m")
-    joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the contacts", "Pa/m")
-    beta_s: float | None = fact("stiffness-proportional damping", "s")
-    damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, least of all joints", source="thesis Eq. 7.13"
-    )
-    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
-    damping_ratio_edge: float | None = fact(
-        "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
-    )
-    steps: int = fact("time steps")
-    settling_steps: int = fact("time steps until the building settled under its weight")
-    time_step_s: float = fact("time step", "s")
-    critical_step_s: float | None = fact("greatest stable time step", "s")
-    contact_searches: int = fact("searches for contacts")
-    animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
-
-    def judged(self, demand: Demand) -> Verdict:
-        """As of a plane run."""
-        return _judged_run(self)
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, with the slip that occurs before the motion, under self-weight", "m")
+    dowels_out: int = fact("number of dowels that came out of their holes")
+    final_displacement_m: float = fact("greatest displacement of any block at the end of the run", "m")
+    peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed at another point", "m")
 
 
-class SolidDemTilt(KindResults):
+class SolidDemTilt(BlocksTilt):
     """dem: the constant acceleration along a direction that brings blocks in space down."""
 
-    test: Literal["tilt"] = fact("the test")
-    outcome: DemOutcome = fact("collapse occurs, at these accelerations")
-    collapse_acceleration_g: float = fact("constant acceleration that causes collapse, applied along the direction", "g")
-    collapse_acceleration_opposite_g: float = fact("collapse acceleration in the opposite direction", "g")
-    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg")
-    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
-    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
+    collapse_acceleration_g: float = fact("constant acceleration along the load direction that causes collapse", "g")
+    collapse_acceleration_opposite_g: float = fact("constant acceleration opposite to the load direction that causes collapse", "g")
+    tilt_angle_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration along the load direction", "deg")
+    tilt_angle_opposite_deg: float = fact(
+        "tilt of the ground with the same effect as the collapse acceleration in the opposite direction", "deg"
+    )
+    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    opening_contacts: list[str] = fact("contacts that gape or slide as it begins to go, at most 20, the widest first")
-    opening_contacts_opposite: list[str] = fact("contacts that open under the opposite direction")
-    interval: bool = fact(INTERVAL)
-    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
-    time_step_s: float = fact("time step", "s")
-    steps: int = fact("time steps of the last run")
-    solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones")
-    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
-    convergence: Convergence | None = maybe("of rigid contacts, in the last runs of both senses")
-    beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
-
-    def judged(self, demand: Demand) -> Verdict:
-        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        return _tilted(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.interval, demand)
-
-
-def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
-    """The greatest displacement against the one that counts as collapse [m], or the slip against `SLIP_LIMIT` of its joint, whichever
-    is nearer to its limit. Open where blocks still move, slid too far, slid off a footing, or where the response is chaotic."""
-    most, limit, share = run.peak_displacement_m, run.collapse_displacement_m, run.slip_ratio
-    violated = [f"The footing under {name} ends where {name} slides on." for name in run.off_footing] + run.violated
-    unchecked = "" if run.perturbation_growth is not None else " Sensitivity to perturbations of the motion was not checked."
-    if run.outcome == "collapse":
-        how = f"{run.governing_block} collapses by {run.collapse_criterion}"
-        text = f"{how}, and moves farther than the {1e3 * limit:.3g} mm that count as collapse.{unchecked}"
-        return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
-    if run.still_moving:
-        return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
-    slip = (
-        f"Blocks slide by up to {1e3 * run.peak_slip_m:.3g} mm, {100 * share:.3g} % of the joint {run.slipped_joint} (limit "
-        f"{100 * SLIP_LIMIT:g} %, where half of the lever arm to its end is lost), and by {1e3 * run.residual_slip_m:.3g} mm at the end"
-    )
-    if share > SLIP_LIMIT:
-        text = f"{slip}: whether the support that is left suffices is not decided.{unchecked}"
-        return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
-    text = f"No block moves farther than {1e3 * most:.3g} mm; {1e3 * limit:.3g} mm count as collapse."
-    if run.slipped_joint is not None:
-        text += f" {slip}."
-    text += unchecked
-    if share / SLIP_LIMIT > most / limit:
-        return judge(text, share, SLIP_LIMIT, "of the joint", violated=violated)
-    return judge(text, most, limit, "m", "stands" if most < limit else "open", violated=violated)
+    opening_contacts: list[str] = fact("contacts that open or slide at the start of collapse, at most 20; the widest comes first")
+    opening_contacts_opposite: list[str] = fact("contacts that open or slide under the load in the opposite direction")
 
 
 Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
@@ -309,15 +252,19 @@ Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
 class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
-    label: str = fact("value that was varied, or the other solver")
-    solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts; these have no stiffness")
+    label: str = fact("name of the value that was varied, or of the other solver")
+    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
-    damping_ratio_rotation: float | None = fact("damping ratio (fraction of critical damping) at rotational impact, least of all joints")
-    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
-    damping_ratio_edge: float | None = fact("damping ratio (fraction of critical damping) at edge impact, least of all joints")
-    shortest_durations_s: list[float | None] = fact("at each amplitude; null if no tried value causes collapse", "s")
+    damping_ratio_rotation: float | None = fact(
+        "damping ratio (fraction of critical damping) at rotational impact, the least of all joints"
+    )
+    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, the least of all joints")
+    damping_ratio_edge: float | None = fact("damping ratio (fraction of critical damping) at edge impact, the least of all joints")
+    shortest_durations_s: list[float | None] = fact(
+        "shortest duration that causes collapse, at each amplitude; null if no calculated duration causes collapse", "s"
+    )
 
 
 class CellApart(ResultModel):
@@ -325,38 +272,42 @@ class CellApart(ResultModel):
 
     amplitude_g: float = fact("amplitude", "g")
     duration_s: float = fact("duration", "s")
-    fails_as_given: bool = fact("whether collapse occurs by the solver of the deck")
-    fails_by_the_other: bool = fact("whether collapse occurs by the other solver")
+    fails_as_given: bool = fact("whether the solver of the deck predicts collapse")
+    fails_by_the_other: bool = fact("whether the other solver predicts collapse")
 
 
 class CrossCheck(ResultModel):
     """Springs and rigid contacts side by side, in every cell of amplitudes and durations."""
 
     cells: int = fact("cells")
-    agreement_ratio: float = fact("share of cells in which both have the same outcome")
-    apart: list[CellApart] = fact("cells in which they do not")
+    agreement_ratio: float = fact("share of the cells of the map in which both solvers give the same outcome")
+    apart: list[CellApart] = fact("cells of the map in which the two solvers give different outcomes")
 
 
 class DemDomain(KindResults):
     """dem-domain: the shortest pulses that bring the blocks down."""
 
     pulse: Literal["step", "sine"] = fact("shape of the pulses")
-    direction_deg: float | None = maybe("of solids: direction in plan of the motion, from +x to +y", "deg")
+    direction_deg: float | None = maybe("for solids: direction of the motion in plan, as an angle from +x towards +y", "deg")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
-    shortest_durations_s: list[float | None] = fact("at each amplitude; null if no tried value causes collapse", "s")
-    curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")
-    mode_II_durations_s: list[float | None] | None = maybe(
-        "shortest durations that cause collapse in the first half cycle; null without collapse at any duration that was run", "s"
+    shortest_durations_s: list[float | None] = fact(
+        "shortest duration that causes collapse, at each amplitude; null if no calculated duration causes collapse", "s"
     )
-    convergence: Convergence | None = maybe("of rigid contacts, in all runs")
+    curves: list[DemCurve] = fact(
+        "failure curves with other damping, stiffness or friction; the first is the curve with the values of the deck"
+    )
+    mode_II_durations_s: list[float | None] | None = maybe(
+        "shortest durations that cause collapse in the first half cycle; null if no calculated duration does", "s"
+    )
+    convergence: Convergence | None = maybe("results of the contact solver (rigid contacts only), over all runs")
     cross_check: CrossCheck | None = maybe("by both solvers")
-    energy_residual_ratio: float = fact("greatest error of the energy balances over the total energy exchanged")
+    energy_residual_ratio: float = fact("greatest ratio, over all runs, of the error of the energy balance to the total energy exchanged")
     steps: int = fact("time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(
-        "of an arch: shortest failing durations by the four-hinge mechanism, either mode", "s"
+        "for an arch: shortest durations at which the four-hinge mechanism collapses, with or without an impact", "s"
     )
     four_hinge_mode_II_durations_s: list[float | None] = maybe(
-        "of an arch: shortest failing durations by the four-hinge mechanism, without an impact", "s"
+        "for an arch: shortest durations at which the four-hinge mechanism collapses without an impact", "s"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -368,18 +319,21 @@ class DemDomain(KindResults):
             if capacity is not None:
                 word = "shorter than" if duration < capacity else "at least as long as"
                 return judge(
-                    f"The motion, {amplitude:.3g} g for {duration:.3g} s, is {word} the shortest failing one "
-                    f"({capacity:.3g} s at that amplitude).",
+                    (
+                        f"The motion has an amplitude of {amplitude:.3g} g and a duration of {duration:.3g} s. The duration is {word} the "
+                        f"shortest that causes collapse at this amplitude ({capacity:.3g} s)."
+                    ),
                     duration,
                     capacity,
                     "s",
                 )
-        failing = [t for t in self.shortest_durations_s if t is not None]
-        if not failing:
-            return judge("None of the calculated pulses causes collapse.", None, None, "s")
-        return judge(
-            f"Of the {self.pulse} calculated pulses the shortest that causes collapse lasts {min(failing):.3g} s.", None, min(failing), "s"
+        least = min((t for t in self.shortest_durations_s if t is not None), default=None)
+        text = (
+            "None of the calculated pulses causes collapse."
+            if least is None
+            else f"The shortest {self.pulse} pulse that causes collapse lasts {least:.3g} s."
         )
+        return judge(text, None, least, "s")
 
 
 class DemParameters(KindResults):
@@ -390,16 +344,18 @@ class DemParameters(KindResults):
     rotation_frequency_rad_s: float = fact("greatest frequency of rotational impact", "rad/s", source="thesis Eq. 7.20")
     corner_frequency_rad_s: float = fact("greatest frequency of corner impact", "rad/s", source="thesis Eq. 7.18")
     edge_frequency_rad_s: float = fact("greatest frequency of edge impact", "rad/s", source="thesis Eq. 7.19")
-    critical_beta_rotation_s: float = fact("damping that is critical at rotational impact", "s", source="thesis Eq. 7.17")
-    critical_beta_corner_s: float = fact("damping that is critical at corner impact", "s", source="thesis Eq. 7.17")
-    critical_beta_edge_s: float = fact("damping that is critical at edge impact", "s", source="thesis Eq. 7.17")
+    critical_beta_rotation_s: float = fact(
+        "critical damping at rotational impact, to which damping ratios refer", "s", source="thesis Eq. 7.17"
+    )
+    critical_beta_corner_s: float = fact("critical damping at corner impact, to which damping ratios refer", "s", source="thesis Eq. 7.17")
+    critical_beta_edge_s: float = fact("critical damping at edge impact, to which damping ratios refer", "s", source="thesis Eq. 7.17")
     beta_s: float = fact("stiffness-proportional damping in use", "s")
     mass_damping_per_s: float = fact("mass-proportional damping in use", "1/s")
-    damping_ratio_rotation: float = fact("damping ratio (fraction of critical damping) at rotational impact, least of all joints")
-    damping_ratio_corner: float = fact("damping ratio (fraction of critical damping) at corner impact, least of all joints")
-    damping_ratio_edge: float = fact("damping ratio (fraction of critical damping) at edge impact, least of all joints")
+    damping_ratio_rotation: float = fact("damping ratio (fraction of critical damping) at rotational impact, the least of all joints")
+    damping_ratio_corner: float = fact("damping ratio (fraction of critical damping) at corner impact, the least of all joints")
+    damping_ratio_edge: float = fact("damping ratio (fraction of critical damping) at edge impact, the least of all joints")
     convention: Literal["consistent", "thesis"] = fact("rule of the default stiffness")
 
     def judged(self, demand: Demand) -> Verdict:
         """Nothing is asked of the building."""
-        return judge("Parameters of the joints; the analysis gives no verdict on the building.")
+        return judge("This analysis calculates parameters of the joints. It gives no verdict on the building.")

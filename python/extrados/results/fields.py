@@ -62,7 +62,7 @@ class ResultModel(BaseModel):
         for name, field in type(self).model_fields.items():
             if key == (field.alias or name) and name in self.model_fields_set:
                 return getattr(self, name)
-        raise KeyError(f"no result '{key}'; there are {', '.join(self.keys()) or 'none'}")
+        raise KeyError(f"no result has the key '{key}'; the keys are: {', '.join(self.keys()) or 'none'}")
 
     def __contains__(self, key: str) -> bool:
         return key in self.keys()

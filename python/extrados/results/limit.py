@@ -16,7 +16,7 @@ class JointHinge(ResultModel):
     """A joint that hinges."""
 
     joint: int = fact("number of the joint")
-    side: Side = fact("side on which the blocks touch")
+    side: Side = fact("side at which the blocks touch (position of the hinge)")
 
 
 class NamedHinge(JointHinge):
@@ -28,7 +28,7 @@ class NamedHinge(JointHinge):
 class Hinge(NamedHinge):
     """A hinge of a mechanism, and its place."""
 
-    place: str = fact("place in words: springing, haunch or crown of an arch, foot of a pier, bed or head joint")
+    place: str = fact("location in words: springing, haunch or crown of an arch, foot of a pier, bed joint or head joint")
     x_m: float = fact("x of the hinge", "m")
     y_m: float = fact("y of the hinge", "m")
 
@@ -40,7 +40,7 @@ class Hinge(NamedHinge):
 class Reaction(ResultModel):
     """Force of the ground on the structure at a joint."""
 
-    joint: int = fact("number of the joint on the ground")
+    joint: int = fact("number of the joint at the ground")
     name: str = fact("its name")
     horizontal_N: float = fact("to +x", "N")
     vertical_N: float = fact("upward", "N")
@@ -51,7 +51,7 @@ class TieForce(ResultModel):
 
     name: str = fact("its name")
     force_N: float = fact("force in it, tension positive", "N")
-    state: Literal["slack", "carries", "yields"] = fact("without force, below its yield force, or at it")
+    state: Literal["slack", "carries", "yields"] = fact("state of the tie: no force, below the yield force, or at the yield force")
 
 
 class ChainThrust(ResultModel):
@@ -64,18 +64,18 @@ class ChainThrust(ResultModel):
 class Fracture(ResultModel):
     """Collapse to +x with the leeward buttress cracked."""
 
-    stands: bool = maybe("false where the cracked structure cannot stand upright; nothing else is given then")
+    stands: bool = maybe("whether the cracked structure can stand upright; if false, no other results of the cracked state are given")
     cracks: bool = maybe("whether the buttress cracks before the structure collapses")
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
-    tilt_angle_deg: float = maybe("tilt of the ground that pushes alike", "deg", source="thesis Eq. 3.1")
-    ratio: float = maybe("over the collapse acceleration of the whole structure")
-    crack_height_m: float = maybe("height above the base at which the crack starts", "m")
-    crack_height_ratio: float = maybe("height above the base at which the crack starts, over the height of the buttress")
-    resultant_from_outer_face_ratio: float = maybe("distance of the resultant from the outer face over the width there")
+    tilt_angle_deg: float = maybe("tilt of the ground with the same effect as the collapse acceleration", "deg", source="thesis Eq. 3.1")
+    ratio: float = maybe("ratio of this collapse acceleration to that of the whole (uncracked) structure")
+    crack_height_m: float = maybe("height above the base at which the crack begins", "m")
+    crack_height_ratio: float = maybe("ratio of the height at which the crack begins to the height of the buttress")
+    resultant_from_outer_face_ratio: float = maybe("ratio of the distance between resultant and outer face to the width at the base")
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
     dilating: bool = maybe(
-        "whether pressed joints slide in that mechanism: its collapse acceleration is then an upper bound (dilatant friction)"
+        "whether joints in compression slide in this mechanism; the collapse acceleration is then an upper bound (dilatant friction)"
     )
 
 
@@ -90,9 +90,11 @@ SAME = 1e-6
 class LoadPath(ResultModel):
     """Collapse at the end of a load path: elastic joints, self-weight first, then the push, sliding without dilatancy."""
 
-    shear_stiffness_ratio: float = fact("shear stiffness over normal stiffness of the joints")
-    collapse_acceleration_g: float | None = fact("collapse acceleration; null where the path did not end in a collapse", "g")
-    certified: bool = fact("whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver")
+    shear_stiffness_ratio: float = fact("ratio of shear stiffness to normal stiffness of the joints")
+    collapse_acceleration_g: float | None = fact("collapse acceleration; null if the load path did not end in a collapse", "g")
+    certified: bool = fact(
+        "whether the certificate is satisfied: equilibrium, |s| <= mu N and zero gap, calculated again independently of the solver"
+    )
     zero_gap_g: float | None = fact("as in non_dilatant", "g")
     equilibrium_residual: float | None = fact("as in non_dilatant")
     friction_residual: float | None = fact("as in non_dilatant")
@@ -113,21 +115,36 @@ class NonDilatant(ResultModel):
     """
 
     associated_g: float | None = fact(
-        "upper bound: the same with sliding that dilates; null without a collapse mechanism", "g", source="Drucker 1954"
+        "upper bound: collapse acceleration with dilatant sliding; null if no collapse mechanism exists", "g", source="Drucker 1954"
     )
-    frictionless_g: float | None = fact("lower bound: the same without friction; null if it cannot stand then", "g", source="Drucker 1954")
-    starts_g: list[float] = fact("load reached from each start; the least is the result", "g")
-    spread_g: float = fact("greatest less least of them: such states are not unique", "g")
-    certified: bool = fact("whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver")
+    frictionless_g: float | None = fact(
+        "lower bound: collapse acceleration without friction; null if the structure cannot stand without friction",
+        "g",
+        source="Drucker 1954",
+    )
+    starts_g: list[float] = fact("collapse load found from each starting point; the least is the result", "g")
+    spread_g: float = fact("difference between the greatest and the least load found: such states are not unique", "g")
+    certified: bool = fact(
+        "whether the certificate is satisfied: equilibrium, |s| <= mu N and zero gap, calculated again independently of the solver"
+    )
     zero_gap_g: float = fact(
-        "|gamma - (work of friction - work of the weight)| per unit of work of the load; zero: forces and motion belong together", "g"
+        (
+            "|gamma - (work of friction - work of the weight)| per unit of work of the load; zero if forces and motion "
+            "belong to the same state"
+        ),
+        "g",
     )
-    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a block, over the total load")
-    friction_residual: float = fact("greatest excess of |s| over mu N, over the total load")
-    tension_residual: float = fact("greatest tension (or crushing beyond the strength), over the total load")
-    overlap_residual: float = fact("greatest overlap of the motion, over the fastest joint")
-    complementarity_residual: float = fact("greatest lesser of force and motion where a joint presses and opens, or holds and slides")
-    work_residual: float = fact("work of the load less that of weight and friction, over the former")
+    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the total load")
+    friction_residual: float = fact("greatest excess of |s| over mu N, divided by the total load")
+    tension_residual: float = fact("greatest tension (or compression beyond the strength), divided by the total load")
+    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest joint")
+    complementarity_residual: float = fact(
+        "complementarity: force and motion at the same joint (a joint that presses and opens, or that sticks and "
+        "slides); the greatest over all joints of the lesser of the two"
+    )
+    work_residual: float = fact(
+        "relative error of the work: work of the load minus work of weight and friction, divided by the work of the load"
+    )
 
 
 class Tilt(KindResults):
@@ -135,60 +152,76 @@ class Tilt(KindResults):
 
     collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant), towards +x", "g")
     collapse_acceleration_opposite_g: float = fact("collapse acceleration (horizontal, constant), towards -x", "g")
-    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg", source="thesis Eq. 3.1")
-    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, to -x", "deg")
-    admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
-    load_direction: Literal["+x"] = fact("sense of the push that hinges and friction belong to")
-    hinges: list[Hinge] = fact("hinges of the mechanism")
-    sliding_joints: list[int] = fact("joints that slide or part in the mechanism")
-    hinges_opposite: list[Hinge] = fact("hinges of the mechanism to -x")
-    dilating_joints: list[int] = maybe(
-        "joints in compression that slide in the collapse mechanism to +x; the collapse acceleration is then an upper "
-        "bound, because friction is dilatant in the analysis (associated friction)"
+    tilt_angle_deg: float = fact(
+        "tilt of the ground with the same effect as the collapse acceleration towards +x", "deg", source="thesis Eq. 3.1"
     )
-    dilating_joints_opposite: list[int] = maybe("the same in the mechanism to -x")
+    tilt_angle_opposite_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards -x", "deg")
+    admissible_interval_g: list[float] = fact("range of accelerations at which an admissible thrust line exists", "g")
+    load_direction: Literal["+x"] = fact("direction of the load for which hinges and friction are given")
+    hinges: list[Hinge] = fact("hinges of the mechanism")
+    sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism")
+    hinges_opposite: list[Hinge] = fact("hinges of the collapse mechanism towards -x")
+    dilating_joints: list[int] = maybe(
+        "joints in compression that slide in the collapse mechanism towards +x. The collapse acceleration is then an "
+        "upper bound, because the analysis assumes dilatant (associated) friction"
+    )
+    dilating_joints_opposite: list[int] = maybe("joints in compression that slide in the collapse mechanism towards -x")
     collapse_acceleration_non_associated_g: float = maybe(
-        "sliding without dilatancy, to +x: the least certified state found, one of an interval whose upper end is the associated value",
+        (
+            "collapse acceleration towards +x for sliding without dilatancy: the least certified state found. It is one "
+            "value of an interval whose upper end is the associated value"
+        ),
         "g",
         source="Ferris and Tin-Loi 2001",
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
     collapse_acceleration_load_path_g: float = maybe(
-        "design value where joints slide, to +x: least of the load paths of elastic joints with three ratios of stiffness",
+        (
+            "design value of the collapse acceleration towards +x if joints slide: the least of the load paths of elastic "
+            "joints with three stiffness ratios"
+        ),
         "g",
-        source="elastic-frictional joints without dilatancy, incremental return; certificate as in non_dilatant",
+        source=(
+            "collapse acceleration of elastic-frictional joints without dilatancy (incremental return mapping); the "
+            "certificate is the same as in non_dilatant"
+        ),
     )
     collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
-    load_paths: list[LoadPath] = maybe("load paths to +x, one a ratio of joint stiffness")
+    load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
     load_paths_opposite: list[LoadPath] = maybe("load paths to -x")
-    non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
-    touching_joints: list[int] = fact("joints whose end the thrust line touches without a hinge")
-    required_friction: float | None = fact("greatest coefficient of friction that the thrust line at collapse needs")
+    non_associated_reason: str = maybe("reason why no state without dilatancy is given in addition to the upper bound")
+    touching_joints: list[int] = fact("joints whose end is touched by the thrust line without a hinge")
+    required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
     required_friction_joint: int = fact("the joint that needs it")
     geometric_safety_factor: float | None = fact(
-        "upright: one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line "
-        "runs through all middles within 1 % of the joints (no horizontal demand), or if not requested"
+        "geometric safety factor upright: 1 divided by the least central part of the joints that contains a thrust line, "
+        "at most 100; null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no "
+        "horizontal demand). The part is found within 0.001"
     )
-    weight_N: float = fact("weight of the structure with its fill", "N")
+    weight_N: float = fact("weight of the structure, including its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
-    reactions: list[Reaction] = fact("forces of the ground at collapse")
+    reactions: list[Reaction] = fact("reactions of the ground at collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse")
-    ties_opposite: list[TieForce] = maybe("forces of the ties at collapse to -x")
-    thrust_min_N: float = maybe("least horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N")
-    thrust_max_N: float = maybe("greatest horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N")
-    thrusts: dict[str, ChainThrust] = maybe("least and greatest thrust upright of each arch, by its name")
+    ties_opposite: list[TieForce] = maybe("forces of the ties at collapse towards -x")
+    thrust_min_N: float = maybe(
+        "least horizontal thrust of the first arch, upright; for an arch restrained by ties, the value at the crown", "N"
+    )
+    thrust_max_N: float = maybe(
+        "greatest horizontal thrust of the first arch, upright; for an arch restrained by ties, the value at the crown", "N"
+    )
+    thrusts: dict[str, ChainThrust] = maybe("least and greatest horizontal thrust of each arch, upright, by the name of the arch")
     clear_span_m: float = maybe("clear span", "m")
     rise_m: float = maybe("rise of the intrados", "m")
-    base_width_m: float = maybe("width of the base of a buttress", "m")
+    base_width_m: float = maybe("width of a buttress at its base", "m")
     height_above_ground_m: float = maybe("height of the crown above the ground", "m")
     overall_width_m: float = maybe("width over the outer buttresses", "m")
     nave_span_m: float = maybe("clear span of the nave", "m")
     left_aisle_span_m: float = maybe("clear span of the left aisle", "m")
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
-    duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
-    fracture: Fracture = maybe("collapse with the leeward buttress cracked")
-    non_dilatant: NonDilatant = maybe("sliding without dilatancy: bounds and certificate of the collapse to +x")
-    non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy: bounds and certificate of the collapse to -x")
+    duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
+    fracture: Fracture = maybe("results of collapse with the leeward buttress cracked")
+    non_dilatant: NonDilatant = maybe("sliding without dilatancy, collapse towards +x: bounds and certificate")
+    non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy, collapse towards -x: bounds and certificate")
 
     def interval(self, opposite: bool = False) -> tuple[float | None, float]:
         """Least and greatest collapse acceleration [g] to +x, or to -x: equal where no pressed joint slides, the least None
@@ -250,7 +283,7 @@ class Tilt(KindResults):
 def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -> Verdict:
     """An upper bound by dilatant friction [g] against the peak of the motion; reason: why no lower state is known."""
     found = judge_acceleration(capacity, demand, "upper")
-    why = f" A state without dilatancy is not given: {reason}." if reason else ""
+    why = f" No state without dilatancy is given: {reason}." if reason else ""
     return found.model_copy(update={"statement": f"{found.statement} Joints slide: {DILATANT}.{why}"})
 
 
@@ -258,16 +291,22 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
     """The least of the load paths [g], between the least state found (None: none was sought) and the upper bound, against the
     peak of the motion."""
     peak = demand.peak_g
-    upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "with dilatant friction no collapse mechanism exists"
-    lower = "no lesser state was sought" if least is None else f"the least state found {least:.3g} g"
-    text = f"Joints slide: design value of the collapse acceleration (horizontal, constant) {design:.3g} g, by load paths; {lower}; {upper}"
+    upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
+    lower = "no lesser state was sought" if least is None else f"the least state found is {least:.3g} g"
+    text = (
+        f"Joints slide. The design value of the collapse acceleration (horizontal, constant) is {design:.3g} g, the least "
+        f"of the load paths; {lower}; {upper}"
+    )
     if peak is None:
-        return judge(f"{text}; the deck holds no single motion to compare with.", None, design, "g")
+        return judge(f"{text}. The deck gives no single motion for comparison.", None, design, "g")
     outcome: Outcome = "collapses" if peak >= most else "open" if peak >= design else "stands"
     place = {"collapses": "at or above the upper bound", "open": "between design value and upper bound", "stands": "below the design value"}
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place[outcome]}."
     if outcome == "stands" and least is not None and peak >= least:
-        text += " Warning: in another state of stress at rest collapse is possible at this peak. Settlements or loads of the past may have caused it."
+        text += (
+            " Warning: with another initial state of stress the structure can collapse at this peak. Past settlements or "
+            "past loads can cause such a state."
+        )
     return judge(text, peak, design, "g", outcome)
 
 
@@ -275,17 +314,20 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
     """A collapse acceleration between the least state found without dilatancy, one of several with a `spread`, and the
     upper bound [g]."""
     peak = demand.peak_g
-    upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "with dilatant friction no collapse mechanism exists"
-    text = f"Collapse acceleration (horizontal, constant) in an interval: joints slide; least state found {least:.3g} g, {upper}"
+    upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
+    text = (
+        "Joints slide, so the collapse acceleration (horizontal, constant) lies in an interval: the least state found is "
+        f"{least:.3g} g; {upper}"
+    )
     if peak is None:
-        return judge(f"{text}; the deck holds no single motion to compare with.", None, least, "g")
+        return judge(f"{text}. The deck gives no single motion for comparison.", None, least, "g")
     outcome: Outcome
     if peak >= most:
         outcome, place = "collapses", "at or above the upper bound"
     elif peak >= least:
         outcome, place = "open", "between both"
     elif peak >= least - spread:
-        outcome, place = ("open", f"below the least state found by less than the spread of the states found, {spread:.3g} g")
+        outcome, place = ("open", f"below the least state found, but by less than the scatter of the states found ({spread:.3g} g)")
     else:
         outcome, place = "stands", "below the least state found"
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place}."
@@ -295,17 +337,21 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
 class ThrustLine(ResultModel):
     """One admissible thrust line."""
 
-    horizontal_N: float = maybe("horizontal thrust of the chain at its left springing, or its base", "N")
+    horizontal_N: float = maybe("horizontal thrust at the left springing of an arch, or at the base of a stack", "N")
     horizontal_kN_per_m: float = maybe("horizontal thrust per metre of depth", "kN/m")
     crown_N: float = maybe(
-        "horizontal thrust at the crown of an arch with ties at its voussoirs: sum of the left springing and the ties; "
-        "the lines of least and greatest thrust are those of the crown then",
+        (
+            "horizontal thrust at the crown of an arch whose voussoirs have ties: the thrust at the left springing plus the "
+            "tie forces. The lines of least and greatest thrust then refer to the crown"
+        ),
         "N",
     )
-    over_weight: float = maybe("horizontal thrust over the weight of the structure")
-    required_friction: float | None = fact("greatest coefficient of friction it needs")
+    over_weight: float = maybe("ratio of the horizontal thrust to the weight of the structure")
+    required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires")
     required_friction_joint: str = fact("the joint that needs it")
-    greatest_eccentricity_ratio: float = fact("greatest distance from the middle of a joint over its length")
+    greatest_eccentricity_ratio: float = fact(
+        "greatest eccentricity (distance from the middle of the joint) divided by the length of the joint"
+    )
     reactions: list[Reaction] = fact("forces of the ground")
     ties: list[TieForce] = maybe("forces of the ties")
 
@@ -317,24 +363,27 @@ class ThrustLine(ResultModel):
 class Thrust(KindResults):
     """thrust: admissible thrust lines at a given horizontal acceleration."""
 
-    gamma_g: float = fact("acceleration to +x at which the lines are drawn", "g")
-    chain: str | None = fact("arch or stack to which least and greatest thrust belong; null without one")
-    admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
+    gamma_g: float = fact("acceleration towards +x for which the thrust lines are drawn", "g")
+    chain: str | None = fact("arch or stack whose least and greatest thrust are given; null without one")
+    admissible_interval_g: list[float] = fact("range of accelerations at which an admissible thrust line exists", "g")
     geometric_safety_factor: float | None = fact(
-        "one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line runs "
-        "through all middles within 1 % of the joints (no horizontal demand), or if not requested"
+        "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line, at most "
+        "100; null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no horizontal "
+        "demand). The part is found within 0.001"
     )
-    least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
-    weight_N: float = fact("weight of the structure with its fill", "N")
+    least_part_of_joints: float = maybe(
+        "least central part of the joints that contains a thrust line: the part that the most central line needs, found within 0.001"
+    )
+    weight_N: float = fact("weight of the structure, including its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     dilating: bool = fact(
-        "whether pressed joints slide in the mechanisms at the ends of the admissible interval: these are upper bounds "
-        "(dilatant friction), and a line within friction does not prove that sliding without dilatancy is excluded"
+        "whether joints in compression slide in the mechanisms at the ends of the admissible interval. These ends are "
+        "then upper bounds (dilatant friction), and an admissible line does not exclude sliding without dilatancy"
     )
-    duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
+    duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
-    central: ThrustLine = maybe("the most central line; if missing, a warning gives the reason")
+    central: ThrustLine = maybe("most central thrust line; if it is missing, a warning gives the reason")
 
     def judged(self, demand: Demand) -> Verdict:
         """The part of the joints that the most central line needs against the whole; the ratio is the safety factor."""
@@ -342,53 +391,56 @@ class Thrust(KindResults):
         if part is None:
             return judge("The most central thrust line was not found.", None, None)
         if self.geometric_safety_factor is None:
-            text = "a thrust line runs through the middles of all joints, within 1 % of their length: no horizontal demand."
+            text = "a thrust line passes within 1 % of the joint length from the middles of all joints: no horizontal demand."
             return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0)
-        return judge(f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0)
+        return judge(f"At {self.gamma_g:g} g a thrust line exists within the central {100.0 * part:.3g} % of the joints.", part, 1.0)
 
 
 #: Beside a verdict on a load whose partial factors are all 1
-CHARACTERISTIC = "All partial factors are 1.0: characteristic loads and strengths, no code margin."
+CHARACTERISTIC = "All partial factors are 1.0: loads and strengths are characteristic, without the safety margin of a code."
 
 
 class MovingLoad(KindResults):
     """moving-load: collapse load, or adequacy factor of a train, at every place along an arch or a bridge."""
 
-    chain: str | None = fact("arch that the load crosses; null if it crosses the whole top")
-    collapse_load_N: float = fact("least collapse load over all positions; for a train, the load on the structure at collapse", "N")
-    collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
-    worst_place_m: float = fact("x of the first axle at the governing position", "m")
-    worst_place_over_span: float = fact("x of the first axle at the governing position, from the left springing, over the span")
-    worst_way: Literal["+x", "-x"] = fact("direction in which the train runs at the governing position")
-    hinges: list[NamedHinge] = fact("hinges of the mechanism at the governing position")
-    sliding_joints: list[int] = fact("joints that slide or open in the mechanism at the governing position")
+    chain: str | None = fact("arch that the load crosses; null if the load crosses the whole top")
+    collapse_load_N: float = fact("least collapse load over all positions; for a train, the total load on the structure at collapse", "N")
+    collapse_load_kN_per_m: float = fact("least collapse load per metre of depth", "kN/m")
+    worst_place_m: float = fact("x of the first axle at the governing position (least collapse load)", "m")
+    worst_place_over_span: float = fact("distance of the first axle from the left springing at the governing position, divided by the span")
+    worst_way: Literal["+x", "-x"] = fact("direction of travel of the train at the governing position")
+    hinges: list[NamedHinge] = fact("hinges of the collapse mechanism at the governing position")
+    sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism at the governing position")
     dilating_joints: list[int] = maybe(
-        "joints in compression that slide in the collapse mechanism; the collapse load is then an upper bound, because "
-        "friction is dilatant in the analysis (associated friction)"
+        "joints in compression that slide in the collapse mechanism. The collapse load is then an upper bound, because "
+        "the analysis assumes dilatant (associated) friction"
     )
     greatest_compression_N: float = fact("greatest compression across a joint at collapse, with the load at the governing position", "N")
-    places_without_limit: int = fact("places at which no load of the kind causes collapse")
+    places_without_limit: int = fact("positions at which no load of this kind causes collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
     duality_gap: float = fact(
-        "greatest difference, over all places, between the bounds from equilibrium and from the mechanism, in multiples of the self-weight"
+        "greatest difference, over all positions, between the lower bound (equilibrium) and the upper bound (mechanism), "
+        "in multiples of the self-weight"
     )
-    load_N: float = maybe("the load that the deck gives", "N")
-    safety_factor: float = maybe("collapse load over the load that the deck gives")
-    train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")
-    adequacy_factor: float = maybe("multiple of the factored train, or load, that causes collapse")
-    live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
+    load_N: float = maybe("load given in the deck", "N")
+    safety_factor: float = maybe("ratio of the collapse load to the load given in the deck")
+    train: str = maybe('name of the train; "load" for axles that share one force, "train" for the axle loads of the deck')
+    adequacy_factor: float = maybe("multiple of the factored train (or load) that causes collapse")
+    live_load_factor: float = maybe(
+        "live-load factor: partial factor times dynamic factor, applied to the train before the adequacy factor"
+    )
     permissible_factor: float = maybe(
-        "permissible limit state: multiple of the train, times its serviceability and dynamic factors, up to which a thrust line "
-        "exists with stresses below the permissible one and the passive pressure of service"
+        "permissible limit state: multiple of the train, with its serviceability and dynamic factors, up to which a "
+        "thrust line exists with stresses below the permissible stress and with the passive pressure of service"
     )
-    permissible_place_m: float = maybe("x of the first axle at which the permissible factor is least", "m")
+    permissible_place_m: float = maybe("x of the first axle at the position with the least permissible factor", "m")
     permissible_stress_Pa: float = maybe("permissible compressive stress under service loads", "Pa")
-    characteristic: bool = maybe("whether all partial factors are 1.0: loads and strengths are characteristic")
-    violated: list[str] = maybe("assumptions of a load on a bridge that the structure does not meet")
+    characteristic: bool = maybe("whether all partial factors are 1.0, so that loads and strengths are characteristic values")
+    violated: list[str] = maybe("assumptions on the load on a bridge that this structure does not satisfy")
 
     def judged(self, demand: Demand) -> Verdict:
         """The adequacy factor of the train against 1, or the load of the deck against the least collapse load [N]."""
-        text = f"Collapse load {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
+        text = f"The collapse load is {self.collapse_load_N / 1e3:.4g} kN at the most dangerous position"
         bound: Bound | None = "upper" if self.dilating_joints else None
         more = f" Joints slide: {DILATANT}." if self.dilating_joints else ""
         judged = f"{more} {CHARACTERISTIC}" if self.characteristic else more
@@ -397,13 +449,13 @@ class MovingLoad(KindResults):
             judged += f" Permissible limit state: {self.permissible_factor:.3g} times the train."
             if self.permissible_factor < 1.0:
                 violated.append(
-                    f"The train exceeds the permissible limit state, {self.permissible_factor:.3g}: repeated traffic may damage the "
-                    "arch progressively. Limit the load or the traffic."
+                    f"The train exceeds the permissible limit state (factor {self.permissible_factor:.3g}): repeated traffic may "
+                    "damage the arch progressively. Limit the load or the traffic."
                 )
         if self.load_N is None and self.adequacy_factor is not None:
             factored = "" if self.characteristic else "factored "
             return judge(
-                f"Adequacy factor {self.adequacy_factor:.3g} on the {factored}train at the most dangerous place.{judged}",
+                f"The adequacy factor is {self.adequacy_factor:.3g} on the {factored}train at the most dangerous position.{judged}",
                 1.0,
                 self.adequacy_factor,
                 bound=bound,
@@ -411,10 +463,10 @@ class MovingLoad(KindResults):
             )
         if self.load_N is None:
             return judge(
-                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound, violated=violated
+                f"{text}. The deck gives no load for comparison.{more}", None, self.collapse_load_N, "N", bound=bound, violated=violated
             )
         return judge(
-            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{judged}",
+            f"{text}. This is {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{judged}",
             self.load_N,
             self.collapse_load_N,
             "N",
@@ -426,7 +478,7 @@ class MovingLoad(KindResults):
 class Stage(ResultModel):
     """A change of hinges while a support moves."""
 
-    movement_m: float = fact("movement of the support from which on it holds", "m")
+    movement_m: float = fact("movement of the support at which this stage begins", "m")
     hinges: list[str] = fact("the three hinges")
 
 
@@ -435,37 +487,41 @@ class JointOpening(ResultModel):
 
     joint: int = fact("number of the joint")
     name: str = fact("its name")
-    opening_mm: float = fact("how far its wider end opens", "mm")
-    side: OpenSide = fact("end that opens more: of arches intrados or extrados")
+    opening_mm: float = fact("opening of the joint at its wider end", "mm")
+    side: OpenSide = fact("end of the joint that opens more; for arches intrados or extrados")
     slip_mm: float = fact("how far it slides", "mm")
 
 
 class MovingSupports(KindResults):
     """supports: openings under moving supports; of an arch, until it collapses."""
 
-    movement_at_fall_m: float = maybe("movement of the support at which the arch collapses", "m")
-    movement_at_fall_over_span: float = maybe("movement at collapse over the span")
-    span_change_at_fall_ratio: float = maybe("growth of the span at collapse, over the span")
+    movement_at_fall_m: float = maybe("support movement at which the arch collapses", "m")
+    movement_at_fall_over_span: float = maybe("ratio of the support movement at collapse to the span")
+    span_change_at_fall_ratio: float = maybe("ratio of the increase of the span at collapse to the span")
     thrust_at_rest_N: float = maybe("horizontal thrust at the start", "N")
     thrust_at_fall_N: float = maybe("horizontal thrust at collapse", "N")
-    hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start")
+    hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start of the movement")
     hinges_at_fall: list[JointHinge] = maybe("the three hinges at collapse")
-    joints_touched_at_fall: list[int] = maybe("joints where the thrust line touches a further end at collapse")
-    stages: list[Stage] = maybe("from the start on, each change of hinges")
-    openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]], the widest first")
-    work_J: float = maybe("work of the weight in the movements of [[initial.movements]]", "J")
-    work_gap_J: float = maybe("difference between that and the work on the supports, which should be none", "J")
-    reactions: list[Reaction] = maybe("forces of the ground under moving supports")
+    joints_touched_at_fall: list[int] = maybe("further joints, besides the hinges, whose end is touched by the thrust line at collapse")
+    stages: list[Stage] = maybe("stages of the movement: the start, and each change of hinges")
+    openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]]; the widest comes first")
+    work_J: float = maybe("work of the weight during the movements of [[initial.movements]]", "J")
+    work_gap_J: float = maybe("error of the energy: work of the weight minus work on the supports; zero in theory", "J")
+    reactions: list[Reaction] = maybe("reactions of the ground under moving supports")
     ties: list[TieForce] = maybe("forces of the ties under moving supports")
 
     def judged(self, demand: Demand) -> Verdict:
         """The movement that the arch can follow [m]; the deck asks for none."""
         move = self.movement_at_fall_m
         if move is None:
-            return judge("Under the given movements the structure stands with open joints; no limit is sought.", None, None, "m")
+            return judge(
+                "Under the given movements the structure stands, with open joints. No limit of the movement is calculated.", None, None, "m"
+            )
         return judge(
-            f"The arch follows its support by {move:.4g} m, {100.0 * self.movement_at_fall_over_span:.3g} % of the span, "
-            "before it collapses.",
+            (
+                f"The arch follows the movement of its support up to {move:.4g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
+                "% of the span). It then collapses."
+            ),
             None,
             move,
             "m",
@@ -476,17 +532,20 @@ class GoverningMechanism(ResultModel):
     """A mechanism that governs somewhere in a sweep."""
 
     number: int = fact("its number in the figures")
-    hinges: str = fact("order of the hinges in words")
+    hinges: str = fact("sequence of the hinges from left to right, in words")
 
 
 class Change(ResultModel):
     """A value at which another mechanism begins to govern."""
 
-    value: float = fact("the value of the key, in its unit")
+    value: float = fact("value of the varied key, in the unit of the key")
     before: int | Literal["locked"] = fact(
-        "number of the mechanism below the value; 0: cannot stand, locked: no collapse mechanism", name="from"
+        ('number of the mechanism that governs below this value; 0: the structure cannot stand; "locked": no collapse mechanism exists'),
+        name="from",
     )
-    after: int | Literal["locked"] = fact("number of the mechanism above the value; 0 or locked as below", name="to")
+    after: int | Literal["locked"] = fact(
+        'number of the mechanism that governs above this value; 0 and "locked" have the same meaning as in `before`', name="to"
+    )
     collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
 
 
@@ -498,9 +557,9 @@ SectionStatus = Literal["ok", "cannot-stand", "locked", "no-answer"]
 class Gap(ResultModel):
     """A value of a sweep at which the structure has no mechanism under the load."""
 
-    value: float = fact("the value of the key, in its unit")
-    status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked, or no-answer (no result)")
-    reason: str = fact("reason, with the certificate of a structure that cannot stand")
+    value: float = fact("value of the varied key, in the unit of the key")
+    status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked (no collapse mechanism), or no-answer (no result)")
+    reason: str = fact("reason; for a structure that cannot stand, the certificate")
 
 
 class Sweep(KindResults):
@@ -509,32 +568,32 @@ class Sweep(KindResults):
     vary: str = fact("the key that varies")
     unit: str = fact("its unit")
     mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
-    changes: list[Change] = fact("values at which another mechanism begins to govern")
-    stable_limits: list[float] = fact("values at which the range ends in which it stands, in the unit of the key")
-    locked_limits: list[float] = fact("values beyond which no load of the kind causes collapse")
-    optimum_value: float = fact("value of the greatest capacity, in the unit of the key")
+    changes: list[Change] = fact("values of the key at which the governing mechanism changes")
+    stable_limits: list[float] = fact("ends of the range of the key, in its unit, in which the structure stands")
+    locked_limits: list[float] = fact("values of the key beyond which no load of this kind causes collapse")
+    optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")
     optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
-    optimum_tilt_angle_deg: float = fact("tilt of the ground that pushes alike", "deg")
-    optimum_inside: bool = fact("whether it lies inside the range")
-    values: list[float] = fact("the values, in the unit of the key")
+    optimum_tilt_angle_deg: float = fact("tilt of the ground with the same effect as the greatest collapse acceleration", "deg")
+    optimum_inside: bool = fact("whether the optimum lies inside the range, not at one of its ends")
+    values: list[float] = fact("values of the varied key, in the unit of the key")
     collapse_accelerations_g: list[float | None] = fact(
-        "capacity at each value; 0 for a structure that cannot stand, null without a result", "g"
+        "collapse acceleration at each value of the key; 0 for a structure that cannot stand, null without a result", "g"
     )
     upper_bound_values: list[float] = fact(
-        "values at which pressed joints slide in the mechanism: the capacity is an upper bound (dilatant friction)"
+        "values of the key at which joints in compression slide in the mechanism; the capacity is then an upper bound (dilatant friction)"
     )
-    gaps: list[Gap] = fact("values without a mechanism: cannot stand, locked, or no result")
+    gaps: list[Gap] = fact("values of the key without a mechanism: the structure cannot stand, is locked, or has no result")
     duality_gap: float = fact("greatest difference between the bounds", "g")
     fractured_collapse_accelerations_g: list[float | None] = maybe("collapse accelerations with the leeward buttress cracked", "g")
     buttress_alone_accelerations_g: list[float | None] = maybe(
-        "collapse accelerations of the leeward buttress by itself", "g", source="thesis Fig. 3-4b"
+        "collapse accelerations of the leeward buttress alone", "g", source="thesis Fig. 3-4b"
     )
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest capacity [g]; a sweep compares, it asks for no demand."""
         best = self.optimum_collapse_acceleration_g
         unit = f" {self.unit}" if self.unit else ""
-        text = f"Of the values tried, {self.vary} = {self.optimum_value:.4g}{unit} has the greatest capacity, {best:.3g} g."
+        text = f"Among the calculated values, {self.vary} = {self.optimum_value:.4g}{unit} gives the greatest capacity, {best:.3g} g."
         if not self.upper_bound_values:
             return judge(text, None, best, "g")
         text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide: {DILATANT}."
@@ -555,13 +614,15 @@ class Survey(KindResults):
     sections: int = fact("sections in the table")
     standing: int = fact("sections that stand")
     cannot_stand: list[NoAnswerRow] = fact(
-        "sections that a certificate proves to collapse under their own weight, the first hundred; their capacity is 0"
+        "sections that cannot carry their own weight, by a certificate; the first hundred are listed, and their capacity is 0"
     )
-    without_answer: list[NoAnswerRow] = fact("sections without a result, the first hundred")
-    upper_bounds: int = fact("sections in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)")
-    weakest: str | None = fact("name of the weakest section; one that cannot stand has capacity 0")
+    without_answer: list[NoAnswerRow] = fact("sections without a result; the first hundred are listed")
+    upper_bounds: int = fact(
+        "number of sections in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)"
+    )
+    weakest: str | None = fact("name of the weakest section; a section that cannot stand has capacity 0")
     weakest_collapse_acceleration_g: float | None = fact("its capacity", "g")
-    median_collapse_acceleration_g: float | None = fact("median capacity of those that stand", "g")
+    median_collapse_acceleration_g: float | None = fact("median capacity of the sections that stand", "g")
     sections_per_second: float = fact("speed of the survey", "1/s")
     duality_gap: float = fact("greatest difference between the bounds", "g")
 
@@ -581,17 +642,21 @@ class Imperfections(KindResults):
     """imperfections: capacities of random surveys of the same stones, the lesser of the two senses of each."""
 
     count: int = fact("number of random surveys")
-    deviation_m: float = fact("how far each measured point lies at most from where the given survey has it", "m")
-    given_collapse_acceleration_g: float = fact("capacity of the survey that is given", "g")
+    deviation_m: float = fact("greatest distance of each measured point from its position in the given survey", "m")
+    given_collapse_acceleration_g: float = fact("collapse acceleration of the survey that the deck gives", "g")
     median_collapse_acceleration_g: float = fact("median capacity", "g")
-    low_collapse_acceleration_g: float = fact("lower end of the band that holds nine tenths: the 5th percentile", "g")
-    high_collapse_acceleration_g: float = fact("its upper end: the 95th percentile", "g")
-    least_collapse_acceleration_g: float = fact("least capacity; 0 where a survey cannot stand", "g")
+    low_collapse_acceleration_g: float = fact(
+        "5th percentile of the capacity: lower end of the band that contains 90 % of the surveys", "g"
+    )
+    high_collapse_acceleration_g: float = fact("95th percentile of the capacity: upper end of this band", "g")
+    least_collapse_acceleration_g: float = fact("least capacity; 0 if a survey cannot stand", "g")
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
-    cannot_stand: int = fact("surveys that a certificate proves to collapse under their own weight; they count as 0 g")
-    without_answer: int = fact("surveys whose programmes gave no result; they are not counted")
-    upper_bounds: int = fact("surveys in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)")
+    cannot_stand: int = fact("surveys that cannot carry their own weight, by a certificate; they count with a capacity of 0 g")
+    without_answer: int = fact("surveys for which the linear programmes gave no result; they are not counted")
+    upper_bounds: int = fact("surveys in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The 5th percentile of the capacities against the peak ground acceleration of the motion [g]."""
-        return (judge_dilatant if self.upper_bounds else judge_acceleration)(self.low_collapse_acceleration_g, demand)
+        """The 5th percentile of the capacities, or the given capacity if that is less, against the peak ground acceleration of the
+        motion [g]."""
+        least = min(self.low_collapse_acceleration_g, self.given_collapse_acceleration_g)
+        return (judge_dilatant if self.upper_bounds else judge_acceleration)(least, demand)

@@ -45,7 +45,7 @@ def explain(word: str, results: ResultFacts) -> str:
     if path[-1] in results.beside:
         return f"{path[-1]}: {_told(results.beside[path[-1]])}"
     if kind not in results.kinds:
-        raise KeyError(f"no results of a kind '{kind}'" + _near(kind, list(results.kinds)))
+        raise KeyError(f"no analysis is of kind '{kind}'" + _near(kind, list(results.kinds)))
     shapes = results.kinds[kind]
     if not rest:
         return "\n".join(_told(shape) for shape in shapes)
@@ -54,7 +54,7 @@ def explain(word: str, results: ResultFacts) -> str:
     found = [f for key, f in known.items() if key == rest[0] or key.startswith(within)]
     found = found or [f for key, f in known.items() if key.rsplit(".", 1)[-1] == rest[0]]
     if not found:
-        raise KeyError(f"the results of {kind} have no key '{rest[0]}'" + _near(rest[0], list(known)))
+        raise KeyError(f"the results of {kind} contain no key '{rest[0]}'" + _near(rest[0], list(known)))
     return "\n".join(f"{SECTION}.{kind}.{_line(f)}" for f in found)
 
 
@@ -83,7 +83,7 @@ def manual(results: ResultFacts) -> str:
         "",
         "## Every analysis",
         "",
-        "Beside its results each analysis gives these.",
+        "In addition to its results, each analysis gives the following.",
         "",
     ]
     heads = {"verdict": "verdict", "assumptions": "assumptions.KEY", "self-weight": "results of a building that cannot stand"}

@@ -12,12 +12,12 @@ class WallShare(ResultModel):
     """What one wall carries at its foot."""
 
     wall: str = fact("its name")
-    shear_N: float = fact("in its plane, along the push", "N")
+    shear_N: float = fact("in-plane shear force of the wall, along the load", "N")
     share: float = fact("part of the base shear")
     normal_N: float = fact("compression is negative", "N")
-    normal_change_N: float = fact("besides those of the constant loads; uplift is positive", "N")
-    elastic_share: float = fact("part of the base shear before it cracks")
-    drifts: list[float | None] = fact("drift of each storey; null where the wall has none")
+    normal_change_N: float = fact("change of the normal force relative to the constant loads; uplift is positive", "N")
+    elastic_share: float = fact("share of the wall in the base shear before cracking")
+    drifts: list[float | None] = fact("drift of each storey; null for a storey that the wall does not have")
 
 
 class FirstCrack(ResultModel):
@@ -25,9 +25,9 @@ class FirstCrack(ResultModel):
 
     wall: str = fact("the wall")
     storey: int = fact("the storey, from 1")
-    along_m: float = maybe("along the wall from its start; absent of a vault", "m")
-    height_m: float = fact("over the ground, or the lowest springing", "m")
-    place_m: list[float] = fact("x, y, z of the place", "m")
+    along_m: float = maybe("distance along the wall from its start; not given for a vault", "m")
+    height_m: float = fact("height above the ground, or above the lowest springing", "m")
+    place_m: list[float] = fact("coordinates x, y, z of the point", "m")
     base_shear_N: float = fact("under this base shear", "N")
 
 
@@ -35,30 +35,30 @@ class JointMotion(ResultModel):
     """How far a joint between walls, or a bed joint in a wall, has come apart."""
 
     joint: str = fact("its name")
-    wall: str = fact("the wall that it is in, or that abuts there")
-    opening_m: float = fact("place of greatest width, at the greatest load", "m")
-    slip_m: float = fact("place of greatest sliding along its wall, at the greatest load", "m")
-    last_opening_m: float = fact("place of greatest width, in the last state in equilibrium", "m")
-    last_slip_m: float = fact("place of greatest sliding, in the last state in equilibrium", "m")
-    first_base_shear_N: float | None = fact("base shear at which its bond first fails; null without failure", "N")
-    broken_share: float = fact("part of its area that has lost some of its bond, in the last state in equilibrium")
+    wall: str = fact("wall that contains the joint, or that abuts at the joint")
+    opening_m: float = fact("greatest opening of the joint at the greatest load, and its location", "m")
+    slip_m: float = fact("greatest sliding of the joint along its wall at the greatest load, and its location", "m")
+    last_opening_m: float = fact("greatest opening of the joint in the last equilibrium state, and its location", "m")
+    last_slip_m: float = fact("greatest sliding of the joint in the last equilibrium state, and its location", "m")
+    first_base_shear_N: float | None = fact("base shear at which the bond of the joint first fails; null without failure", "N")
+    broken_share: float = fact("share of the joint area that has lost some of its bond in the last equilibrium state")
 
 
 class FootForce(ResultModel):
     """What a foot of a vault presses on the ground with, at the greatest load or at the end of a settlement."""
 
     foot: str = fact("its name")
-    thrust_N: float = fact("outward; of a dome the sum all around", "N")
+    thrust_N: float = fact("outward thrust of the foot; for a dome, the sum around the circumference", "N")
     vertical_N: float = fact("downward", "N")
 
 
 class Flanges(ResultModel):
     """Walls across the push, at the peak."""
 
-    share: float = fact("part of the base shear that is not carried by the walls in their own planes along the push")
-    uplift_N: float = fact("tension and relieved compression that walls across the push take at their feet", "N")
+    share: float = fact("share of the base shear that is not carried in-plane by the walls along the load")
+    uplift_N: float = fact("vertical force at the feet of the walls across the load: tension and relieved compression", "N")
     pressure_N: float = fact("compression added to them", "N")
-    working: bool = fact("whether they take more than a twentieth of the weight up or down")
+    working: bool = fact("whether these walls carry more than 1/20 of the weight as upward or downward force")
 
 
 class SlidingLevel(ResultModel):
@@ -66,31 +66,33 @@ class SlidingLevel(ResultModel):
 
     level: str = fact("its name")
     height_m: float = fact("its height", "m")
-    normal_N: float = fact("normal force on it under the constant loads; compression is positive", "N")
+    normal_N: float = fact("normal force on the level under the constant loads; compression is positive", "N")
     area_m2: float = fact("area of its walls", "m^2")
-    resistance_N: float = fact("friction times the normal force, and cohesion times the area", "N")
-    shear_share: float = fact("part of the base shear that acts above it")
-    base_shear_N: float = fact("base shear under which it slides", "N")
+    resistance_N: float = fact("sliding resistance: friction times normal force, plus cohesion times area", "N")
+    shear_share: float = fact("share of the base shear that acts above the level")
+    base_shear_N: float = fact("base shear at which the level slides", "N")
 
 
 class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
     capacity_N: float | None = fact(
-        "greatest base shear, or the sliding limit if less; null without a state, and of ground that moves", "N"
+        ("greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, and for a moving ground"), "N"
     )
-    sliding_capacity_N: float = maybe("least base shear under which a level slides by Coulomb's limit", "N")
+    sliding_capacity_N: float = maybe("least base shear at which a level slides by Coulomb's law", "N")
     sliding_level: str = maybe("the level that slides first")
-    sliding: list[SlidingLevel] = maybe("limits of all levels; absent without walls, and where friction excludes sliding")
+    sliding: list[SlidingLevel] = maybe("sliding limits of all levels; not given without walls, or if friction excludes sliding")
     base_shear_coefficient: float | None = fact("capacity over the weight")
-    roof_drift: float | None = fact("control displacement there over its height")
+    roof_drift: float | None = fact("roof drift: control displacement at the greatest load, divided by the height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
-    walls: list[WallShare] = fact("base shear of each wall there")
-    flanges: Flanges = maybe("whether walls across the push work with them")
-    first_crack: FirstCrack = maybe("place of its first crack; absent without cracks")
-    joints: list[JointMotion] = maybe("how far its joints have come apart")
-    feet: list[FootForce] = maybe("of a vault or dome: forces of its feet on the ground")
-    cracked_points_by_storey: list[int] = fact("places in the planes of the walls that have cracked there, by storey")
+    walls: list[WallShare] = fact("base shear of each wall at the greatest load")
+    flanges: Flanges = maybe("whether the transverse walls (flanges) contribute")
+    first_crack: FirstCrack = maybe("location of the first crack; not given without cracks")
+    joints: list[JointMotion] = maybe("greatest opening and sliding of each joint")
+    feet: list[FootForce] = maybe("for a vault or dome: forces of its feet on the ground")
+    cracked_points_by_storey: list[int] = fact(
+        "number of cracked integration points in the planes of the walls at the greatest load, by storey"
+    )
 
 
 class StageOfPush(PushCurve):
@@ -99,7 +101,7 @@ class StageOfPush(PushCurve):
 
     name: str = fact("its name, or its number")
     of: Literal["push", "settlement"] = fact("quantity")
-    prefix: str = fact("how the names of its arrays begin; empty for the stage that represents the analysis")
+    prefix: str = fact("first part of the names of the arrays of this stage; empty for the stage that represents the analysis")
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 
@@ -107,7 +109,7 @@ class StageOfPush(PushCurve):
 class FrameCapacity(ResultModel):
     """What the piers of the weakest storey bear by the formulas of a code."""
 
-    code: str = fact("the code; of its formulas the least counts for a pier")
+    code: str = fact("code; the least strength among its formulas counts for a pier")
     base_shear_N: float = fact("base shear at which the shear in the weakest storey equals the sum of the strengths of its piers", "N")
     storey: int = fact("the weakest storey, from 1")
 
@@ -119,37 +121,39 @@ class Variation(ResultModel):
     factors: dict[str, float] = fact("by the deck")
     greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
     passed: bool = fact("whether that was a peak")
-    base_shear_coefficient: float | None = fact("over the weight of that variant")
+    base_shear_coefficient: float | None = fact("base shear divided by the weight of this variant")
 
 
 class Pushover(PushCurve, KindResults):
     """pushover: a building under growing horizontal forces; the curve of the first sense, and of both."""
 
     weight_N: float = fact("weight of walls and floors", "N")
-    reference_load_N: float = fact("base shear to which the multiplier 1 belongs", "N")
+    reference_load_N: float = fact("base shear at load multiplier 1", "N")
     pattern: str = fact("of the horizontal forces")
-    direction_deg: float = fact("of the push on the plan", "deg")
-    frequency_Hz: float = maybe("of the mode whose pattern pushes", "Hz")
-    modal_mass_ratio: float = maybe("part of the mass that takes part in that mode")
+    direction_deg: float = fact("direction of the load in plan", "deg")
+    frequency_Hz: float = maybe("frequency of the mode whose shape distributes the load", "Hz")
+    modal_mass_ratio: float = maybe("participating mass ratio of this mode")
     cracking: str = fact("how cracked material behaved")
-    layers: int = fact("points through the thickness of the walls")
+    layers: int = fact("number of integration points through the thickness of the walls")
     nodes: int = fact("nodes of the mesh")
     elements: int = fact("elements of the mesh")
     equations: int = fact("equations")
-    points: int = fact("integration points, those of bars too")
-    factor_bytes: int = fact("memory of the factor, in bytes")
-    minus: PushCurve = maybe("the curve of the second sense")
-    stages: list[StageOfPush] = maybe("of a run in stages, each; without a name, the numbers are those of the main one")
-    frame: list[FrameCapacity] = maybe("strengths of its piers by the formulas of codes, in the direction of the push")
-    variants: list[Variation] = maybe("the first sense with other assumptions")
-    verification: Verification = maybe("displacement-based verification of a building that is given in plan")
-    band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
+    points: int = fact("number of integration points, with those of bars")
+    factor_bytes: int = fact("memory of the matrix factors, in bytes")
+    minus: PushCurve = maybe("capacity curve of the load in the second (opposite) sense")
+    stages: list[StageOfPush] = maybe(
+        "for a run in stages: results of each stage; if no stage is named, the results of the analysis are those of the main stage"
+    )
+    frame: list[FrameCapacity] = maybe("strengths of the piers by code formulas, in the direction of the load")
+    variants: list[Variation] = maybe("results of the first sense under other assumptions")
+    verification: Verification = maybe("displacement-based verification of a building that is given by its plan")
+    band_N: list[float] = maybe("least and greatest base shear of all variants and of the deck itself", "N")
 
     def judged(self, demand: Demand) -> Verdict:
         """The verification by displacement; without one the lesser capacity of the two senses, without an outcome."""
         curves = [c for c in (self, self.minus) if c is not None]
         if any(c.capacity_N is None for c in curves):
-            return judge(f"No state with a base shear was found; the run ended by: {self.stop}.", None, None, "N")
+            return judge(f"No equilibrium state with a base shear was found. The run ended for this reason: {self.stop}.", None, None, "N")
         least = min(curves, key=lambda c: c.capacity_N or 0.0)
         load, capacity = least.greatest_load_N or 0.0, least.capacity_N or 0.0
         slides, reached = capacity < load, least.greatest_acceleration_g
@@ -158,10 +162,10 @@ class Pushover(PushCurve, KindResults):
         if self.verification is not None and self.verification.decides:
             return self.verification.judged(f"The greatest base shear is {told}.")
         if slides:
-            text = f"Sliding on {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
-            violated = [f"The model excludes that sliding and carries {load / 1e3:.4g} kN, {load / capacity:.3g} times the sliding limit."]
+            text = f"Sliding at {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
+            violated = [f"The model excludes this sliding and carries {load / 1e3:.4g} kN, {load / capacity:.3g} times the sliding limit."]
             return capacity_alone(text, value, unit, "upper", violated)
         if least.peak_load_N is None:
-            text = f"The base shear has reached {told} without a peak; the capacity is not known."
+            text = f"The base shear has reached {told} without a peak. The capacity is therefore not known."
             return capacity_alone(text, value, unit, "lower")
-        return capacity_alone(f"The building carries a base shear of {told}.", value, unit)
+        return capacity_alone(f"The building can carry a base shear of {told}.", value, unit)

@@ -4,8 +4,9 @@ from math import inf
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import LoadPath, TieForce, judge_design, judge_dilatant
+from extrados.results.limit import Thrust as PlaneThrust
 from extrados.results.limit import Tilt as SectionTilt
-from extrados.results.verdict import Demand, KindResults, Verdict, judge_acceleration
+from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
 
 
 class OpenContact(ResultModel):
@@ -13,8 +14,8 @@ class OpenContact(ResultModel):
 
     joint: int = fact("number of the contact")
     name: str = fact("its name")
-    opening: float = fact("rate at which its fastest corner opens, over the fastest point of the mechanism")
-    sliding: float = fact("rate at which its fastest corner slides, over the same")
+    opening: float = fact("rate at which the corner that opens fastest opens, divided by the rate of the fastest point of the mechanism")
+    sliding: float = fact("rate at which the corner that slides fastest slides, divided by the rate of the fastest point of the mechanism")
     x_m: float = fact("x of its middle", "m")
     y_m: float = fact("y of its middle", "m")
     z_m: float = fact("z of its middle, upward", "m")
@@ -24,17 +25,21 @@ class Pyramids(ResultModel):
     """Bounds by friction pyramids, from a linear programme."""
 
     sides: int = fact("sides of the pyramids")
-    lower_g: float | None = fact("with pyramids within the cones: lower bound; null if it cannot stand so", "g")
-    upper_g: float | None = fact("with pyramids around the cones: a bound from above; null without a collapse mechanism", "g")
+    lower_g: float | None = fact(
+        "lower bound, with pyramids inscribed in the friction cones; null if the structure cannot stand with them", "g"
+    )
+    upper_g: float | None = fact(
+        "upper bound, with pyramids circumscribed about the friction cones; null without a collapse mechanism", "g"
+    )
 
 
 class BlockSize(ResultModel):
     """The capacity of the same structure in blocks of another size or bond."""
 
-    change: str = fact("key of the structure that is changed, with its value")
-    blocks: int | None = fact("number of blocks of that partition; null without one")
-    collapse_acceleration_g: float | None = fact("upper bound along the direction; null without one", "g")
-    relative_change: float | None = fact("over that of the blocks of the deck, less one")
+    change: str = fact("key of the structure that is changed, with the new value")
+    blocks: int | None = fact("number of blocks after this change; null if the change is not possible")
+    collapse_acceleration_g: float | None = fact("upper bound of the collapse acceleration along the direction; null without a result", "g")
+    relative_change: float | None = fact("relative change of the upper bound from that of the blocks in the deck")
     reason: str | None = fact("why there is no value")
 
 
@@ -44,73 +49,86 @@ class SolidNonDilatant(ResultModel):
     A certificate proves that collapse is possible at its load, not that less is safe.
     """
 
-    direction_deg: float = fact("direction in plan of the push", "deg")
-    associated_g: float | None = fact("upper bound: sliding that dilates; null without a collapse mechanism", "g")
-    load_path_g: float | None = fact("design value: least of the certified load paths; null without one", "g")
-    load_paths: list[LoadPath] = fact("load paths of elastic joints, one a ratio of stiffness")
-    least_g: float | None = fact("least certified state found, from any state of stress at rest (a warning); null without one", "g")
-    starts_g: list[float] = fact("loads of the certified states to which the starts led; the least counts", "g")
+    direction_deg: float = fact("direction of the load in plan", "deg")
+    associated_g: float | None = fact("upper bound, with dilatant sliding; null without a collapse mechanism", "g")
+    load_path_g: float | None = fact("design value: the least of the certified load paths; null without one", "g")
+    load_paths: list[LoadPath] = fact("load paths of elastic joints, one for each stiffness ratio")
+    least_g: float | None = fact(
+        "least certified state found from any initial state of stress (serves as a warning); null without one", "g"
+    )
+    starts_g: list[float] = fact("loads of the certified states found from each starting point; the least is used", "g")
     spread_g: float | None = fact("greatest less least of them", "g")
     zero_gap_g: float | None = fact(
-        "|gamma - (work of friction - work of the weight)| per unit of work of the load, of the least state", "g"
+        "for the least state: |gamma - (work of friction - work of the weight)| per unit of work of the load", "g"
     )
     equilibrium_residual: float | None = fact(
-        "greatest force, or moment over the size, left over at a block, over the weight, of the least state"
+        "for the least state: greatest unbalanced force (or moment divided by the size) on a block, divided by the weight"
     )
-    friction_residual: float | None = fact("greatest excess of shear over friction, or tension, over the weight")
-    overlap_residual: float | None = fact("greatest overlap of the motion, over the fastest contact")
+    friction_residual: float | None = fact("greatest excess of shear over friction, or greatest tension, divided by the weight")
+    overlap_residual: float | None = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
 
 
 class SolidTilt(KindResults):
     """tilt of solids: the constant horizontal acceleration, in a direction in plan, at which they become a mechanism."""
 
     collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant) along the direction", "g")
-    collapse_acceleration_opposite_g: float = fact("collapse acceleration in the opposite direction", "g")
-    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg", source="thesis Eq. 3.1")
-    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
-    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
-    least_acceleration_g: float = fact("least of the capacities in all directions sought", "g")
+    collapse_acceleration_opposite_g: float = fact("collapse acceleration opposite to the load direction (horizontal, constant)", "g")
+    tilt_angle_deg: float = fact(
+        "tilt of the ground with the same effect as the collapse acceleration along the load direction", "deg", source="thesis Eq. 3.1"
+    )
+    tilt_angle_opposite_deg: float = fact(
+        "tilt of the ground with the same effect as the collapse acceleration in the opposite direction", "deg"
+    )
+    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
+    least_acceleration_g: float = fact("least collapse acceleration in all directions that were searched", "g")
     least_direction_deg: float = fact("direction of that", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    moving_blocks: int = fact("blocks that move in the mechanism, faster than a thousandth of the fastest")
-    fastest_block: str = fact("the stone with the fastest centroid")
-    opening_contacts: list[OpenContact] = fact("contacts that open or slide most, at most 20 of them")
-    weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
-    upper_bound_g: float = fact("bound from above by the virtual work of the mechanism", "g")
-    duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
-    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")
-    friction_residual: float = fact("greatest excess of shear over friction, or of tension, at a corner, over the weight")
-    overlap_residual: float = fact("greatest rate of overlap of the mechanism, over the fastest contact")
+    moving_blocks: int = fact("blocks that move in the mechanism: faster than 1/1000 of the fastest block")
+    fastest_block: str = fact("block whose centroid moves fastest")
+    opening_contacts: list[OpenContact] = fact("contacts that open or slide most; at most 20 are listed")
+    weight_N: float = fact("weight of the structure, including the weights that rest on it", "N")
+    upper_bound_g: float = fact("upper bound of the collapse acceleration, by the virtual work of the mechanism", "g")
+    duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
+    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the weight")
+    friction_residual: float = fact("greatest excess of shear over friction, or greatest tension, at a corner, divided by the weight")
+    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
     dilating_contacts: int = fact(
-        "contacts that press and slide in the mechanisms along the direction, back, and of the least capacity; with any the "
-        "capacity is an upper bound (dilatant friction)"
+        "contacts in compression that slide in the mechanisms (along the direction, opposite, and of the least "
+        "capacity). If there are any, the capacity is an upper bound (dilatant friction)"
     )
     collapse_acceleration_load_path_g: float = maybe(
-        "design value where contacts slide: least of the load paths of elastic joints along the direction", "g"
+        ("design value of the collapse acceleration along the direction if contacts slide: the least of the load paths of elastic joints"),
+        "g",
     )
-    collapse_acceleration_load_path_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
+    collapse_acceleration_load_path_opposite_g: float = maybe(
+        "design value of the collapse acceleration in the opposite direction if contacts slide", "g"
+    )
     collapse_acceleration_non_associated_g: float = maybe(
-        "sliding without dilatancy along the direction: the least certified state found", "g"
+        "collapse acceleration along the direction for sliding without dilatancy: the least certified state found", "g"
     )
-    collapse_acceleration_non_associated_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
+    collapse_acceleration_non_associated_opposite_g: float = maybe(
+        "collapse acceleration in the opposite direction for sliding without dilatancy", "g"
+    )
     non_dilatant: list[SolidNonDilatant] = maybe(
-        "sliding without dilatancy, direction by direction: along, opposite, the least of the rose; all with "
+        "sliding without dilatancy, for each direction: along, opposite, and that of least capacity; all directions with "
         'friction_rule = "non-associated"'
     )
-    non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
+    non_associated_reason: str = maybe("reason why no state without dilatancy is given in addition to the upper bound")
     collapse_acceleration_face_law_g: float = maybe(
-        "upper bound of the direction with the friction of whole faces under an even pressure (torsion); the corner law, which is "
-        "collapse_acceleration_g, lets the pressure concentrate",
+        (
+            "upper bound along the direction by the face law: friction of whole faces under uniform pressure (torsion). The "
+            "corner law, which gives collapse_acceleration_g, allows the pressure to concentrate"
+        ),
         "g",
         source="after Orduna and Lourenco 2005",
     )
-    collapse_acceleration_face_law_opposite_g: float = maybe("collapse acceleration in the opposite direction", "g")
-    face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
-    face_law_reason: str = maybe("why the face law gives no value")
-    ties: list[TieForce] = maybe("ties, chains and hoops at the collapse acceleration; of bonded ones each segment")
-    block_sizes: list[BlockSize] = maybe("upper bounds with blocks half as long in each direction, and with the other bond")
-    pyramids: Pyramids = maybe("bounds by another method and another solver")
+    collapse_acceleration_face_law_opposite_g: float = maybe("upper bound in the opposite direction by the face law", "g")
+    face_law_spread_g: float = maybe("greatest range of the last iterations of the face law (a fixed-point iteration)", "g")
+    face_law_reason: str = maybe("reason why the face law gives no value")
+    ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
+    block_sizes: list[BlockSize] = maybe("upper bounds for blocks of half the length in each direction, and for the other bond")
+    pyramids: Pyramids = maybe("bounds of the collapse acceleration by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:
         """The least capacity of all directions sought against the peak ground acceleration of the motion [g]; where contacts slide
@@ -128,5 +146,53 @@ class SolidTilt(KindResults):
         return judge_design(min(designs), found, most, demand)
 
 
-#: What `tilt` gives: of a plane section, or of solids
+class SectionThrust(ResultModel):
+    """Horizontal thrust of a section of blocks in space."""
+
+    name: str = fact("its name")
+    direction: str = fact("direction of the thrust: in plan, or outward from the middle of the structure")
+    contacts: int = fact("contacts of the section")
+    least_N: float | None = fact("least thrust; null where it has no least value", "N")
+    central_N: float | None = fact("thrust of the most central state; null without one", "N")
+    greatest_N: float | None = fact("greatest thrust; null where it has no greatest value, as between rigid supports", "N")
+
+
+class SolidThrust(KindResults):
+    """thrust of solids: admissible states of stress at a given horizontal acceleration."""
+
+    gamma_g: float = fact("horizontal acceleration along the direction", "g")
+    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
+    admissible_interval_g: list[float] = fact("accelerations along the direction between which a state is admissible", "g")
+    sections: list[SectionThrust] = fact("thrust of each section")
+    geometric_safety_factor: float | None = fact(
+        "one over the least part of the contacts, about their middles, that holds a state in equilibrium; null where that part is below "
+        "1 % (no horizontal demand), or if not found"
+    )
+    least_part_of_joints: float | None = fact("the part of the contacts, about their middles, that the most central state needs")
+    required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
+    required_friction_contact: str | None = fact("the contact that needs it")
+    blocks: int = fact("stones")
+    contacts: int = fact("polygons along which they touch")
+    weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
+    dilating: bool = fact(
+        "whether contacts slide in the mechanisms at the ends of the admissible interval: these are upper bounds (dilatant friction), "
+        "and a state within friction does not prove that sliding without dilatancy is excluded"
+    )
+    ties: list[TieForce] = maybe("ties, chains and hoops in the most central state")
+    duality_gap: float = fact("greatest difference between the bounds of the thrusts, over the weight")
+    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")
+    friction_residual: float = fact("greatest excess of shear over friction, or of tension, at a corner, over the weight")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The part of the contacts that the most central state needs against the whole; the ratio is the safety factor."""
+        part = self.least_part_of_joints
+        if part is None:
+            return judge("The most central state was not found.", None, None)
+        if self.geometric_safety_factor is None:
+            return judge(f"At {self.gamma_g:g} g a state runs through the middles of all contacts, within 1 % of them.", 0.0, 1.0)
+        return judge(f"At {self.gamma_g:g} g a state of stress stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0)
+
+
+#: What `tilt` and `thrust` give: of a plane section, or of solids
 Tilt = SectionTilt | SolidTilt
+Thrust = PlaneThrust | SolidThrust

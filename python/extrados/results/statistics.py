@@ -8,11 +8,11 @@ from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judg
 class Sensitivity(ResultModel):
     """Sobol indices of one uncertain value: its own share of the variance, and that of all in which it is involved."""
 
-    rotation_first: float | None = fact("first-order index of the greatest rotation, collapse counted as 1")
+    rotation_first: float | None = fact("first-order Sobol index of the greatest rotation, in which collapse counts as 1")
     rotation_first_interval: list[float | None] = fact("its bootstrap interval")
-    rotation_total: float | None = fact("total index of the greatest rotation")
+    rotation_total: float | None = fact("total Sobol index of the greatest rotation")
     rotation_total_interval: list[float | None] = fact("its bootstrap interval")
-    collapse_first: float | None = fact("first-order index of the collapse, 1 or 0; null where all runs agree")
+    collapse_first: float | None = fact("first-order Sobol index of the collapse (1 or 0); null if all runs have the same outcome")
     collapse_first_interval: list[float | None] = fact("its bootstrap interval")
     collapse_total: float | None = fact("total index of the collapse")
     collapse_total_interval: list[float | None] = fact("its bootstrap interval")
@@ -24,13 +24,17 @@ class Annual(KindResults):
     annual_collapse_rate: float = maybe(
         "mean annual rate of collapse", "1/year", source="Cornell and Krawinkler 2000, PEER Center News 3(2)"
     )
-    annual_collapse_rate_interval: list[float | None] = maybe("its interval by the uncertainty of the fitted curve", "1/year")
-    annual_collapse_rate_left_out: float = maybe("possible contribution of intensities beyond the ends of the hazard curve", "1/year")
+    annual_collapse_rate_interval: list[float | None] = maybe(
+        "interval of the annual collapse rate due to the uncertainty of the fitted curve", "1/year"
+    )
+    annual_collapse_rate_left_out: float = maybe(
+        "possible contribution to the collapse rate from intensities beyond the ends of the hazard curve", "1/year"
+    )
     collapse_return_period_years: float | None = maybe("its inverse", "year")
-    years: float = maybe("time for which the next probability holds", "year")
-    collapse_probability_in_years: float = maybe("probability of collapse in that time, events being independent")
+    years: float = maybe("number of years for the probability of collapse given below", "year")
+    collapse_probability_in_years: float = maybe("probability of collapse within these years, if events are independent")
     collapse_probability_in_years_interval: list[float | None] = maybe("its interval")
-    decisive_intensity: float = maybe("intensity whose surroundings add most to the rate, in intensity_unit")
+    decisive_intensity: float = maybe("intensity whose neighbourhood contributes most to the collapse rate, in intensity_unit")
     acceptable_annual_rate: float | None = maybe("rate that the deck accepts", "1/year")
 
     def judged_by_rate(self, violated: list[str]) -> Verdict | None:
@@ -38,9 +42,9 @@ class Annual(KindResults):
         rate, accepted = self.annual_collapse_rate, self.acceptable_annual_rate
         if rate is None:
             return None
-        text = f"The annual rate of collapse is {rate:.3g}"
+        text = f"The mean annual rate of collapse is {rate:.3g}"
         if accepted is None:
-            return judge(f"{text}; the deck accepts no rate to compare with.", rate, None, "1/year", violated=violated)
+            return judge(f"{text}. The deck gives no acceptable rate for comparison.", rate, None, "1/year", violated=violated)
         low, high = self.annual_collapse_rate_interval
         outcome: Outcome = "stands" if rate < accepted else "collapses"
         if low is not None and high is not None and low < accepted <= high:
@@ -52,11 +56,11 @@ class Annual(KindResults):
 class RotationLimit(ResultModel):
     """The curve of rotations beyond a limit."""
 
-    rotation_ratio: float = fact("the limit, over the critical rotation")
-    median: float = fact("median of its lognormal curve, in intensity_unit")
+    rotation_ratio: float = fact("limit of the rotation, divided by the critical rotation")
+    median: float = fact("median of the lognormal fragility curve for this limit, in intensity_unit")
     dispersion: float = fact("its dispersion, of the logarithm")
     median_interval: list[float | None] = fact("profile-likelihood interval of that median")
-    annual_rate: float = maybe("mean annual rate at which it is passed", "1/year")
+    annual_rate: float = maybe("mean annual rate at which the limit is exceeded", "1/year")
     annual_rate_interval: list[float | None] = maybe("its profile-likelihood interval", "1/year")
 
 
@@ -65,10 +69,13 @@ class MeasureDispersion(ResultModel):
 
     measure: str = fact("intensity measure")
     unit: str = fact("unit of its median")
-    median: float = fact("median of the lognormal curve of collapse over this measure, in `unit`")
+    median: float = fact("median of the lognormal collapse fragility curve in terms of this measure, in `unit`")
     dispersion: float = fact("its dispersion, of the logarithm")
-    amplitude_dispersion: float = fact("the same per amplitude of the motion: half for a measure that grows with the square")
-    deviance: float = fact("-2 ln of the likelihood of the outcomes: the least predicts best")
+    amplitude_dispersion: float = fact(
+        "dispersion per unit of the amplitude of the motion: half of the dispersion for a measure that is proportional "
+        "to the square of the amplitude"
+    )
+    deviance: float = fact("-2 ln(likelihood) of the outcomes: the measure with the least value predicts best")
 
 
 class Ensemble(Annual):
@@ -77,48 +84,54 @@ class Ensemble(Annual):
     count: int = fact("runs with a result")
     failed: int = fact("runs without one")
     collapsed: int = fact("runs that collapse")
-    collapse_probability: float | None = fact("share of the runs that collapse")
+    collapse_probability: float | None = fact("collapse probability: share of the runs that collapse")
     confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
     uplifted: int = fact("runs that rock")
-    uplift_probability: float | None = fact("share of the runs that rock")
+    uplift_probability: float | None = fact("share of the runs in which rocking starts")
     uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
-    mean_peak_rotation_ratio: float | None = fact("mean of the peak rotation over the critical rotation; a run that collapses counts as 1")
-    deviation_peak_rotation_ratio: float | None = fact("standard deviation of the peak rotation over the critical rotation")
-    median_peak_rotation_ratio: float | None = fact("median of the peak rotation over the critical rotation")
+    mean_peak_rotation_ratio: float | None = fact(
+        "mean ratio of the peak rotation to the critical rotation; a run that collapses counts as 1"
+    )
+    deviation_peak_rotation_ratio: float | None = fact("standard deviation of the ratio of the peak rotation to the critical rotation")
+    median_peak_rotation_ratio: float | None = fact("median ratio of the peak rotation to the critical rotation")
     confidence: float = fact("level of all intervals")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
+    critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
     motions: int = fact("number of motions")
-    conditions: Conditions = fact("over the runs: whether blocks slide or hinges form elsewhere")
-    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
+    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
+    handed_over: int = maybe(
+        "number of runs that were decided with rigid contacts, because joints slide or hinges form at other joints", source="Moreau 1988"
+    )
     collapse_probability_by_rule: dict[str, float] = maybe(
-        "share of the runs that collapse by each impact rule, where their c_v differ by more than 1.3"
+        "share of the runs that collapse by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
     )
     median_pga_g: float | None = fact("median peak acceleration of the runs", "g")
     median_pgv_m_s: float | None = fact("median peak velocity of the runs", "m/s")
     median_arias_m_s: float | None = fact("median Arias intensity of the runs", "m/s")
-    expected_pga_g: float = maybe("of generated motions: median observed at their intensity", "g", source="Worden et al. 2012")
+    expected_pga_g: float = maybe(
+        "for generated motions: median peak acceleration observed at their intensity", "g", source="Worden et al. 2012"
+    )
     expected_pgv_m_s: float = maybe(
-        "of generated motions: median peak velocity observed at their intensity", "m/s", source="Worden et al. 2012"
+        "for generated motions: median peak velocity observed at their intensity", "m/s", source="Worden et al. 2012"
     )
 
     sensitivity: dict[str, Sensitivity] = maybe(
-        "Sobol indices by uncertain value; `motion` is the choice of the motion", source="Saltelli and others 2010"
+        "Sobol indices of each uncertain value; `motion` is the random choice of the motion", source="Saltelli and others 2010"
     )
-    sensitivity_runs: int = maybe("runs for these indices, apart from `count`")
-    intensity: str = maybe("of a cloud: the measure of its curves; medians are in its unit")
-    intensity_unit: str = maybe("unit of the intensities and medians")
+    sensitivity_runs: int = maybe("number of additional runs for these indices, not included in `count`")
+    intensity: str = maybe("for a cloud: intensity measure of the fragility curves; medians are in its unit")
+    intensity_unit: str = maybe("unit of the intensities and of the medians")
     median: float | None = maybe(
-        "median of the lognormal curve of collapse over the intensities of the motions", source="Jalayer and others 2017"
+        "median of the lognormal collapse fragility curve over the intensities of the motions", source="Jalayer and others 2017"
     )
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Jalayer and others 2017")
     median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
     rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
     measures: list[MeasureDispersion] = maybe(
-        "of a cloud: intensity measures compared by how well they separate collapse from survival, best first",
+        "for a cloud: intensity measures, ranked by how well they separate collapse from survival; the best comes first",
         source="Luco and Cornell 2007",
     )
 
@@ -142,63 +155,76 @@ class RuleShares(ResultModel):
     """Probabilities of collapse by an impact rule."""
 
     rule: str = fact("word of [joints] restitution")
-    restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
-    collapse_probability: list[float] = fact("share of the motions that cause collapse, at each level")
+    restitution: float = fact(
+        "coefficient of restitution (angular velocity after / before impact), limited to 0 to 1; for a mechanism, at the "
+        "impact that starts rocking towards +x"
+    )
+    collapse_probability: list[float] = fact("share of the motions that cause collapse, at each level of intensity")
 
 
 class OverLevels(Annual):
     """fragility: one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
 
-    intensity: str = fact("the measure to which motions are scaled; levels and medians are in its unit")
-    intensity_unit: str = fact("unit of the levels and medians")
+    intensity: str = fact("intensity measure to which motions are scaled; levels and medians are in its unit")
+    intensity_unit: str = fact("unit of the levels and of the medians")
     levels: list[float] = fact("the levels, ascending, in intensity_unit")
     motions: int = fact("number of motions")
-    conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
-    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
-    sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level")
-    hinges_elsewhere_share: list[float | None] = fact("share in which hinges form elsewhere, at each level")
-    count: list[int] = fact("motions with a result, at each level")
+    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
+    handed_over: int = maybe(
+        "number of runs that were decided with rigid contacts, because joints slide or hinges form at other joints", source="Moreau 1988"
+    )
+    sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level of intensity")
+    hinges_elsewhere_share: list[float | None] = fact(
+        "share of the motions in which hinges form at other joints, at each level of intensity"
+    )
+    count: list[int] = fact("number of motions with a result, at each level of intensity")
     failed: int = fact("runs without a result")
-    collapsed: list[int] = fact("motions that cause collapse, at each level")
-    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each level")
+    collapsed: list[int] = fact("number of motions that cause collapse, at each level of intensity")
+    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each level of intensity")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
-    uplifted: list[int] = fact("number of motions that make the structure rock, at each intensity level")
-    uplift_probability: list[float | None] = fact("share of the motions that make the structure rock, at each level")
-    uplift_confidence_interval: list[list[float]] = fact("score intervals of the share that rocks", source="Wilson 1927")
+    uplifted: list[int] = fact("number of motions under which rocking starts, at each level of intensity")
+    uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each level of intensity")
+    uplift_confidence_interval: list[list[float]] = fact(
+        "score intervals of the share of motions under which rocking starts", source="Wilson 1927"
+    )
     mean_peak_rotation_ratio: list[float | None] = fact(
-        "mean of the peak rotation over the critical rotation, at each level; a motion that causes collapse counts as 1"
+        "mean ratio of the peak rotation to the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     deviation_peak_rotation_ratio: list[float | None] = fact(
-        "standard deviation of the peak rotation over the critical rotation, at each level"
+        "standard deviation of the ratio of the peak rotation to the critical rotation, at each level"
     )
     median_peak_rotation_ratio: list[float | None] = fact(
-        "median of the peak rotation over the critical rotation, at each level; a motion that causes collapse counts as 1"
+        "median ratio of the peak rotation to the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     peak_rotation_ratio_16: list[float | None] = fact(
-        "peak rotation over the critical rotation that 16 % of the motions do not exceed, at each level; null: collapse",
+        ("16th percentile of the ratio of the peak rotation to the critical rotation, at each level; null if this percentile is collapse"),
         source="Vamvatsikos and Cornell 2002",
     )
     peak_rotation_ratio_50: list[float | None] = fact(
-        "peak rotation over the critical rotation that half of the motions do not exceed, at each level; null: collapse"
+        "median of the ratio of the peak rotation to the critical rotation, at each level; null if the median is collapse"
     )
     peak_rotation_ratio_84: list[float | None] = fact(
-        "peak rotation over the critical rotation that 84 % of the motions do not exceed, at each level; null: collapse"
+        "84th percentile of the ratio of the peak rotation to the critical rotation, at each level; null if this percentile is collapse"
     )
-    median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level", "g")
+    median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level of intensity", "g")
     confidence: float = fact("level of all intervals")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
-    median: float | None = maybe("median of the lognormal curve of collapse at a level, in intensity_unit", source="Baker 2015")
+    critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
+    median: float | None = maybe(
+        "median of the lognormal curve of the probability of collapse at a level, in intensity_unit", source="Baker 2015"
+    )
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     deviance: float | None = maybe("deviance of that curve")
     degrees_of_freedom: int = maybe("its degrees of freedom")
-    goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
-    median_interval: list[float | None] = maybe("bootstrap interval of that median, motions drawn with all their levels")
+    goodness_p_value: float | None = maybe(
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+    )
+    median_interval: list[float | None] = maybe("bootstrap interval of this median; motions are drawn together with all their levels")
     dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
     first_collapse_median: float | None = maybe(
-        "median of the lognormal curve of the intensity at which a motion first causes collapse, in intensity_unit",
+        "median of the lognormal curve of the least intensity at which a motion causes collapse, in intensity_unit",
         source="interval-censored likelihood: Burridge 1981",
     )
     first_collapse_dispersion: float | None = maybe(
@@ -206,25 +232,35 @@ class OverLevels(Annual):
     )
     first_collapse_deviance: float | None = maybe("deviance of that curve")
     first_collapse_degrees_of_freedom: int = maybe("its degrees of freedom")
-    first_collapse_goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
+    first_collapse_goodness_p_value: float | None = maybe(
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+    )
     first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
-    uplift_median: float | None = maybe("median of the lognormal curve of uplift, in intensity_unit", source="Baker 2015")
+    uplift_median: float | None = maybe(
+        "median of the lognormal curve of the probability that rocking starts, in intensity_unit", source="Baker 2015"
+    )
     uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     uplift_deviance: float | None = maybe("deviance of that curve")
     uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
-    uplift_goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
+    uplift_goodness_p_value: float | None = maybe(
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+    )
     overturning_given_uplift_median: float | None = maybe(
-        "median of the lognormal curve of collapse of those that rock, in intensity_unit", source="Baker 2015"
+        "median of the lognormal curve of collapse, given that rocking starts, in intensity_unit", source="Baker 2015"
     )
     overturning_given_uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
     overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
-    overturning_given_uplift_goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
-    collapse_by_rule: list[RuleShares] = maybe("probabilities of collapse by each impact rule, where their c_v differ by more than 1.3")
-    rule_band: float = maybe("greatest difference of these probabilities at one level")
-    motions_that_collapse: int = fact("motions that cause collapse at some level")
-    resurrections: int = fact("motions without collapse at a level above one with collapse")
+    overturning_given_uplift_goodness_p_value: float | None = maybe(
+        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+    )
+    collapse_by_rule: list[RuleShares] = maybe(
+        "probability of collapse by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
+    )
+    rule_band: float = maybe("greatest difference between the probabilities of collapse by two impact rules at one level")
+    motions_that_collapse: int = fact("number of motions that cause collapse at one or more levels")
+    resurrections: int = fact("number of motions that cause collapse at one level and not at a higher level")
 
     def judged(self, demand: Demand) -> Verdict:
         """The fitted median is the capacity; levels are questions, not a demand."""
@@ -233,7 +269,8 @@ class OverLevels(Annual):
         violated = list(self.conditions.violated)
         if self.rule_band:
             violated.append(
-                f"The impact rule decides: at one level the probabilities of collapse differ by up to {100.0 * self.rule_band:.3g} %."
+                "The outcome depends on the impact rule: at one level the probabilities of collapse differ by up to "
+                f"{100.0 * self.rule_band:.3g} %."
             )
         if (by_rate := self.judged_by_rate(violated)) is not None:
             return by_rate
@@ -241,8 +278,10 @@ class OverLevels(Annual):
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
-                f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}; no curve "
-                "could be fitted.",
+                (
+                    f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}. No fragility "
+                    "curve could be fitted."
+                ),
                 None,
                 None,
                 self.intensity_unit,
@@ -250,7 +289,7 @@ class OverLevels(Annual):
                 violated=violated,
             )
         return judge(
-            f"Half of the motions cause collapse at {self.intensity} {self.median:.3g}{unit}.",
+            f"Half of the motions cause collapse at an intensity of {self.intensity} {self.median:.3g}{unit}.",
             None,
             self.median,
             self.intensity_unit,
@@ -263,24 +302,26 @@ class OverDurations(KindResults):
     """fragility: generated motions of several durations; lists hold one value a duration."""
 
     durations_s: list[float] = fact("durations of the motions", "s")
-    mean_peak_rotation_ratio: list[float | None] = fact("mean of the peak rotation over the critical rotation, at each duration")
+    mean_peak_rotation_ratio: list[float | None] = fact("mean ratio of the peak rotation to the critical rotation, at each duration")
     deviation_peak_rotation_ratio: list[float | None] = fact(
-        "standard deviation of the peak rotation over the critical rotation, at each duration"
+        "standard deviation of the ratio of the peak rotation to the critical rotation, at each duration"
     )
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each duration")
-    uplift_probability: list[float | None] = fact("share of the motions that make the structure rock, at each duration")
+    uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each duration")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
     confidence: float = fact("level of these intervals")
-    count: list[int] = fact("motions with a result, at each level")
+    count: list[int] = fact("number of motions with a result, at each duration")
     failed: int = fact("runs without a result")
-    collapsed: list[int] = fact("motions that cause collapse, at each")
-    uplifted: list[int] = fact("number of motions that make the structure rock, at each duration")
+    collapsed: list[int] = fact("number of motions that cause collapse, at each duration")
+    uplifted: list[int] = fact("number of motions under which rocking starts, at each duration")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
-    median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
-    conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
-    handed_over: int = maybe("runs that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
+    critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
+    median_pga_g: list[float | None] = fact("median peak acceleration of the motions, at each duration", "g")
+    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
+    handed_over: int = maybe(
+        "number of runs that were decided with rigid contacts, because joints slide or hinges form at other joints", source="Moreau 1988"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The least and greatest share of motions that bring it down; open unless all runs agree."""
@@ -291,7 +332,7 @@ class OverDurations(KindResults):
         outcome: Outcome = "stands" if most == 0.0 else "collapses" if least == 1.0 else "open"
         text = f"{100.0 * least:.3g} % of the motions of {short:g} s"
         if len(known) > 1:
-            text += f" and {100.0 * most:.3g} % of those of {long:g} s"
+            text += f" and {100.0 * most:.3g} % of the motions of {long:g} s"
         return judge(f"{text} cause collapse.", None, None, "probability", outcome, violated=self.conditions.violated)
 
 
@@ -305,29 +346,31 @@ class Resonance(KindResults):
     cap_g: float = fact("cap of the ground acceleration", "g")
     cap_ratio: float = fact("cap over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
-    half_cycles: int = fact("changes of sign of the motion")
-    collapse_time_s: float | None = fact("time from which its rotation is past recovery", "s")
+    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
+    half_cycles: int = fact("number of changes of sign of the motion")
+    collapse_time_s: float | None = fact("time after which the rotation can no longer recover", "s")
     switch_times_s: list[float] = fact("when the motion changes sign", "s")
     switch_spacing_s: list[float] = fact("time between them", "s")
-    peak_rotation_rad: list[float] = fact("rotation at the start and at each change of sign", "rad")
+    peak_rotation_rad: list[float] = fact("rotation at the start, and at each change of sign of the motion", "rad")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    conditions: Conditions = fact("under that motion: whether blocks slide or hinges form elsewhere")
+    conditions: Conditions = fact("whether blocks slide or hinges form at other joints under this motion")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
-        "of a block, by number of half cycles: least ratio of the cap to the uplift acceleration that causes collapse within that number"
+        "for a block, by number of half cycles: least ratio of the acceleration cap to the uplift acceleration at which "
+        "collapse occurs within this number"
     )
-    least_cap_g: float | None = maybe("of a block: cap above which the rotation grows; null where its toes differ", "g")
-    least_cap_ratio: float | None = maybe("least cap over the uplift acceleration")
+    least_cap_g: float | None = maybe("for a block: least acceleration cap at which the rotation grows; null if the two toes differ", "g")
+    least_cap_ratio: float | None = maybe("least acceleration cap divided by the uplift acceleration")
     least_cap_ratios: list[list[float]] = maybe(
-        "least caps over the uplift acceleration, by aspects (rows) and initial ratios", source="thesis Fig. 6-3"
+        "least acceleration caps divided by the uplift acceleration, for each aspect (rows) and initial ratio", source="thesis Fig. 6-3"
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
-    initial_ratios: list[float] = maybe("their initial rotations over the critical one", source="thesis Fig. 6-3")
-    impulse_amplitude_g: float = maybe("of a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
+    initial_ratios: list[float] = maybe("rotations at the start, divided by the critical rotation", source="thesis Fig. 6-3")
+    impulse_amplitude_g: float = maybe("for a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
     share_of_starts_that_add: dict[str, float] = maybe(
-        "share of the starts at which an impulse adds energy, by its period over the natural one", source="thesis Fig. 6-4"
+        "share of the initial states in which an impulse adds energy, for each ratio of its period to the natural period",
+        source="thesis Fig. 6-4",
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -340,9 +383,14 @@ class Resonance(KindResults):
         else:
             outcome = "stands" if least is not None and self.cap_g < least else "open"
             does = f"does not cause collapse within {self.half_cycles} half cycles"
-        known = "" if least is None else f"; above {least:.3g} g its rotation grows"
+        known = "" if least is None else f"; above {least:.3g} g the rotation grows"
         return judge(
-            f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome, violated=self.conditions.violated
+            f"The worst motion with accelerations up to {self.cap_g:.3g} g {does}{known}.",
+            self.cap_g,
+            least,
+            "g",
+            outcome,
+            violated=self.conditions.violated,
         )
 
 
@@ -350,29 +398,35 @@ class RuleSpectrum(ResultModel):
     """Sizes that overturn by an impact rule."""
 
     rule: str = fact("word of [joints] restitution")
-    restitution: float = fact("rate after over before an impact, held between 0 and 1")
+    restitution: float = fact("coefficient of restitution (angular velocity after / before impact), limited to 0 to 1")
     overturned: int = fact("sizes that collapse")
 
 
 class RockingSpectrum(KindResults):
     """rocking-spectrum: greatest rotation of blocks or arches of many sizes under a motion."""
 
-    family: list[str] = fact("the families: slenderness of blocks, or the shape of the arch")
-    overturned: list[int] = fact("members of each family that collapse")
-    longest_overturning_period_s: list[float | None] = fact("longest 2 pi/p among them; null: none", "s")
-    size_m: list[float] = fact("sizes: half-diagonal of the blocks, radius of the arches", "m")
+    family: list[str] = fact("families of structures: slenderness of the blocks, or shape of the arch")
+    overturned: list[int] = fact("number of members of each family that collapse")
+    longest_overturning_period_s: list[float | None] = fact(
+        "longest period 2 pi/p among the members that collapse; null if none collapses", "s"
+    )
+    size_m: list[float] = fact("sizes: half-diagonals of the blocks, or radii of the arches", "m")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
-    conditions: list[Conditions] = fact("of each family: in how many sizes blocks slide or hinges form elsewhere")
-    by_rule: list[RuleSpectrum] = maybe("by each impact rule, where their c_v differ by more than 1.3")
-    decided_by_rule: int = maybe("sizes whose outcome the impact rule decides")
+    conditions: list[Conditions] = fact("for each family: number of sizes in which blocks slide or hinges form at other joints")
+    by_rule: list[RuleSpectrum] = maybe(
+        "spectrum by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
+    )
+    decided_by_rule: int = maybe("number of sizes whose outcome depends on the impact rule")
 
     def judged(self, demand: Demand) -> Verdict:
         """How many collapse; a spectrum is about no one building."""
         total = len(self.family) * len(self.size_m)
         violated = [f"{name}: {text}" for name, one in zip(self.family, self.conditions, strict=True) for text in one.violated]
         if self.decided_by_rule:
-            violated.append(f"The impact rule decides the outcome of {self.decided_by_rule} sizes.")
-        return judge(f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.", violated=violated)
+            violated.append(f"The outcome of {self.decided_by_rule} sizes depends on the impact rule.")
+        return judge(
+            f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes that were calculated.", violated=violated
+        )
 
 
 class HarmonicMap(KindResults):
@@ -382,21 +436,23 @@ class HarmonicMap(KindResults):
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     frequencies_Hz: list[float] = fact("frequencies", "Hz")
     frequency_ratios: list[float] = fact("omega/p of the frequencies")
-    lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null if none overturns", "g")
-    safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
+    lowest_overturning_amplitude_g: list[float | None] = fact(
+        "lowest amplitude that causes collapse, at each frequency; null if none does", "g"
+    )
+    safe_pocket_cells: int = fact("number of cells of the map that are safe although a lower amplitude causes collapse")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
-    handed_over: int = maybe("cells of the map that rigid contacts decided, as joints slide or hinges form elsewhere", source="Moreau 1988")
+    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all cells of the map")
+    handed_over: int = maybe(
+        ("number of cells of the map that were decided with rigid contacts, because joints slide or hinges form at other joints"),
+        source="Moreau 1988",
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""
-        failing = [a for a in self.lowest_overturning_amplitude_g if a is not None]
-        if not failing:
-            return judge("No harmonic motion of the map causes collapse.", None, None, "g", violated=self.conditions.violated)
-        return judge(
-            f"The lowest harmonic amplitude that causes collapse is {min(failing):.3g} g.",
-            None,
-            min(failing),
-            "g",
-            violated=self.conditions.violated,
+        least = min((a for a in self.lowest_overturning_amplitude_g if a is not None), default=None)
+        text = (
+            "No harmonic motion of the map causes collapse."
+            if least is None
+            else f"The lowest harmonic amplitude that causes collapse is {least:.3g} g."
         )
+        return judge(text, None, least, "g", violated=self.conditions.violated)

@@ -100,11 +100,11 @@ def prepare(out: Path) -> None:
     """Refuse early, before a long run, what could not be written after it."""
     out = Path(os.path.abspath(out))
     if Path.cwd().is_relative_to(out):
-        raise StoreError(f"{out}: holds the current folder; name a folder for the results alone, such as --out results")
+        raise StoreError(f"{out}: this folder contains the current folder. Give a folder for the results only, such as --out results")
     if os.path.ismount(out):
-        raise StoreError(f"{out}: is a mounted file system, which cannot be replaced; name a folder within it with --out")
+        raise StoreError(f"{out}: this folder is a mounted file system and cannot be replaced. Give a folder inside it with --out")
     if len(os.fsencode(out.name)) > LONGEST_NAME:
-        raise StoreError(f"{out}: the name has more than {LONGEST_NAME} bytes; name a shorter one with --out")
+        raise StoreError(f"{out}: the name has more than {LONGEST_NAME} bytes. Give a shorter name with --out")
     _refuse_no_folder(out)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -140,7 +140,7 @@ class NewFolder:
             if error is None:
                 self._put()
         except OSError as wrong:
-            raise StoreError(f"{out}: results could not be written: {reason(wrong)}") from None
+            raise StoreError(f"{out}: the results could not be written: {reason(wrong)}") from None
         finally:
             # what was written here by this process; after an exchange the scratch folder holds what was there before
             if error is not None or not self._done:
@@ -148,7 +148,7 @@ class NewFolder:
         if isinstance(error, StoreError):  # of a file inside the scratch folder: name the place the user knows
             raise StoreError(str(error).replace(str(scratch), str(out))) from None
         if isinstance(error, OSError):
-            raise StoreError(f"{out}: results could not be written: {reason(error)}") from None
+            raise StoreError(f"{out}: the results could not be written: {reason(error)}") from None
 
     _done = False
 
@@ -163,7 +163,7 @@ class NewFolder:
             if strange or (os.path.lexists(out) and not written.is_plain_folder(out)):
                 self.place = written.beside(out)
                 log.warning(
-                    "%s: holds '%s', which extrados did not write or which was changed since; the results are in %s",
+                    "%s: this folder contains '%s', which extrados did not write or which was changed later. The results are in %s",
                     out,
                     strange[0] if strange else out.name,
                     self.place,
@@ -176,12 +176,12 @@ class NewFolder:
                 if before is not None and not written.remove(before):
                     kept = written.beside(out)  # it came while we looked
                     before.rename(kept)
-                    log.warning("%s: files put there while results were written are in %s", out, kept)
+                    log.warning("%s: files that were added while the results were written are in %s", out, kept)
 
 
 def _refuse_no_folder(out: Path) -> None:
     if os.path.lexists(out) and not written.is_plain_folder(out):
-        raise StoreError(f"{out}: is not a folder; name another with --out")
+        raise StoreError(f"{out}: this is not a folder. Give another name with --out")
 
 
 def reason(error: OSError) -> str:
@@ -233,7 +233,7 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
         # names of files may hold bytes that are no text; what replaces them is JSON for the same
         (folder / SUMMARY).write_text(text + "\n", encoding="utf-8", errors="backslashreplace")
     except OSError as error:
-        raise StoreError(f"{folder}: results could not be written: {reason(error)}") from None
+        raise StoreError(f"{folder}: the results could not be written: {reason(error)}") from None
 
 
 def csv_parts(table: TableData) -> Iterator[str]:
@@ -244,7 +244,7 @@ def csv_parts(table: TableData) -> Iterator[str]:
         units = [table.units.get(name, "") for name in names]
         columns = [np.asarray(column) for column in piece.values()]
         if len({len(column) for column in columns}) > 1:
-            raise ValueError(f"columns of unlike length: {', '.join(names)}")
+            raise ValueError(f"columns have different lengths: {', '.join(names)}")
         if number == 0:
             yield _lines([[cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]])
         for first in range(0, len(columns[0]) if columns else 0, CSV_ROWS):
@@ -394,7 +394,7 @@ class Stored:
         for row in self.analyses:
             if row["name"] == name:
                 return row
-        raise KeyError(f"{self._place}no analysis '{name}'; there are {', '.join(a['name'] for a in self.analyses)}")
+        raise KeyError(f"{self._place}no analysis has the name '{name}'; the names are: {', '.join(a['name'] for a in self.analyses)}")
 
     def _read(self, analysis: dict[str, Any]) -> KindResults:
         try:
@@ -403,7 +403,7 @@ class Stored:
             first = error.errors()[0] if isinstance(error, ValidationError) else {"loc": [error], "msg": "unknown kind"}
             place = ".".join(str(part) for part in first["loc"])
             raise StoreError(
-                f"{self._place}the results of '{analysis['name']}' are not those of this version: {place}: {first['msg']}"
+                f"{self._place}the results of '{analysis['name']}' do not agree with this version of extrados: {place}: {first['msg']}"
             ) from None
 
     def series(self, analysis: str, name: str) -> list[Array]:
@@ -422,7 +422,7 @@ class Stored:
         self.analysis(analysis)
         there = self.arrays[analysis]
         if name not in there:
-            raise KeyError(f"{self._place}{analysis} has no array '{name}'; there are {', '.join(there) or 'none'}")
+            raise KeyError(f"{self._place}{analysis} has no array '{name}'; the arrays are: {', '.join(there) or 'none'}")
         return np.asarray(there[name].data)
 
     def dataset(self, analysis: str) -> Any:
@@ -499,7 +499,7 @@ def _check_shape(summary: Any) -> None:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))
         raise ValueError(
-            f"{SUMMARY} is not a result of this version: {place}: {first['msg'].partition(' or instance')[0].lower()}"
+            f"{SUMMARY} was not written by this version of extrados: {place}: {first['msg'].partition(' or instance')[0].lower()}"
         ) from None
 
 
@@ -514,7 +514,7 @@ def _on_disk(path: Path, group: str, title: str, length: int, dtype: np.dtype) -
             except Unreadable as error:
                 raise StoreError(f"{path}: cannot be read: {error}") from None
             if rows.shape != (end - first,) or rows.dtype != dtype:
-                raise StoreError(f"{path}: '{title}' was changed since the folder was read")
+                raise StoreError(f"{path}: '{title}' was changed after the folder was read")
             yield rows
 
     return Streamed(length, dtype, pieces)
@@ -529,7 +529,7 @@ def _array(path: Path, group: str, title: str, found: dict[str, Any]) -> Array:
         data = np.array([str(text) for text in data], dtype=object).reshape(found["shape"])
     dims, marks = (tuple(str(text) for text in found[key]) for key in ("dims", "marks"))
     if len(dims) != data.ndim:
-        raise ValueError(f"'{title}' has {data.ndim} axes, and names of {len(dims)}")
+        raise ValueError(f"'{title}' has {data.ndim} axes, but {len(dims)} names of axes were given")
     return Array(data, dims, *marks)
 
 
@@ -541,7 +541,7 @@ def read(folder: str | Path) -> Stored:
         summary = json.loads(files.read(SUMMARY, LARGEST_SUMMARY, folder).text())
         _check_shape(summary)
         if files.sum_of(STORE, folder) != summary["files"].get(STORE):
-            raise StoreError(f"{place}: does not match its checksum in {SUMMARY}; the file is damaged")
+            raise StoreError(f"{place}: this file does not agree with its checksum in {SUMMARY}, so it is damaged")
         small = place.stat().st_size <= SMALL
         found = read_contained(
             f"{READER}:parse_arrays",
@@ -555,12 +555,12 @@ def read(folder: str | Path) -> Stored:
             name: {title: _array(place.absolute(), name, title, one) for title, one in group.items()} for name, group in found.items()
         }
         if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
-            raise StoreError(f"{place}: holds '{min(untold)}', of which {SUMMARY} says nothing")
+            raise StoreError(f"{place}: this folder contains '{min(untold)}', which is not listed in {SUMMARY}")
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, partial(dict, head), summary["analyses"], arrays)
     except files.BadFile as error:
-        raise StoreError(f"{error}; {folder} holds no results of extrados") from None
+        raise StoreError(f"{error}; {folder} contains no results of extrados") from None
     except Unreadable as error:
         raise StoreError(f"{place}: {error}") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
-        raise StoreError(f"{folder}: results cannot be read: {error}") from None
+        raise StoreError(f"{folder}: the results cannot be read: {error}") from None

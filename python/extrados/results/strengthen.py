@@ -10,20 +10,20 @@ from extrados.schema.quantities import engineering
 class GoverningRange(ResultModel):
     """A mechanism that governs over a range of the size of an intervention."""
 
-    first: float = fact("size at which it begins to govern, in the unit of the intervention")
-    last: float = fact("size at which another one begins to govern, or the curve ends")
+    first: float = fact("size from which this mechanism governs, in the unit of the intervention")
+    last: float = fact("size at which another mechanism begins to govern, or at which the curve ends")
     capacity_first: float = fact("capacity at the first size, in the unit of the target")
     capacity_last: float = fact("capacity at the last size, in the unit of the target")
-    direction: str = fact("sense of the load: +x or -x; in space its direction in plan")
+    direction: str = fact("direction of the load: +x or -x; in space, its angle in plan")
     mechanism: str = fact("the mechanism in words")
 
 
 class AnchorageCheck(ResultModel):
     """One check of bar and anchorage under the required force."""
 
-    part: str = fact("bar, bearing of the plate, punching of the wall, or pull-out of the anchor")
-    capacity_N: float | None = fact("capacity with the given sizes; null where the size follows from the force", "N")
-    needed: float = fact("least size that carries the required force")
+    part: str = fact("part of the anchorage: bar, bearing of the plate, punching of the wall, or pull-out of the anchor")
+    capacity_N: float | None = fact("capacity with the given sizes; null if the size is calculated from the force", "N")
+    needed: float = fact("least size at which this part carries the required force")
     size: str = fact("which size, with its unit")
 
 
@@ -33,7 +33,9 @@ class OtherVerdict(ResultModel):
     strategy: str = fact("the strategy in words")
     before: Outcome = fact("verdict on the existing building")
     after: Outcome = fact("verdict on the strengthened building")
-    margin_before: float | None = fact("critical scale factor of the hazard before, or its lower end; null: not known")
+    margin_before: float | None = fact(
+        "critical scale factor of the hazard before the intervention, or the lower end of its range; null if not known"
+    )
     margin_after: float | None = fact("the same after")
 
 
@@ -42,39 +44,45 @@ class Intervention(ResultModel):
 
     name: str = fact("its name")
     kind: Literal["tie", "strut", "spring", "ring-beam", "hoop", "chain", "change"] = fact(
-        "tie, strut, spring that works both ways, ring beam with its weight, hoop or chain in space, or change of a key"
+        "kind of intervention: tie, strut, spring in tension and compression, ring beam with its weight, hoop or chain "
+        "in space, or change of a key"
     )
-    key: str = maybe("key of the deck that is changed")
-    place: str = fact("place, or value from which the key is changed")
-    start_m: list[float] = maybe("[x, y], in space [x, y, z], of the first end of a tie; of a hoop a point at its height", "m")
-    via_m: list[list[float]] = maybe("points over which a chain runs", "m")
+    key: str = maybe("key of the deck that the intervention changes")
+    place: str = fact("place of the intervention, or existing value of the changed key")
+    start_m: list[float] = maybe("first end of a tie: [x, y], in space [x, y, z]; for a hoop, a point at its height", "m")
+    via_m: list[list[float]] = maybe("points through which a chain runs", "m")
     stiffness_N_m: float = maybe(
-        "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section", "N/m"
+        (
+            "axial stiffness EA/L of the tie in the runs: that of the deck; if the deck gives none, that of a steel bar with "
+            "the least section"
+        ),
+        "N/m",
     )
-    end_m: list[float] = maybe("of its other end; none of a hoop", "m")
+    end_m: list[float] = maybe("second end of the tie; not given for a hoop", "m")
     unit: str = fact("unit of the sizes")
-    meets_target: bool = fact("whether any size considered meets the target")
-    required_size: float | None = fact("least size that meets the target, in `unit`; null: none does")
-    required_N: float | None = maybe("least yield force of a tie; null: none suffices", "N")
-    depth_m: float = maybe("depth out of plane for which the force of a tie holds", "m")
+    meets_target: bool = fact("whether any of the calculated sizes meets the target")
+    required_size: float | None = fact("least size that meets the target, in `unit`; null if none does")
+    required_N: float | None = maybe("least yield force of the tie that meets the target; null if none does", "N")
+    depth_m: float = maybe("depth out of plane to which the tie force refers", "m")
     greatest_capacity: float | None = fact(
-        "greatest value reached, in the unit of the target; null: no collapse mechanism is left, or nothing was reached"
+        "greatest value reached, in the unit of the target; null if no collapse mechanism remains, or without a result"
     )
     capacity_after: float | None = fact("value with the required size, in the unit of the target")
-    safety_factor_after: float | None = fact("value with the required size over the demand")
-    next_mechanism: str = fact("mechanism that governs with the required size, or with the greatest one if none suffices")
+    safety_factor_after: float | None = fact("safety factor with the required size: value divided by demand")
+    next_mechanism: str = fact("mechanism that governs with the required size; if no size suffices, with the greatest size")
     bound: Literal["exact", "upper"] | None = fact(
-        "capacity after as a bound: exact; upper, where pressed joints slide (dilatant friction); null: an estimate by runs"
+        "type of the capacity after strengthening: exact; upper bound, if joints in compression slide (dilatant "
+        "friction); null for an estimate by runs"
     )
-    ranges: list[GoverningRange] = fact("mechanisms that govern as the size grows, in order")
+    ranges: list[GoverningRange] = fact("governing mechanisms in order of increasing size")
     length_m: float = fact("length of tie", "m")
     force_N: float = fact("force of tie", "N")
-    volume_m3: float = fact("volume of masonry added or injected", "m^3")
-    cost: float | None = fact("cost by the weights of the deck; null where the target is not met, or no weight is of such a change")
-    anchorage: list[AnchorageCheck] = maybe("bar and anchorage under the required force")
+    volume_m3: float = fact("volume of masonry that is added or injected", "m^3")
+    cost: float | None = fact("cost by the weights in the deck; null if the target is not met, or if no weight applies to this change")
+    anchorage: list[AnchorageCheck] = maybe("checks of bar and anchorage under the required force")
     adverse: list[str] = fact("adverse effects")
-    verdicts: list[OtherVerdict] = maybe("verdicts of all strategies before and after")
-    reason: str = fact("why it does not suffice, or has no result; empty otherwise")
+    verdicts: list[OtherVerdict] = maybe("verdicts of all strategies before and after the intervention")
+    reason: str = fact("reason why the intervention does not suffice or has no result; empty otherwise")
 
 
 class CombinedTie(ResultModel):
@@ -91,11 +99,11 @@ class FragilityPair(ResultModel):
     name: str = fact("the intervention")
     levels: list[float] = fact("factors on the motions")
     motions: int = fact("number of motions")
-    before: list[float | None] = fact("share of the motions that collapse the existing building")
-    before_low: list[float] = fact("lower end of its 95 % score interval", source="Wilson 1927")
+    before: list[float | None] = fact("share of the motions that cause collapse of the existing building")
+    before_low: list[float] = fact("lower end of the 95 % score interval of the share that collapses", source="Wilson 1927")
     before_high: list[float] = fact("upper end", source="Wilson 1927")
-    after: list[float | None] = fact("share of the motions that collapse the strengthened building")
-    after_low: list[float] = fact("lower end of its 95 % score interval", source="Wilson 1927")
+    after: list[float | None] = fact("share of the motions that cause collapse of the strengthened building")
+    after_low: list[float] = fact("lower end of the 95 % score interval of the share that collapses", source="Wilson 1927")
     after_high: list[float] = fact("upper end", source="Wilson 1927")
 
 
@@ -103,22 +111,24 @@ class Strengthen(KindResults):
     """strengthen: alternatives that meet a target, side by side."""
 
     by: str = fact("analysis that measures the target")
-    quantity: str = fact("quantity of the target in words")
-    unit: str = fact("unit of target and values; empty of a factor or a probability")
+    quantity: str = fact("name of the target quantity in words")
+    unit: str = fact("unit of the target and of the values; empty for a factor or a probability")
     target: float = fact("the target, in `unit`")
-    demand: float | None = fact("demand to which safety factors refer, in `unit`; null: none")
+    demand: float | None = fact("demand to which safety factors refer, in `unit`; null without a demand")
     direction: Literal["both", "+x", "-x"] | None = fact(
-        "sense of the load of limit analysis; null in space, where `ranges` name directions"
+        "direction of the load in limit analysis; null in space, where `ranges` gives the directions"
     )
-    value_before: float | None = fact("value of the existing building; null: no result")
-    safety_factor_before: float | None = fact("value of the existing building over the demand")
-    met_before: bool = fact("whether the existing building meets the target")
-    mechanism_before: str = fact("governing mechanism of the existing building")
-    interventions: list[Intervention] = fact("the alternatives, the cheapest that meets the target first")
-    combination: list[CombinedTie] = maybe("combination of ties of least total force, if more than one tie carries a force")
+    value_before: float | None = fact("value of the existing building; null without a result")
+    safety_factor_before: float | None = fact("safety factor of the existing building: value divided by demand")
+    met_before: bool = fact("whether the existing building already meets the target")
+    mechanism_before: str = fact("governing collapse mechanism of the existing building")
+    interventions: list[Intervention] = fact("alternative interventions; the cheapest that meets the target comes first")
+    combination: list[CombinedTie] = maybe("combination of ties with the least total force, if more than one tie carries a force")
     combination_cost: float = maybe("its cost")
-    combination_meets_target: bool = maybe("whether the combination meets the target, without dilatancy too where pressed joints slide")
-    fragility: FragilityPair = maybe("fragility before and after, of the cheapest intervention")
+    combination_meets_target: bool = maybe(
+        "whether the combination meets the target; if joints in compression slide, also without dilatancy"
+    )
+    fragility: FragilityPair = maybe("fragility before and after the cheapest intervention")
 
     def judged(self, demand: Demand) -> Verdict:
         """The existing building against the target; a target is no demand, so that no outcome follows."""
@@ -133,12 +143,12 @@ class Strengthen(KindResults):
         """The conclusion in two sentences."""
         unit = f" {self.unit}" if self.unit else ""
         now = "no value" if self.value_before is None else f"{self.value_before:.3g}{unit}"
-        text = f"{self.quantity} of the existing building: {now}; target {self.target:.3g}{unit}."
+        text = f"{self.quantity} of the existing building: {now}; the target is {self.target:.3g}{unit}."
         if self.met_before:
-            return f"{text} The target is met without an intervention."
+            return f"{text} The existing building meets the target without an intervention."
         best = self.best
         if best is None:
-            return f"{text} No intervention considered meets the target."
+            return f"{text} None of the calculated interventions meets the target."
         word = "Intervention" if best.cost is None else "Intervention of least relative cost"
         return f"{text} {word} that meets it: {best.name}, {size_told(best)}."
 

@@ -51,9 +51,9 @@ def read_uncertainties() -> list[ModelUncertainty]:
         ]
 
 
-def uncertainties_of(analysis: str, comparison: str = "experiment") -> list[ModelUncertainty]:
-    """The entries of an analysis of this kind, by quantity; empty where nothing was compared in this way."""
-    return [row for row in read_uncertainties() if analysis in row.analyses and row.comparison == comparison]
+def uncertainties_of(analysis: str) -> list[ModelUncertainty]:
+    """The entries of an analysis of this kind against experiments, by quantity; empty if none was compared."""
+    return [row for row in read_uncertainties() if analysis in row.analyses and row.comparison == "experiment"]
 
 
 def collapse_probability(margin: float, row: ModelUncertainty) -> tuple[float, float, float]:

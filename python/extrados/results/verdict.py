@@ -36,15 +36,16 @@ class Verdict(ResultModel):
     "not-applicable", the deck holds no demand against the capacity, or the analysis asks no such question.
     """
 
-    demand: float | None = fact("demand of the deck on the building; null where the deck has none")
-    capacity: float | None = fact("capacity of the building; null where the analysis gives none")
+    demand: float | None = fact("demand on the building, from the deck; null if the deck gives none")
+    capacity: float | None = fact("capacity of the building; null if the analysis gives none")
     unit: str = fact("unit of demand and capacity")
     ratio: float | None = fact("safety factor: capacity / demand; null without a demand or a capacity")
-    outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
+    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open or not-applicable")
     bound: Bound | None = fact(
-        "capacity as a bound: exact, upper (true capacity is at most this), lower (at least this); null: an estimate"
+        "type of the capacity: exact; upper bound (true capacity is at most this value); lower bound (at least this "
+        "value); null for an estimate"
     )
-    violated: list[str] = fact("assumptions of the analysis that were checked and do not hold; the outcome is then open")
+    violated: list[str] = fact("violated assumptions of the analysis that were checked; the outcome is then open")
     statement: str = fact("the verdict in one or two sentences")
 
 
@@ -79,7 +80,7 @@ class KindResults(ResultModel):
         """Verdict of the results under the demand; TypeError of a kind that concludes nothing."""
         found = self.judged(demand)
         if found is None:
-            raise TypeError(f"the results of {type(self).__name__} have no verdict")
+            raise TypeError(f"the results of {type(self).__name__} contain no verdict")
         return found
 
 
@@ -89,18 +90,18 @@ Model = TypeVar("Model", bound=KindResults)
 def as_model(results: KindResults, model: type[Model]) -> Model:
     """Results as a model of their kind; TypeError where they are of another."""
     if not isinstance(results, model):
-        raise TypeError(f"the results are of {type(results).__name__}, not of {model.__name__}")
+        raise TypeError(f"these are results of {type(results).__name__}, not of {model.__name__}")
     return results
 
 
 class SelfWeight(KindResults):
     """Results of any analysis of a building that collapses under its own weight, which a certificate proves."""
 
-    collapse_acceleration_g: float = fact("0: the building carries no horizontal acceleration", "g")
-    safety_factor: float = fact("0: the building collapses before the demand acts")
-    certificate: str = fact("joints or blocks at which equilibrium fails, and the certificate")
+    collapse_acceleration_g: float = fact("always 0: the building carries no horizontal acceleration", "g")
+    safety_factor: float = fact("always 0: the building collapses before the demand acts")
+    certificate: str = fact("certificate of collapse, with the joints or blocks at which equilibrium fails")
     neglected: list[str] = fact(
-        "strengths, restraints and pressures of the deck that the certificate neglects; with any the outcome is open"
+        "strengths, restraints and pressures of the deck that the certificate neglects; if there are any, the outcome is open"
     )
 
     def statement(self) -> str:
@@ -108,7 +109,10 @@ class SelfWeight(KindResults):
         if not self.neglected:
             return f"The structure cannot stand: it collapses under its own weight. {self.certificate}."
         strengths = " and ".join(self.neglected)
-        return f"The structure stands only by {strengths}. Without them it collapses under its own weight. {self.certificate}."
+        return (
+            f"The structure can stand only with the contribution of {strengths}. Without it the structure collapses under its "
+            f"own weight. {self.certificate}."
+        )
 
     def judged(self, demand: Demand) -> Verdict:
         """cannot-stand; open where the deck gives strengths that the proof neglects."""
@@ -159,8 +163,9 @@ def judge(
 def capacity_alone(carried: str, capacity: float, unit: str, bound: Bound | None = None, violated: Sequence[str] = ()) -> Verdict:
     """A base shear that a structure carries which vibrates and yields: no verdict follows from the peak ground acceleration."""
     text = (
-        f"{carried} This is a capacity without a verdict: the structure amplifies the motion and yields, so that the peak ground "
-        "acceleration is no demand on it. A displacement demand by the response spectrum gives a verdict: give the seismic action in [code]."
+        f"{carried} This is a capacity without a verdict: the structure amplifies the motion and yields, so the peak "
+        "ground acceleration is not comparable with this capacity. To get a verdict from a displacement demand by the "
+        "response spectrum, give the seismic action in [code]."
     )
     return judge(text, None, capacity, unit, "not-applicable", bound, violated)
 
@@ -171,7 +176,7 @@ def judge_acceleration(capacity: float, demand: Demand, bound: Bound | None = No
     name = {"upper": "Upper bound of the collapse acceleration", "lower": "Lower bound of the collapse acceleration"}
     carried = f"{name.get(bound or '', 'Collapse acceleration')} {capacity:.3g} g (horizontal, constant)"
     if peak is None:
-        return judge(f"{carried}; the deck holds no single motion to compare with.", None, capacity, "g", None, bound, violated)
+        return judge(f"{carried}. The deck gives no single motion for comparison.", None, capacity, "g", None, bound, violated)
     word = "below" if peak < capacity else "at or above"
     text = f"{carried}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {word} this value."
     return judge(text, peak, capacity, "g", None, bound, violated)

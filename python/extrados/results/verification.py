@@ -12,36 +12,38 @@ Method = Literal["N2", "capacity-spectrum", "coefficient"]
 class IdealisedCurve(ResultModel):
     """A capacity curve as an elastic-plastic oscillator; displacements are those of the control point."""
 
-    push: str = fact("sense of the push, or its name")
+    push: str = fact("sense of the push, or name of the pushover")
     equivalent_mass_kg: float = fact("m* = sum m phi", "kg", source="NTC 2018 C7.3.4.2")
-    participation_factor: float = fact("Gamma = m*/sum m phi^2, with phi = 1 at the control point")
-    mass_ratio: float = fact("participating mass m* Gamma over all masses")
+    participation_factor: float = fact("participation factor: Gamma = m*/sum m phi^2, with phi = 1 at the control point")
+    mass_ratio: float = fact("mass ratio: participating mass m* Gamma divided by the total mass")
     period_s: float = fact("T* = 2 pi sqrt(m*/k*)", "s")
     yield_load_N: float = fact("base shear of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
-    ultimate_displacement_m: float = fact("displacement of collapse, up to which the areas are equal", "m")
+    ultimate_displacement_m: float = fact(
+        "ultimate displacement: displacement at collapse, up to which both curves enclose equal areas", "m"
+    )
     ended_by: Literal["drop", "drift", "end"] = fact(
-        "collapse by a drop of 20 % of the base shear, by the limit drift of all piers of a storey of a wall, or the end of the curve"
+        "end of the curve: base shear decreased by 20 %, all piers of one storey of a wall at their limit drift, or end of the calculation"
     )
 
 
 class DisplacementCheck(ResultModel):
     """Displacement demand and capacity of one curve at one limit state."""
 
-    push: str = fact("sense of the push, or its name")
+    push: str = fact("sense of the push, or name of the pushover")
     limit_state: str = fact("limit state: SLO, SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; ULS")
-    demand_m: float | None = fact("displacement demand of the control point; null without one, or beyond collapse", "m")
-    capacity_m: float | None = fact("displacement capacity of the control point; null where the code gives none", "m")
-    strength_ratio: float | None = fact("q*: elastic force over the yield force; null without a demand")
-    greatest_strength_ratio: float | None = fact("greatest q* of the code; null without a limit")
+    demand_m: float | None = fact("displacement demand at the control point; null without a demand, or beyond collapse", "m")
+    capacity_m: float | None = fact("displacement capacity at the control point; null if the code gives none", "m")
+    strength_ratio: float | None = fact("strength ratio q*: elastic force divided by yield force; null without a demand")
+    greatest_strength_ratio: float | None = fact("greatest q* that the code allows; null without a limit")
     factor: float | None = fact(
-        "factor on the seismic action at which the check is just satisfied, by displacement and q*; null without one"
+        "factor on the seismic action at which the check of displacement and q* is just satisfied; null if not found"
     )
-    demand_pga_g: float | None = fact("peak ground acceleration of the action, a_g S", "g")
-    capacity_pga_g: float | None = fact("the same times the factor (alpha_PGA is their ratio)", "g")
-    return_period_years: float | None = fact("return period of the action; null where not known", "year")
+    demand_pga_g: float | None = fact("peak ground acceleration of the seismic action: a_g S", "g")
+    capacity_pga_g: float | None = fact("peak ground acceleration that is carried: a_g S times the factor; their ratio is alpha_PGA", "g")
+    return_period_years: float | None = fact("return period of the seismic action; null if not known", "year")
     capacity_return_period_years: float | None = fact(
-        "return period of the action that is carried, between those of the limit states of [code]; null outside them", "year"
+        ("return period of the action that is carried, interpolated between the limit states of [code]; null outside their range"), "year"
     )
     verdict: Literal["holds", "fails", ""] = fact("verdict of the check; empty without a demand or a capacity")
     clause: str = fact("clauses of demand and capacity")
@@ -50,9 +52,9 @@ class DisplacementCheck(ResultModel):
 class BuildingFragility(ResultModel):
     """Lognormal fragility by N2 over a set of motions, each scaled; its scatter is that of the motions alone."""
 
-    limit_state: str = fact("limit state whose displacement capacity is reached by the first curve")
+    limit_state: str = fact("limit state whose displacement capacity a curve reaches first")
     motions: int = fact("motions that were used")
-    median_pga_g: float = fact("median of the peak ground accelerations that are carried", "g")
+    median_pga_g: float = fact("median of the peak ground accelerations that the building carries", "g")
     dispersion: float = fact("standard deviation of their logarithms")
 
 
@@ -61,15 +63,15 @@ class Verification(ResultModel):
 
     jurisdiction: Jurisdiction = fact("code whose rules decide")
     code: str = fact("code and edition in words")
-    by_default: bool = fact("whether the deck has no [code], so that the rules of NTC 2018 are applied")
+    by_default: bool = fact("whether the deck has no [code]; the rules of NTC 2018 are then applied")
     method: Method = fact("method of the displacement demand")
-    confidence_factor: float | None = fact("factor by which strengths were divided; null without a demand")
+    confidence_factor: float | None = fact("confidence factor by which strengths were divided; null without a demand")
     curves: list[IdealisedCurve] = fact("each curve as an oscillator")
-    checks: list[DisplacementCheck] = fact("each curve at each limit state")
-    zeta_E: float | None = fact("NTC: least factor on the action at SLV; null without a demand", source="NTC 2018 8.3")
+    checks: list[DisplacementCheck] = fact("checks of each capacity curve at each limit state")
+    zeta_E: float | None = fact("zeta_E of NTC: least factor on the seismic action at SLV; null without a demand", source="NTC 2018 8.3")
     nbs_percent: float | None = maybe("NZSEE: %NBS, the least factor", "%")
-    fragility: list[BuildingFragility] = maybe("fragility of the building over the motions of the deck")
-    violated: list[str] = fact("assumptions on the unsafe side that do not hold: a check that holds is then open")
+    fragility: list[BuildingFragility] = maybe("fragility of the building for the motions of the deck")
+    violated: list[str] = fact("unsafe assumptions that were checked and are violated; the outcome is then open if the check is satisfied")
 
     def governing(self) -> DisplacementCheck | None:
         """The check of least factor; None without any."""
@@ -94,7 +96,7 @@ class Verification(ResultModel):
         assert check.factor is not None and check.demand_pga_g is not None and check.capacity_pga_g is not None
         early = self.ended_early(check)
         if early:
-            named = f" The curve ends before the base shear has dropped by 20 %: the capacity is a lower bound.{named}"
+            named = f" The curve ends before the base shear has decreased by 20 %, so the capacity is a lower bound.{named}"
         return judge(
             f"{self.told(check)} {carried}{named}",
             check.demand_pga_g,
@@ -115,7 +117,7 @@ class Verification(ResultModel):
         ratio = ""
         limit = check.greatest_strength_ratio
         if limit is not None and check.strength_ratio is not None and check.factor * check.strength_ratio > 0.999 * limit:
-            ratio = f" (limited by q*: {check.strength_ratio:.3g}, at most {limit:g})"
+            ratio = f", limited by q* ( {check.strength_ratio:.3g}; at most {limit:g})"
         return (
             f"{self.code} at {check.limit_state}: the displacement check {check.verdict} (push {check.push}, {self.method}). "
             f"Demand {demand}, capacity {1e3 * check.capacity_m:.3g} mm; {index} {value}{ratio}; peak ground acceleration "
@@ -128,7 +130,7 @@ class Verification(ResultModel):
             known = [c for c in self.checks if c.demand_m is not None]
             told = ", ".join(f"{1e3 * (c.demand_m or 0.0):.3g} mm at {c.limit_state}, push {c.push}" for c in known)
             return (
-                "ASCE 41 accepts piers by their own drifts (Table 11-4), which could not be read: no verdict."
-                f"{f' Target displacement {told}.' if told else ''}"
+                "ASCE 41 accepts piers by their individual drifts (Table 11-4). This program does not include that table, so "
+                f"there is no verdict.{f' Target displacement {told}.' if told else ''}"
             )
-        return "The code gives no displacement capacity at the limit states of the deck: no verdict."
+        return "The code gives no displacement capacity at the limit states of the deck, so there is no verdict."

@@ -43,7 +43,7 @@ def note(folder: Path, *sums: dict[str, str]) -> None:
     names = sorted({name for one in sums for name in one})
     listed = {name: sorted({one[name] for one in sums if name in one}) for name in names}
     fresh = folder / f"{LIST}.new"
-    fresh.write_text(json.dumps({"about": "checksums of the files that extrados wrote here", "files": listed}), encoding="utf-8")
+    fresh.write_text(json.dumps({"about": "checksums of the files that extrados wrote to this folder", "files": listed}), encoding="utf-8")
     fresh.replace(folder / LIST)
 
 
@@ -129,7 +129,7 @@ def put(scratch: Path, folder: Path, belongs: Callable[[str], bool]) -> dict[str
         taken = os.path.lexists(folder / place) and not is_ours(folder, place, known)
         names[name] = beside(folder / place).relative_to(folder).as_posix() if taken else place
         if names[name] != name:
-            log.warning("%s: was not written by extrados or changed since; the new one is %s", folder / name, names[name])
+            log.warning("%s: this file was not written by extrados or was changed later. The new file is %s", folder / name, names[name])
     fresh = {names[name]: value for name, value in new.items()}
     # noted before it is moved: whoever is killed in between leaves nothing that is taken for a stranger's
     note(folder, {name: value for name, sums in known.items() for value in sums[:1]}, fresh)

@@ -1,9 +1,11 @@
-"""What `extrados check` looks at beyond the words of a deck: whether the building can be made, and how well it fits."""
+"""The checks of `extrados check` beyond the text of a deck: whether the building can be made, and how its blocks fit."""
 
 import csv
 import io
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Place:
-    """One row of the list: what is amiss where, how deep [m], and the key with the value that would mend it."""
+    """One row of the list: kind and place of a gap or overlap, its depth [m], and the key with the value that would repair it."""
 
     what: str
     status: str
@@ -80,7 +82,7 @@ def check_building(deck: Deck) -> Checked:
 
 
 def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":
-    """What of a sound deck's building stands in space, as one of its analyses looks at it."""
+    """The solids and the shell mesh of a valid deck, as its analyses use them."""
     solids, plan = None, None
     for options, building in zip(deck.analyses, deck.buildings, strict=True):
         if options.view == "shell" or as_shell(building, options):
@@ -96,7 +98,7 @@ def _places(inspection: "Inspection") -> list[Place]:
     for status in ("overlap", "open", "closed"):
         for flaw in inspection.of(status):
             mends = inspection.mends(flaw)
-            cure = "draw anew" if mends is None else f'contact_tolerance = "{1e3 * mends:.3g} mm"'
+            cure = "draw this part again" if mends is None else f'contact_tolerance = "{1e3 * mends:.3g} mm"'
             rows.append(Place(flaw.kind, status, inspection.between(flaw), flaw.depth, flaw.place, cure))
         if status == "open":
             for place, gap in inspection.drawing.loose:
@@ -104,7 +106,7 @@ def _places(inspection: "Inspection") -> list[Place]:
                 rows.append(Place("loose end", "loose end", "line and the next line", gap, place, cure))
             for block, level in inspection.levels:
                 x = float(inspection.outlines[block][:, 0].mean())
-                name = f"'{inspection.names[block]}' and nothing below"
+                name = f"'{inspection.names[block]}' and no block below"
                 rows.append(Place("sole", "sole", name, None, (x, level), "foundation_levels"))
     return rows
 
@@ -114,12 +116,9 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
 
     A file there that extrados did not write, or that was changed since, stays, and the new one is put beside it.
     """
-    from extrados.results import written
     from extrados.show.geometry import Mark, draw_survey  # matplotlib takes a third of a second to load
 
     assert checked.inspection is not None
-    folder = Path(os.path.abspath(folder))
-    folder.mkdir(parents=True, exist_ok=True)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["what", "status", "between", "depth_mm", "x_m", "y_m", "mended_by"])
@@ -129,23 +128,32 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
     inspection = checked.inspection
     joints = np.column_stack([inspection.contacts.p, inspection.contacts.q])
     marks = [Mark(row.place, row.depth, row.status, row.between) for row in checked.places]
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
-        scratch = Path(place)
+    with _putting(folder, "geometry") as (scratch, names):
         (scratch / "geometry.csv").write_text(text.getvalue(), encoding="utf-8")
         draw_survey(scratch, "geometry", inspection.outlines, joints, inspection.ground, marks)
+    return names["geometry.png"], names["geometry.csv"]
+
+
+@contextmanager
+def _putting(folder: Path, stem: str) -> Iterator[tuple[Path, dict[str, Path]]]:
+    """A folder for new files whose names begin with `stem`, and where each has come to lie in `folder` after the block: a file there
+    that extrados did not write, or that was changed since, stays, and the new one is put beside it."""
+    from extrados.results import written
+
+    folder = Path(os.path.abspath(folder))
+    folder.mkdir(parents=True, exist_ok=True)
+    found: dict[str, Path] = {}
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        yield Path(place), found
         with written.alone(folder.parent):
-            names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
-    return folder / names["geometry.png"], folder / names["geometry.csv"]
+            found |= {name: folder / put for name, put in written.put(Path(place), folder, lambda name: name.startswith(stem)).items()}
 
 
 def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
     """Plan and elevations of a building with its mesh, or the mesh of a vault in space, into a folder: plan.png (and .svg),
     under the rule of write_check."""
-    from extrados.results import written
     from extrados.show.plan import Elevation, draw_plan, draw_shells
 
-    folder = Path(os.path.abspath(folder))
-    folder.mkdir(parents=True, exist_ok=True)
     walls = []
     for number, wall in enumerate(mesh.walls):
         part = next(p for p in mesh.parts if p.wall == number)
@@ -157,29 +165,20 @@ def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
             if joint.wall == wall.name
         ]
         walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear, joints))
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
-        scratch = Path(place)
+    with _putting(folder, "plan") as (scratch, names):
         if walls:
             draw_plan(scratch, "plan", walls, mesh.levels)
         else:
             parts = [(part.name, mesh.xyz[part.connect], part.thickness) for part in mesh.parts]
             feet = np.concatenate([mesh.xyz[foot.nodes] for foot in mesh.feet])
             draw_shells(scratch, "plan", parts, feet)
-        with written.alone(folder.parent):
-            names = written.put(scratch, folder, lambda name: name.startswith("plan"))
-    return folder / names["plan.png"]
+    return names["plan.png"]
 
 
 def write_solids(solids: "SolidAssembly", folder: Path) -> Path:
     """The picture of solids into a folder: geometry.png (and .svg). What extrados did not write there stays."""
-    from extrados.results import written
     from extrados.show.geometry import draw_stones
 
-    folder = Path(os.path.abspath(folder))
-    folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
-        scratch = Path(place)
+    with _putting(folder, "geometry") as (scratch, names):
         draw_stones(scratch, "geometry", solids.parts, solids.owner, solids.polygon, solids.b < 0)
-        with written.alone(folder.parent):
-            names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
-    return folder / names["geometry.png"]
+    return names["geometry.png"]

@@ -1,4 +1,4 @@
-"""What a run tells of its building for who reads the report: its dimensions, its properties with their units and sources."""
+"""The description of a building for the report: dimensions, and properties with units and sources."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""A live model: a deck whose values change, and whose answers are computed anew only where a change touches them."""
+"""A live model: a deck whose values change, and whose results are calculated again only if a change affects them."""
 
 import copy
 from collections.abc import Callable
@@ -26,14 +26,13 @@ MOST_VIEWS, MOST_MOTIONS, MOST_RESULTS = 64, 16, 32
 
 
 class Live:
-    """A deck with its building, kept alive: `set` a value, ask for an answer.
+    """A deck with its building in memory: `set` a value, then read a result.
 
-    What an analysis reads of the deck (its own table, tables of the building, the motion) is noted while it runs;
-    as long as these have values that it has already seen, its kept result is given. Blocks, meshes and other views of
-    the building are kept likewise. Files that a deck names are read once: `Live` does not look whether they changed.
+    The model records which parts of the deck an analysis reads (its table, tables of the building, the motion). While these
+    parts have values that were already calculated, the kept result is returned. Blocks, meshes and other models of the
+    building are kept in the same way. Files of the deck are read once; later changes of a file are not noticed.
 
-    A Live belongs to one thread at a time: it has no locks, and a call may be made from any thread as long as
-    another has returned. Results that it has given do not change afterwards.
+    A Live has no locks: calls may come from any thread, but only one at a time.
     """
 
     def __init__(self, deck: Deck, threads: int | None = None):
@@ -50,30 +49,30 @@ class Live:
         self.names = store.group_names([options.kind for options in deck.analyses])
 
     def back_to(self, deck: Deck) -> None:
-        """Take again a deck that this model has had: what was computed for it is still known."""
+        """Restore a deck that this model has had; its kept results are still valid."""
         self._take(deck)
 
     def context(self, deck: Deck | None = None) -> Context:
-        """What drivers are given, with the motions that are kept; of another deck where one is given."""
+        """The context of the drivers, with the kept motions; of another deck if one is given."""
         return Context(deck or self.deck, self.threads, motions=self._motions)
 
     def __repr__(self) -> str:
         return f"<Live: {', '.join(self.names)}>"
 
     def set(self, key: str, value: Any) -> None:
-        """Give a key of the deck another value, as it would stand in the deck: set("structure.thickness", "20 cm"). A bare
-        number is in SI, an angle in degrees.
+        """Set a key of the deck to another value, written as in the deck: set("structure.thickness", "20 cm"). A number without
+        a unit is in SI, an angle in degrees.
 
         See `update`.
         """
         self.update({key: value})
 
     def update(self, changes: dict[str, Any]) -> None:
-        """Give several keys other values at once; None takes a key out, so that it has its default again.
+        """Set several keys together; None removes a key, so that its default applies.
 
-        changes: keys with their values as in the deck. Keys are dotted; those of an analysis follow its name: "analysis.rocking.end_time", "analysis.tilt-2.load.0.x".
-        A table may be given whole, as may "analysis", the list of them.
-        DeckError lists what is wrong, by its key, and then nothing has changed.
+        changes: keys with their values as in a deck. Keys are dotted; those of an analysis follow its name:
+        "analysis.rocking.end_time", "analysis.tilt-2.load.0.x". A whole table is accepted, also "analysis", the list of
+        analyses. DeckError lists the errors by key, and then nothing is changed.
         """
         data = copy.deepcopy(self.deck.data)
         for key, value in changes.items():
@@ -87,7 +86,7 @@ class Live:
             place = data["analysis"] if isinstance(data["analysis"], list) else [data["analysis"]]
             _, name, *way = [*way, last]
             if name not in self.names:
-                raise DeckError([f"{key}: no analysis '{name}'; there are {', '.join(self.names)}"])
+                raise DeckError([f"{key}: the deck has no analysis '{name}'; its analyses are {', '.join(self.names)}"])
             *way, last = [str(self.names.index(name)), *way]
         for part in way:
             place = _step(place, part, key) if isinstance(place, list) else place.setdefault(part, {})
@@ -102,7 +101,7 @@ class Live:
             place[last] = value
 
     def result(self, name: str) -> Result:
-        """The result of an analysis by its name, computed unless it is known; KeyError where there is none."""
+        """The result of an analysis by its name, calculated if necessary; KeyError if the deck has no analysis of this name."""
         found, i = self._computed(name), self.names.index(name)
         context = self.context()
         return concluded(found, self.deck.analyses[i], context, self.deck.buildings[i])
@@ -110,7 +109,7 @@ class Live:
     def _computed(self, name: str) -> Result:
         """The result without its verdict, which may look at parts of the deck that the analysis does not."""
         if name not in self.names:
-            raise KeyError(f"no analysis '{name}'; there are {', '.join(self.names)}")
+            raise KeyError(f"the deck has no analysis '{name}'; its analyses are {', '.join(self.names)}")
         i = self.names.index(name)
         options, building = self.deck.analyses[i], self.deck.buildings[i]
         own = f"{_fingerprint(options)} {self.deck.folder}"
@@ -131,7 +130,7 @@ class Live:
         return result
 
     def run(self) -> Run:
-        """All analyses, those that are not known computed: a run like any other, to read or to write."""
+        """Calculate all analyses, as far as necessary, and return them as a run, to read or to write."""
         return Run.of(self.deck, [self.result(name) for name in self.names])
 
     def __getitem__(self, name: str) -> KindResults:
@@ -139,11 +138,11 @@ class Live:
         return self._computed(name).results
 
     def array(self, analysis: str, name: str) -> np.ndarray:
-        """The numbers of an array of an analysis by its name, with the shape and unit that `result(analysis).arrays[name]` says
-        by its `dims`, for instance (time,), and its `unit`, in SI; KeyError names those that there are."""
+        """The numbers of an array of an analysis in SI. `result(analysis).arrays[name]` gives its shape (`dims`, for instance
+        (time,)) and its `unit`. KeyError names the available arrays."""
         there = self._computed(analysis).arrays
         if name not in there:
-            raise KeyError(f"{analysis} has no array '{name}'; there are {', '.join(there) or 'none'}")
+            raise KeyError(f"{analysis} has no array '{name}'; its arrays are {', '.join(there) or 'none'}")
         return np.asarray(there[name].data)
 
 
@@ -222,7 +221,7 @@ def _own_data(data: dict[str, Any], i: int) -> dict[str, Any]:
 
 
 def _fingerprint(part: Any) -> str:
-    """Text that two parts of a deck share only where they say the same."""
+    """A text that is equal for two parts of a deck only if their content is equal."""
     if isinstance(part, Table):
         return f"{part.model_dump_json()} {sorted(part.model_fields_set)}"
     if isinstance(part, dict):
@@ -239,5 +238,5 @@ def _forget(kept: dict[Any, Any], most: int) -> None:
 def _step(place: list[Any], part: str, key: str) -> Any:
     """The element of an array of tables that a part of a key names by its number, from 0."""
     if not part.isdecimal() or int(part) >= len(place):
-        raise DeckError([f"{key}: '{part}' is not one of the numbers 0 to {len(place) - 1}"])
+        raise DeckError([f"{key}: expected a number from 0 to {len(place) - 1}, found '{part}'"])
     return place[int(part)]

@@ -1,4 +1,4 @@
-"""A run as notebooks show it: one line per analysis, and the main figure of the first that has one. A sweep: a table of members."""
+"""The representation of a run in a notebook: one line per analysis and the first figure. For a sweep: a table of members."""
 
 import html
 from collections.abc import Mapping, Sequence
@@ -48,7 +48,7 @@ def table_of(title: str, keys: Sequence[str], rows: Sequence[Mapping[str, Any]],
     body = "".join(
         "<tr>" + "".join(f'<td style="{STYLE}">{html.escape(_cell(row.get(name)))}</td>' for name in names) + "</tr>" for row in shown
     )
-    left = f"<p>{len(rows) - len(shown)} more members: see frame().</p>" if len(rows) > len(shown) else ""
+    left = f"<p>{len(rows) - len(shown)} more members: use frame().</p>" if len(rows) > len(shown) else ""
     return f"<div><b>{html.escape(title)}</b><table><tr>{head}</tr>{body}</table>{left}</div>"
 
 

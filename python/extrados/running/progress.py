@@ -1,4 +1,4 @@
-"""How far a long computation is, told on the terminal."""
+"""The progress of a long calculation on the terminal."""
 
 import math
 import time
@@ -12,7 +12,7 @@ EVERY = 5.0  # s between lines
 
 
 def in_words(seconds: float) -> str:
-    """A time to wait, rounded up to what is worth telling."""
+    """A remaining time in words, rounded up."""
     for unit, length, most in (("s", 1.0, 90.0), ("min", 60.0, 90.0 * 60.0)):
         if seconds < most:
             return f"{math.ceil(seconds / length)} {unit}"

@@ -19,10 +19,9 @@ def computed() -> dict[str, str]:
 
 
 def _commit() -> str:
-    """What git says of a checkout of this project; of an installed copy the commit that it was built from, "" where that
-    was none.
+    """The commit of a checkout of this project, or that from which an installed copy was built; "" if unknown.
 
-    Only a checkout of this project is asked: git would also answer for a repository that happens to lie around.
+    git is used only in a checkout of this project, since it would also find an unrelated repository above.
     """
     folder = Path(__file__).resolve().parents[1]
     root = folder.parents[1]

@@ -1,4 +1,4 @@
-"""A whole run: deck and analyses in memory, then, where wanted, the folder with figures and report."""
+"""A whole run: deck and analyses in memory; on request a results folder with figures and report."""
 
 import contextlib
 import shutil
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 
 class Run(Stored):
-    """The results of a deck, in memory or read back from a folder: one class, read alike.
+    """The results of a deck, calculated in memory or read from a folder; both are used in the same way.
 
-    `results` are those of this process, in the order of the deck; empty for a run that was read back.
+    `results` are the results calculated by this process, in the order of the deck; empty for a run read from a folder.
     """
 
     results: tuple[Result, ...] = ()
@@ -44,7 +44,7 @@ class Run(Stored):
 
     @classmethod
     def read(cls, folder: str | Path) -> "Run":
-        """The run that a `folder` holds; StoreError where it is damaged."""
+        """The run in a `folder`; StoreError if it is damaged."""
         found = store.read(folder)
         return cls(found.folder, found.head, found.analyses, found.arrays)
 
@@ -64,19 +64,18 @@ class Run(Stored):
         return page_of(self)
 
     def plot(self, analysis: str) -> "Drawn":
-        """The figures of an analysis by its name, as objects of matplotlib: a notebook shows them, `.save(folder)` writes
-        them, `["tilt-mechanism"]` is one of them. KeyError where there is no such analysis."""
+        """The figures of an analysis as objects of matplotlib. A notebook shows them, `.save(folder)` writes them,
+        `["tilt-collapse"]` selects one. KeyError if the run has no analysis of this name."""
         from extrados.show.drawn import draw
 
         return draw(self, analysis)
 
     def write(self, folder: str | Path, figures: bool = True) -> Path:
-        """Write the results into `folder`, in place of an earlier run there, and draw figures and report unless `figures` is False.
+        """Write the results into `folder`, replacing an earlier run, and draw figures and report unless `figures` is False.
 
-        A killed write leaves the old folder or the new one; Ctrl-C waits until the results are there. Only what
-        extrados wrote and nobody has changed since is replaced: where `folder` holds anything else the results are put
-        beside it, which is logged. Returns the folder, which is then also the run's; StoreError where it cannot be
-        written.
+        A killed write leaves the old folder or the new one; Ctrl-C waits until the results are written. Only unchanged files
+        of extrados are replaced. If `folder` contains anything else, the results go to another folder, which is logged.
+        Returns the folder; StoreError if it cannot be written.
         """
         making = store.NewFolder(Path(folder))
         with _after_writing(), making as scratch:
@@ -119,12 +118,12 @@ def _head(deck: Deck, parts: list[Result], when: dict[str, str]) -> dict[str, An
 
 
 def compute(context: Context) -> Run:
-    """Run all analyses of a deck in memory; what is refused or fails says so in its result."""
+    """Run all analyses of a deck in memory; the result of a refused or failed analysis gives the reason."""
     return Run.of(context.deck, run_analyses(context))
 
 
 def run_to(context: Context, out: str | Path, figures: bool = True) -> Run:
-    """Run a deck into a folder: refused early where it cannot be written, resumable from the batches beside it."""
+    """Run a deck into a folder: refused at the start if the folder cannot be written, resumable from the batches beside it."""
     deck, out = context.deck, Path(out)
     store.prepare(out)
     context.out = out

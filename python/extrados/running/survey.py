@@ -1,4 +1,4 @@
-"""Many buildings at once: every deck of a folder assessed, and all of them in order, the worst first."""
+"""Assessment of many buildings: every deck of a folder, and a ranking with the worst first."""
 
 import csv
 import hashlib
@@ -35,8 +35,7 @@ COLUMNS = ("building", "overall", "least_margin", "strategy", "status", "stateme
 
 @dataclass(frozen=True)
 class Assessed:
-    """One building of the folder; least_margin: critical scale factor of the hazard, NaN where none is known; folder: its
-    results."""
+    """One building of the folder; least_margin: critical scale factor of the hazard, NaN if unknown; folder: its results."""
 
     building: str
     overall: str
@@ -48,8 +47,8 @@ class Assessed:
 
     @property
     def order(self) -> tuple[int, float]:
-        """The worst first: buildings that cannot stand, those without an answer or a verdict, the others by the least
-        margin, last those that stand by a margin that is not known."""
+        """Sort key, the worst first: buildings that cannot stand, those without a result or a verdict, the others by the least
+        margin, and last those that stand by an unknown margin."""
         if self.overall == "cannot stand":
             return 0, 0.0
         if np.isfinite(self.least_margin):
@@ -132,7 +131,7 @@ def decks_of(folder: Path) -> dict[str, str | DeckError]:
         except DeckError as error:
             found[path.stem] = DeckError([text.replace("deck:", f"{path}:", 1) for text in error.complaints])
     if not found:
-        raise DeckError([f"{folder}: holds no decks"])
+        raise DeckError([f"the folder {folder} contains no decks"])
     wrong = [one for one in found.values() if isinstance(one, DeckError)]
     if len(wrong) == len(found):
         raise DeckError([text for one in wrong for text in one.complaints])
@@ -164,10 +163,10 @@ def assess_folder(
     scheduler: str = "",
     figures: bool = True,
 ) -> list[Assessed]:
-    """Assess every deck of a folder into folders below `out`, the worst first; writes ranking.csv and ranking.html. A wrong deck is
-    a row with its complaints.
+    """Assess every deck of a folder into folders below `out`; write ranking.csv and ranking.html, the worst first. A wrong deck
+    is a row with its errors.
 
-    An interrupted run goes on where it was with `resume`; on a cluster the workers must see the same folders.
+    `resume` continues an interrupted run. On a cluster the workers must have access to the same folders.
     """
     decks = decks_of(folder)
     texts = {name: text for name, text in decks.items() if isinstance(text, str)}

@@ -1,4 +1,4 @@
-"""Many runs of one deck with other values of its keys, in memory, for those who go on in Python."""
+"""Many runs of one deck with other values of its keys, in memory."""
 
 import copy
 import hashlib
@@ -73,7 +73,7 @@ def _at(key: str) -> str:
 
 
 def singles(results: KindResults) -> dict[str, Any]:
-    """The numbers, words and truths of results by their keys, dotted; what is a list has no place in a row."""
+    """The scalar results by dotted keys; lists are omitted."""
 
     def walk(values: Mapping[str, Any], before: str) -> dict[str, Any]:
         found: dict[str, Any] = {}
@@ -88,7 +88,7 @@ def singles(results: KindResults) -> dict[str, Any]:
 
 
 def value_at(deck: Deck, names: Sequence[str], key: str) -> Any:
-    """The value of a key as a checked deck has it, in SI; None where it leads to no number, word or truth."""
+    """The value of a key in a checked deck, in SI; None if it is not a scalar."""
     holder, last = _holder(deck, names, key)
     value = getattr(holder, last, None) if isinstance(holder, Table) else None
     return value if isinstance(value, str | int | float) else None
@@ -114,10 +114,11 @@ def _holder(deck: Deck, names: Sequence[str], key: str) -> tuple[Any, str]:
 
 @dataclass(frozen=True)
 class Sweep:
-    """What a sweep gave: `frame()` for pandas, `dataset()` for xarray, `rows` for plain Python.
+    """The result of a sweep: `frame()` for pandas, `dataset()` for xarray, `rows` for plain Python.
 
-    keys: those of the deck that were varied, which are also names of columns and axes; shape: values of each where every one met every other, None for rows; rows: of each member its values and results by
-    name, in SI; units and about: of the columns, by name; members: how many were asked for.
+    keys: the varied keys of the deck, which are also names of columns and axes. shape: number of values of each key if all
+    combinations were run, None for given rows. rows: values and results of each member by name, in SI. units and about: of
+    the columns, by name. members: number of requested members.
     """
 
     keys: list[str]
@@ -146,10 +147,10 @@ class Sweep:
         return list(dict.fromkeys([*self.keys, *(name for row in self.rows for name in row)]))
 
     def column(self, name: str) -> np.ndarray:
-        """The values of a name, one of each member (members,), in the unit that `units[name]` says: numbers with NaN where
-        there is none, else objects; KeyError names those that there are."""
+        """The values of a column, one per member (members,), in the unit `units[name]`: numbers with NaN for missing values, or
+        objects. KeyError names the available columns."""
         if name not in self.columns:
-            raise KeyError(f"no column '{name}'; there are {', '.join(self.columns)}")
+            raise KeyError(f"the sweep has no column '{name}'; its columns are {', '.join(self.columns)}")
         values = [row.get(name) for row in self.rows]
         if all(isinstance(v, bool) for v in values):
             return np.array(values, dtype=bool)
@@ -159,16 +160,16 @@ class Sweep:
         return np.array([v for v in values] + [None], dtype=object)[:-1]
 
     def frame(self) -> "pandas.DataFrame":
-        """One row a member; `frame.attrs` holds units and meanings by column. ImportError says what to install."""
+        """One row per member; `frame.attrs` has units and meanings by column. ImportError names the package to install."""
         pandas = _library("pandas")
         made = pandas.DataFrame({name: self.column(name) for name in self.columns})
         made.attrs = {"units": self.units, "about": self.about}
         return made
 
     def dataset(self) -> "xarray.Dataset":
-        """Results over the varied keys as axes, each with its unit; rows that belong together lie along `member`.
+        """Results over the varied keys as axes, with units; given rows lie along the axis `member`.
 
-        ImportError says what to install; ValueError where members are missing, so that there is no grid.
+        ImportError names the package to install; ValueError if members are missing, so that the grid is incomplete.
         """
         xarray = _library("xarray")
         dims: tuple[str, ...] = ("member",)
@@ -176,7 +177,9 @@ class Sweep:
         if self.shape is None:
             coords = {name: (dims, self.column(name), self._told(name)) for name in self.keys}
         elif len(self.rows) < self.members:
-            raise ValueError(f"{self.members - len(self.rows)} members are missing ({self.stopped}): no grid; see frame()")
+            raise ValueError(
+                f"{self.members - len(self.rows)} members are missing ({self.stopped}), so that the grid is incomplete: use frame()"
+            )
         else:
             dims, shape = tuple(self.keys), self.shape
             coords = {}
@@ -196,7 +199,7 @@ def _library(name: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError:
-        raise ImportError(f"this needs {name}: pip install 'extrados[data]'") from None
+        raise ImportError(f"this function needs the package {name}: pip install 'extrados[data]'") from None
 
 
 def sweep(
@@ -251,13 +254,13 @@ def _members(over: Any) -> tuple[list[str], list[list[Any]], tuple[int, ...] | N
         axes = {key: found for key, values in lists.items() if (found := [as_deck(value) for value in values])}
         short = [key for key in over if str(key) not in axes]
         if short or not axes:
-            raise DeckError([f"over: {key}: expected a list of values" for key in short] or ["over: names no key"])
+            raise DeckError([f"over: {key}: expected a list of values" for key in short] or ["over: expected at least one key"])
         if (count := math.prod(map(len, axes.values()))) > MOST_MEMBERS:
-            raise DeckError([f"over: every value with every other is {count:,} members, at most {MOST_MEMBERS:,}"])
+            raise DeckError([f"over: all combinations of the values are {count:,} members, more than the {MOST_MEMBERS:,} allowed"])
         return list(axes), [list(row) for row in itertools.product(*axes.values())], tuple(map(len, axes.values()))
     given = [dict(row) for row in over]
     if not given or any(set(row) != set(given[0]) or not row for row in given):
-        raise DeckError(["over: expected lists of values by key, or rows that all give the same keys"])
+        raise DeckError(["over: expected a list of values for each key, or rows that all have the same keys"])
     keys = [str(key) for key in given[0]]
     return keys, [[as_deck(row[key]) for key in given[0]] for row in given], None
 

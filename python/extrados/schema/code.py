@@ -73,55 +73,58 @@ class Code(Table):
     """The code of the report: one jurisdiction, whose rules alone decide. Without this table the rules of NTC 2018 are applied."""
 
     jurisdiction: Jurisdiction = key(
-        about="NTC (Italy), EN1998 (Eurocode 8), ASCE41 (United States), NZSEE (New Zealand), or none: mechanics and research alone"
+        about=(
+            "NTC (Italy), EN1998 (Eurocode 8), ASCE41 (United States), NZSEE (New Zealand), or none (no code: formulas of "
+            "mechanics and research only)"
+        )
     )
     edition: str | None = key(None, "edition of the code: NTC 2018, EN1998 2004, ASCE41 2013, NZSEE 2017")
-    nominal_life: Years = key(50.0, "nominal life V_N in years, of NTC", source="NTC 2018, 2.4.1")
+    nominal_life: Years = key(50.0, "nominal life V_N in years (NTC)", source="NTC 2018, 2.4.1")
     importance: Literal["I", "II", "III", "IV"] | None = key(
         None,
         "class of use (NTC: coefficient C_U) or importance class (EN 1998-1: factor gamma_I); default II",
         source="NTC 2018 Table 2.4.II; EN 1998-1 4.2.5",
     )
     limit_states: list[Literal["SLO", "SLD", "SLV", "SLC", "DL", "SD", "NC", "IO", "LS", "CP", "ULS"]] = key(
-        [], "limit states that are checked; default SLV, SD, LS or ULS", max_length=4
+        [], "limit states to check; default SLV (NTC), SD (EN 1998), LS (ASCE 41) or ULS (NZSEE)", max_length=4
     )
-    return_periods: list[Years] = key([], "return period in years of each limit state; default of NTC that of V_N C_U", max_length=4)
+    return_periods: list[Years] = key([], "return period in years of each limit state; default for NTC: from V_N and C_U", max_length=4)
     knowledge_level: Literal["LC1", "LC2", "LC3", "KL1", "KL2", "KL3", "minimum", "usual", "comprehensive"] | None = key(
-        None, "level of knowledge of the masonry; default the lowest of the code"
+        None, "knowledge level of the masonry; default: the lowest of the code"
     )
     confidence_factor: float | None = key(
-        None, "factor by which mean strengths are divided; default that of the knowledge level", ge=1, le=2
+        None, "confidence factor, by which mean strengths are divided; default: that of the knowledge level", ge=1, le=2
     )
-    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (NTC, EN 1998-1), site subsoil class (NZS 1170.5)")
+    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (NTC, EN 1998-1) or site subsoil class (NZS 1170.5)")
     topography: float = key(1.0, "topographic amplification S_T, of NTC", ge=1, le=2)
     spectrum_type: Literal[1, 2] = key(1, "spectrum of EN 1998-1: type 1 or 2")
     accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
-        [], "a_g on ground A for each limit state (NTC); a_gR, which gamma_I multiplies (EN 1998-1)", max_length=4
+        [], "a_g on ground A for each limit state (NTC); a_gR, which is multiplied by gamma_I (EN 1998-1)", max_length=4
     )
-    amplifications: list[Annotated[float, Field(ge=1, le=10)]] = key([], "F_0 for each limit state, of NTC; default 2.5", max_length=4)
-    corner_periods: list[Annotated[Time, Field(gt=0, le=2)]] = key([], "T_C* for each limit state, of NTC; default 0.35 s", max_length=4)
+    amplifications: list[Annotated[float, Field(ge=1, le=10)]] = key([], "F_0 for each limit state (NTC); default 2.5", max_length=4)
+    corner_periods: list[Annotated[Time, Field(gt=0, le=2)]] = key([], "T_C* for each limit state (NTC); default 0.35 s", max_length=4)
     short_accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
-        [], "S_XS at the site for each limit state, of ASCE 41", max_length=4
+        [], "S_XS at the site for each limit state (ASCE 41)", max_length=4
     )
     one_second_accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
-        [], "S_X1 at the site for each limit state, of ASCE 41", max_length=4
+        [], "S_X1 at the site for each limit state (ASCE 41)", max_length=4
     )
     long_period: Time = key(8.0, "T_L of ASCE 7", gt=0)
-    hazard_factor: Annotated[float, Field(gt=0, le=1)] | None = key(None, "Z, hazard factor of NZS 1170.5")
-    research: list[Research] = key([], "formulas of other origin that are listed for comparison and decide nothing", max_length=6)
+    hazard_factor: Annotated[float, Field(gt=0, le=1)] | None = key(None, "hazard factor Z of NZS 1170.5")
+    research: list[Research] = key([], "formulas of other origin, listed for comparison without effect on the verdict", max_length=6)
 
     @model_validator(mode="after")
     def _of_one_code(self) -> "Code":
         own, given = self.jurisdiction, self.model_fields_set
         if self.edition is not None and self.edition not in EDITIONS[own]:
             known = " or ".join(EDITIONS[own]) or "none"
-            raise ValueError(f"edition: of {own} {known} is known, not {self.edition}")
+            raise ValueError(f"edition: this program includes edition {known} of {own}, not {self.edition}")
         if strange := [s for s in self.limit_states if s not in LIMIT_STATES[own]]:
-            raise ValueError(f"limit_states: {strange[0]} is no limit state of {own}; its own are {_list(LIMIT_STATES[own])}")
+            raise ValueError(f"limit_states: {strange[0]} is not a limit state of {own}; expected {_list(LIMIT_STATES[own])}")
         if len(set(self.limit_states)) < len(self.limit_states):
-            raise ValueError("limit_states: one stands twice")
+            raise ValueError("limit_states: one of them occurs twice")
         if self.knowledge_level is not None and self.knowledge_level not in KNOWLEDGE[own]:
-            raise ValueError(f"knowledge_level: {own} knows {_list(KNOWLEDGE[own])}, not {self.knowledge_level}")
+            raise ValueError(f"knowledge_level: {self.knowledge_level} is not a level of {own}; expected {_list(KNOWLEDGE[own])}")
         unused = {name for keys in ACTION.values() for name in keys} - set(ACTION[own])
         unused |= {"nominal_life"} if own != "NTC" else set()
         unused |= {"importance"} if own not in IMPORTANCE else set()

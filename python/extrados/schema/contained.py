@@ -75,7 +75,7 @@ def read_contained(
             _server.end()
             found, _ = _server.answer(file.fileno(), most, PATIENCE * seconds)
     if len(found) > most + _CODE.size:
-        raise Unreadable(f"gives more than {most / 1e6:.0f} MB of numbers")
+        raise Unreadable(f"this file gives more than {most / 1e6:.0f} MB of numbers")
     answer, end = found[: -_CODE.size], found[-_CODE.size :]
     if not answer:
         raise Unreadable(_reason(_CODE.unpack(end)[0] if end else -signal.SIGKILL, room, seconds))
@@ -98,10 +98,10 @@ def _pieces(stream: socket.socket, most: int, until: float) -> Iterator[bytes]:
 
 def _reason(code: int, room: int, seconds: int) -> str:
     if code == -signal.SIGXCPU:
-        return f"takes more than {seconds} s to be read"
+        return f"this file takes more than {seconds} s to read"
     if code == -signal.SIGKILL:
-        return f"cannot be read with {room / 1e6:.0f} MB of memory in the time that is left to it"
-    return f"cannot be read: its reader ended with code {code}"
+        return f"this file cannot be read with {room / 1e6:.0f} MB of memory in the remaining time"
+    return f"this file cannot be read: its reader ended with code {code}"
 
 
 class _Server:
@@ -211,7 +211,7 @@ def decode(data: bytes) -> Any:
 
         return whole(json.loads(data[4 : 4 + length]))
     except (ValueError, struct.error, EOFError, IndexError, KeyError, TypeError, RecursionError, MemoryError) as error:
-        raise Unreadable(f"its reader gave damaged output: {error}") from None
+        raise Unreadable(f"the reader of this file gave damaged output: {error}") from None
 
 
 def limit_process(room: int, seconds: int) -> None:
@@ -296,7 +296,7 @@ def _read(given: dict[str, Any], file: int, answer: int) -> None:
         except Unreadable as error:
             out.write(encode({"refused": str(error), "at": list(error.at)}))
         except MemoryError:
-            out.write(encode({"refused": f"takes more than {given['room'] / 1e6:.0f} MB to be read", "at": []}))
+            out.write(encode({"refused": f"this file needs more than {given['room'] / 1e6:.0f} MB of memory to read", "at": []}))
         except Exception as error:  # of a library, at a file that it does not foresee
             out.write(encode({"refused": f"cannot be read: {type(error).__name__}: {error}", "at": []}))
 

@@ -45,7 +45,7 @@ class File:
             return self.content.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             line = self.content[: error.start].count(b"\n") + 1
-            raise BadFile(f"{self.path}:{line}: is not UTF-8 text (byte {error.start})") from None
+            raise BadFile(f"{self.path}:{line}: this file is not UTF-8 text (byte {error.start})") from None
 
     @contextlib.contextmanager
     def copied(self) -> Iterator[Path]:
@@ -68,23 +68,23 @@ def locate(file: str, folder: Path) -> Path:
     if file.startswith("extrados:"):
         name = file.removeprefix("extrados:")
         if name not in SHIPPED:
-            raise BadFile(f"{file}: no such file is shipped; known are {', '.join(sorted(SHIPPED))}")
+            raise BadFile(f"{file}: no such file is shipped; expected one of {', '.join(sorted(SHIPPED))}")
         return PACKAGE / SHIPPED[name]
     if _shipped_alone.get():
-        raise BadFile(f"{file}: only shipped files are read here, such as extrados:{min(SHIPPED)}")
+        raise BadFile(f"{file}: only shipped files can be read here, such as extrados:{min(SHIPPED)}")
     if "\0" in file:
-        raise BadFile(f"{file!r}: a file name cannot hold a zero byte")
+        raise BadFile(f"{file!r}: a file name cannot contain a zero byte")
     path = Path(file)
     if path.is_absolute():
         if _confined.get():
-            raise BadFile(f"{file}: is an absolute path; only files beside the deck are read here")
+            raise BadFile(f"{file}: this is an absolute path. Only files in the folder of the deck can be read here")
         return path
     try:
         inside, root = (folder / path).resolve(), folder.resolve()
     except (OSError, RuntimeError, ValueError) as error:  # links that go in circles
         raise BadFile(f"{file}: cannot be found: {error}") from None
     if not inside.is_relative_to(root):
-        raise BadFile(f"{file}: leads out of the deck's folder; give an absolute path if you mean it")
+        raise BadFile(f"{file}: this path leads out of the deck's folder. Give an absolute path if this is intended")
     return inside
 
 
@@ -125,7 +125,7 @@ def _opened(file: str | Path, largest: int | None, folder: Path | None) -> Itera
     except (OSError, ValueError) as error:
         if isinstance(error, BadFile):
             raise
-        raise BadFile(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise BadFile(f"{path}: this file cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _open(path: Path, folder: Path | None) -> int:
@@ -154,4 +154,4 @@ def _refuse(found: os.stat_result, path: Path, largest: int | None) -> None:
 
 
 def _too_large(path: Path, size: int, largest: int) -> BadFile:
-    return BadFile(f"{path}: is {size / 1e6:.1f} MB, at most {largest / 1e6:g} MB are read")
+    return BadFile(f"{path}: this file has {size / 1e6:.1f} MB; at most {largest / 1e6:g} MB are read")

@@ -29,17 +29,17 @@ def refuse_elsewhere(path: str) -> None:
 
     def look(group: Any, depth: int = 0) -> None:
         if depth > DEEPEST:
-            raise Unreadable(f"has groups within more than {DEEPEST} others")
+            raise Unreadable(f"this file has groups nested more than {DEEPEST} levels deep")
         for name in group:
             link = group.get(name, getlink=True)
             if isinstance(link, h5py.ExternalLink):
-                raise Unreadable(f"'{group.name}/{name}' lies in another file, {link.filename[:100]!r}")
+                raise Unreadable(f"the data of '{group.name}/{name}' are in another file, {link.filename[:100]!r}")
             if isinstance(link, h5py.SoftLink):
-                raise Unreadable(f"'{group.name}/{name}' is a link; save the file without links")
+                raise Unreadable(f"'{group.name}/{name}' is a link: save the file without links")
             one = group[name]
             if isinstance(one, h5py.Dataset):
                 if one.external or one.is_virtual:
-                    raise Unreadable(f"the numbers of '{one.name}' lie in another file")
+                    raise Unreadable(f"the numbers of '{one.name}' are in another file")
             elif isinstance(one, h5py.Group):
                 look(one, depth + 1)
 
@@ -47,7 +47,7 @@ def refuse_elsewhere(path: str) -> None:
         with h5py.File(path, "r") as file:
             look(file)
     except (OSError, RuntimeError, KeyError, ValueError) as error:
-        raise Unreadable(f"is a damaged HDF5 file: {error}") from None
+        raise Unreadable(f"this is a damaged HDF5 file: {error}") from None
 
 
 def parse_arrays(source: bytes | str, marks: list[str], long: int | None) -> dict[str, dict[str, dict[str, Any]]]:
@@ -99,7 +99,7 @@ class _opened:
 def _whole(store: Any, file: Any, title: str) -> bool:
     """Unreadable where a dataset, or what should be one, does not lie in the file whole."""
     if store is None or lies_elsewhere(store, file):
-        raise Unreadable(f"'{title}' does not lie in the file whole; extrados wrote no such one")
+        raise Unreadable(f"the data of '{title}' are not complete in this file; extrados does not write such files")
     return True
 
 
@@ -112,7 +112,7 @@ def _array(store: Any, file: Any, title: str, marks: list[str], long: int | None
         data = store.asstr()[()]
         return {**said, "data": [str(text) for text in data.ravel()], "shape": list(data.shape)}
     if store.dtype.kind not in "iufbc":
-        raise Unreadable(f"'{title}' holds {store.dtype}; expected numbers or text")
+        raise Unreadable(f"'{title}' contains {store.dtype}; expected numbers or text")
     if long is not None and store.ndim == 1 and len(store) > long and store.dtype.kind in "iuf":
         return {**said, "length": len(store), "dtype": store.dtype.str}
     return {**said, "data": store[()]}

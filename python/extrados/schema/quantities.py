@@ -172,13 +172,13 @@ def quantity(si: str, *, bare: bool = True) -> Any:
         if isinstance(value, str):
             return parse(value, si)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"expected a number in {si} or text such as '{_EXAMPLE.get(si, '1 ' + si)}'")
+            raise ValueError(f"expected a number in {si}, or text such as '{_EXAMPLE.get(si, '1 ' + si)}'")
         if not bare:
-            raise ValueError(f'a bare number is ambiguous here: write "{value} g" or "{value} m/s^2"')
+            raise ValueError(f'a number without a unit is ambiguous here: write "{value} g" or "{value} m/s^2"')
         try:
             return float(value)
         except OverflowError:
-            raise ValueError(f"a whole number of {len(str(abs(value)))} digits is too large") from None
+            raise ValueError(f"the whole number has {len(str(abs(value)))} digits and is too large") from None
 
     return Annotated[float, BeforeValidator(read), Unit(si, bare)]
 

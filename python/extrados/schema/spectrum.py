@@ -12,9 +12,9 @@ class CodeSpectrum(Table):
     """The elastic spectrum of a code, with its own values, or a table."""
 
     code: Literal["EN1998-1", "EN1998-2", "NTC", "ASCE7", "NZS1170", "table"] = key(
-        about="EN 1998-1:2004 spectrum type 1 or 2, NTC 2018, ASCE 7-16, NZS 1170.5, or a table of your own"
+        about="spectrum of EN 1998-1:2004 (type 1 or 2), NTC 2018, ASCE 7-16 or NZS 1170.5, or a user-defined table"
     )
-    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (EN 1998-1, NTC), site subsoil class (NZS 1170.5)")
+    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (EN 1998-1, NTC) or site subsoil class (NZS 1170.5)")
     acceleration: Acceleration | None = key(None, "a_g on ground A (EN 1998-1, NTC)", gt=0)
     amplification: float = key(2.5, "F_0 (NTC)", ge=1, le=10)
     corner_period: Time = key(0.35, "T_C* (NTC)", gt=0, le=2)
@@ -38,7 +38,7 @@ class CodeSpectrum(Table):
         }[self.code]
         missing = [name for name in need if getattr(self, name) is None]
         if missing:
-            raise ValueError(f"code {self.code} needs {' and '.join(missing)}")
+            raise ValueError(f"code {self.code} requires {' and '.join(missing)}")
         return self
 
 
@@ -48,18 +48,20 @@ class TargetSpectrum(CodeSpectrum):
 
     conditional_period: Time | None = key(
         None,
-        "conditional mean spectrum: the period at which `conditional_sa` is given; the table has the columns period_s,sa_g,sigma_ln, medians "
-        "and standard deviations of the logarithm by a ground-motion model",
+        (
+            "conditional mean spectrum: period at which `conditional_sa` is given. The table has the columns "
+            "period_s,sa_g,sigma_ln: medians and standard deviations of the logarithm by a ground-motion model"
+        ),
         ge=0.01,
         le=10,
         source="Baker 2011; Baker and Jayaram 2008",
     )
-    conditional_sa: Acceleration | None = key(None, "spectral acceleration of the hazard at `conditional_period`", gt=0)
+    conditional_sa: Acceleration | None = key(None, "spectral acceleration of the hazard at the period `conditional_period`", gt=0)
 
     @model_validator(mode="after")
     def _conditional(self) -> "TargetSpectrum":
         if (self.conditional_period is None) != (self.conditional_sa is None):
             raise ValueError("conditional_period and conditional_sa go together")
         if self.conditional_period is not None and self.code != "table":
-            raise ValueError('conditional_period needs code = "table" with the column sigma_ln')
+            raise ValueError('conditional_period requires code = "table" with the column sigma_ln')
         return self

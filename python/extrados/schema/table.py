@@ -17,7 +17,7 @@ def within_reason(value: Any) -> Any:
     if isinstance(value, list):
         return [0.0 if isinstance(item, float) and abs(item) < SMALLEST else within_reason(item) for item in value]
     if isinstance(value, float) and value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:
-        raise ValueError(f"{value:g} is beyond reason; expected 0 or a size from {SMALLEST:g} to {LARGEST:g}")
+        raise ValueError(f"{value:g} is not a plausible size; expected 0, or a size from {SMALLEST:g} to {LARGEST:g}")
     return value
 
 
@@ -61,7 +61,7 @@ class FloorBelow(Table):
     building_damping: float = key(0.05, "damping ratio of the building", gt=0, le=0.3)
     storeys: int | None = key(
         None,
-        "storeys N of the building: gamma_1 = 3 N/(2 N + 1); default one for each begun 3 m of its height",
+        ("number N of storeys of the building: gamma_1 = 3 N/(2 N + 1); default: one storey for each 3 m of its height, rounded up"),
         ge=1,
         le=50,
         source="Circ. 7/2019 [C7.2.10]",
@@ -75,7 +75,7 @@ class FloorBelow(Table):
     @model_validator(mode="after")
     def _within(self) -> "FloorBelow":
         if self.height > self.building_height:
-            raise ValueError(f"height: {self.height:g} m is above the top of the building, {self.building_height:g} m")
+            raise ValueError(f"height: {self.height:g} m is above the top of the building ({self.building_height:g} m)")
         return self
 
 
@@ -84,7 +84,7 @@ class Motion(Table):
 
     kind: str
     floor: FloorBelow | None = key(
-        None, "floor of a building that carries the structure: every analysis then takes the motion of the floor"
+        None, "floor of a building that supports the structure; every analysis then applies the motion of this floor"
     )
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.results.rocking import Assessment, FailureDomain, Rocking
+from extrados.results.rocking import SLID, Assessment, FailureDomain, Rocking
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, style
@@ -51,7 +51,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),
-                    f"True scale, {'on rigid contacts' if r.hand_over else 'at the greatest rotations'}"
+                    f"Deformed shapes at true scale, {'calculated with rigid contacts' if r.hand_over else 'at the greatest rotations'}"
                     + ("." if lines is None else ", with the dynamic thrust line."),
                 )
             )
@@ -87,13 +87,17 @@ def _draw_history(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             [
                 (t, run.array(name, "kinetic"), {"label": "kinetic"}),
                 (t, run.array(name, "potential"), {"label": "potential"}),
-                (t, run.array(name, "ledger"), {"label": "supplied less lost", "color": "k", "linestyle": "--", "linewidth": 0.8}),
+                (
+                    t,
+                    run.array(name, "ledger"),
+                    {"label": "energy supplied less energy lost", "color": "k", "linestyle": "--", "linewidth": 0.8},
+                ),
             ],
         )
         style.legend_above(energy)
         needed = run.array(name, "required_friction").max(axis=1) if len(t) else t
         friction.plot(t, np.minimum(needed, 2.0), color=style.HINGE, linewidth=0.8)
-        friction.set_ylabel("friction\nneeded")
+        friction.set_ylabel("required\nfriction")
         friction.set_xlabel("time [s]")
         moving = np.flatnonzero(_rocks(run, name))
         if len(moving):
@@ -102,7 +106,7 @@ def _draw_history(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         saved = style.save(fig, folder, f"{name}-history")
     return (
         saved,
-        f"Ground motion, rotation of {r.rotation_of} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; "
+        f"Histories: ground motion, rotation of {r.rotation_of} with impacts, energies, required friction. Dashed: acceleration at which rocking starts; "
         "dotted: critical rotation.",
     )
 
@@ -156,7 +160,7 @@ def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         saved = style.save(fig, folder, f"{name}-history")
     return (
         saved,
-        f"Ground motion, rotations, energies, greatest slip of a joint. Dotted: hand-over to rigid contacts at {over.time_s:.3f} s. Dashed: "
+        f"Histories: ground motion, rotations, energies, greatest slip of a joint. Dotted: change to rigid contacts at {over.time_s:.3f} s. Dashed: "
         "acceleration at which rocking starts.",
     )
 
@@ -218,7 +222,7 @@ def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tup
         if len(moving):
             axes[-1].set_xlim(max(0.0, t[moving[0]] - 0.2), min(t[-1], t[moving[-1]] + 0.2))
         saved = style.save(fig, folder, f"{name}-restraints")
-    return saved, "Forces of restraints" + (", the first twelve of each kind." if len(arrays) > 12 else ".")
+    return saved, "Forces of the restraints over time" + (", the first twelve of each kind." if len(arrays) > 12 else ".")
 
 
 def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str, str]:
@@ -228,21 +232,21 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
     with style.figure(8.0, 4.4, rows=2, sharex=True) as (fig, (base, sinking)):
         base.fill_between(t, low, high, color=style.GROUND, alpha=0.5, linewidth=0.6)
         base.set_ylim(edges.min(), edges.max())
-        base.set_ylabel("base that pushes\nx [m]")
+        base.set_ylabel("part in contact\nx [m]")
         sinking.plot(t, 1e3 * run.array(name, "sinking"), color=style.THRUST, linewidth=0.9)
         sinking.axhline(1e3 * run.results_of(name, Rocking).soft_base.sinking_at_rest_m, color=style.EDGE, linestyle=":", linewidth=0.8)
-        sinking.set_ylabel("settlement of its\nmiddle [mm]")
+        sinking.set_ylabel("settlement of\nthe middle [mm]")
         sinking.invert_yaxis()
         sinking.set_xlabel("time [s]")
         moving = np.flatnonzero(np.abs(run.array(name, "rotation")) > 0.02 * np.abs(run.array(name, "rotation")).max(initial=0.0))
         if len(moving):
             sinking.set_xlim(max(0.0, t[moving[0]] - 0.5), min(t[-1], t[moving[-1]] + 0.5))
         saved = style.save(fig, folder, f"{name}-base")
-    return saved, "The part of the base in contact, and the settlement at the foot of the centre (dotted: at rest)."
+    return saved, "Above: part of the base in contact. Below: settlement of the base below the centre of mass (dotted: at rest)."
 
 
 def _once(ax: Any) -> tuple[list[Any], list[str]]:
-    """Lines and words of a legend in which each word stands once."""
+    """Lines and texts of a legend, without duplicates."""
     lines, words = ax.get_legend_handles_labels()
     first = {word: line for line, word in reversed(list(zip(lines, words, strict=True)))}
     return list(first.values()), list(first)
@@ -265,16 +269,16 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
     with style.figure(8.0, 3.6, columns=2, width_ratios=[2.4, 1]) as (fig, (over_time, along)):
         joints = np.arange(friction.shape[1])
         mesh = over_time.pcolormesh(t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
-        fig.colorbar(mesh, ax=over_time, label="friction needed (1 and above)")
+        fig.colorbar(mesh, ax=over_time, label="required friction (darkest: 1 or more)")
         over_time.set_xlabel("time [s]")
         over_time.set_ylabel("joint")
         over_time.grid(False)
         along.plot(np.minimum(friction[moving].max(axis=0), 2.0), joints, "o-", color=style.HINGE, markersize=3)
-        along.set_xlabel("greatest friction needed")
+        along.set_xlabel("greatest required friction")
         along.set_ylabel("joint")
         for ax in (over_time, along):
             style.numbers(ax.yaxis)
-        return style.save(fig, folder, f"{name}-friction"), "Friction needed at the joints while it rocks (white: at rest)."
+        return style.save(fig, folder, f"{name}-friction"), "Required friction at the joints during rocking (white: at rest)."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -291,7 +295,7 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
             codes.T if len(d) > 1 else np.repeat(codes.T, 2, axis=1),
             cmap=ListedColormap(style.MODES),
             vmin=0,
-            vmax=3,
+            vmax=SLID,
             shading="nearest",
             rasterized=True,
         )
@@ -305,7 +309,8 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
             if any(value is not None for value in values):
                 ax.plot(d, np.array(values, dtype=float)[order], ".", markersize=3.0, label=text)
         ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linewidth=0.8, linestyle=":")
-        for code, text in enumerate(("no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")):
+        kinds = ["no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)", "blocks only slide"]
+        for code, text in enumerate(kinds if (codes == SLID).any() else kinds[:SLID]):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
         ax.set_xlabel({"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]"))
         ax.set_ylabel("amplitude [g]")
@@ -316,7 +321,7 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         fig.legend(handles, labels, loc="outside lower center", ncols=3)
         title = f"Failure domain of {r.pulse} pulses"
         ax.set_title(title)
-        return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest failing amplitudes.")]
+        return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest amplitude that causes collapse at each duration.")]
 
 
 def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -328,14 +333,14 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         curve.plot(period, run.array(name, "failing_amplitude"), "k-", label=f"Eq. 5.8, {r.coefficients_source}")
         own = run.array(name, "failing_amplitude_own")
         if np.any(own != run.array(name, "failing_amplitude")):
-            curve.plot(period, own, "--", color=style.EDGE, label="Eq. 5.8, fitted to this one")
+            curve.plot(period, own, "--", color=style.EDGE, label="Eq. 5.8, fitted to this structure")
         curve.plot(
             run.array(name, "computed_period"),
             run.array(name, "computed_amplitude"),
             ".",
             color=style.EDGE,
             markersize=3,
-            label="computed Mode I points",
+            label="calculated points of Mode I",
         )
         curve.axhline(gamma, linestyle=":", color=style.EDGE, linewidth=0.8)
         for k, i in enumerate(r.impulses):
@@ -348,7 +353,7 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         curve.set_xlim(0.0, period[-1])
         curve.set_xlabel("period of the impulse T_p [s]")
         curve.set_ylabel("amplitude A_p [g]")
-        curve.set_title(f"Verdict: it {r.verdict}")
+        curve.set_title(f"Verdict: {'collapse' if r.verdict == 'fails' else 'no collapse'}")
         curve.legend(loc="upper right")
         t = run.array(name, "time")
         record.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.6)
@@ -366,4 +371,9 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         record.set_xlabel("time [s]")
         record.set_ylabel("ground acceleration [g]")
         record.set_title("Impulses of the motion")
-        return [(style.save(fig, folder, name), "Impulses against the failure curve, and their times in the motion.")]
+        return [
+            (
+                style.save(fig, folder, name),
+                "Left: impulses of the motion, compared with the failure curve. Right: the impulses on the ground acceleration.",
+            )
+        ]

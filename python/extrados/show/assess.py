@@ -12,8 +12,8 @@ from extrados.show import style
 OUTCOMES = {"stands": style.SAFE, "collapses": style.THRUST, "cannot-stand": style.THRUST, "open": "#d98200", "not-applicable": "#9a9a9a"}
 RELATIONS: dict[Agreement, tuple[str, str]] = {
     "agree": ("#cfe3d6", "same verdict"),
-    "apart": ("#f7e7a8", "same verdict, margins far apart"),
-    "open": ("#e4e4e4", "one of them open"),
+    "apart": ("#f7e7a8", "same verdict, different margins"),
+    "open": ("#e4e4e4", "one verdict is open"),
     "disagree": ("#e9a79d", "stands against collapses"),
 }
 #: Where arrows end that show a margin of unknown end
@@ -21,7 +21,7 @@ REACH = 1.35
 
 
 def draw_assess(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Margins of all strategies, their agreement, and the motion with what statics bears."""
+    """Margins of all strategies, their agreement, and the motion with the static capacities."""
     r = run.results_of(name, Assess)
     found = [_margins(r, folder, name), _agreement(r, folder, name), _hazard(run, r, name, folder), _tornado(r, folder, name)]
     return [one for one in found if one is not None]
@@ -74,8 +74,8 @@ def _margins(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-margins")
     return saved, (
-        "Critical scale factor of the hazard by each strategy: left of the dashed line the hazard itself causes collapse. Bars: the "
-        "margin lies between their ends; arrows: beyond the point, not looked for."
+        "Critical scale factor of the hazard by each strategy. Left of the dashed line (1) the hazard itself causes collapse. "
+        "Bar: the factor lies between its ends. Arrow: the factor lies beyond the point and was not searched."
     )
 
 
@@ -121,7 +121,7 @@ def _agreement(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         saved = style.save(fig, folder, f"{name}-agreement")
     return (
         saved,
-        "Verdict of each strategy (diagonal), and which pairs agree: = agree, x differ, ~ same verdict with margins far apart, ? one is open.",
+        "Verdicts of the strategies (diagonal) and their agreement in pairs: = same verdict, x different verdicts, ~ same verdict with different margins, ? one verdict is open.",
     )
 
 
@@ -134,7 +134,7 @@ def _cell(ax: Axes, x: int, y: int, colour: str, text: str, ink: str = style.EDG
 
 
 def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
-    """The motion of single runs, with the constant accelerations that statics bears and the primary impulse."""
+    """The motion of single runs, with the static capacities as constant accelerations and the primary impulse."""
     time, ground = run.array(name, "time"), run.array(name, "ground") / 9.80665
     rows = [v for v in r.verdicts if v.axis == "acceleration" and v.status == "ok" and v.capacity is not None]
     with style.figure(7.2, 3.2) as (fig, (ax,)):
@@ -166,7 +166,7 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
 PANELS = (
     ("tilt", "Margin of limit analysis", "factor on the hazard"),
     ("rocking", "Margin of rocking", "factor on the hazard"),
-    ("dem", "Discrete elements", "movement over that of collapse"),
+    ("dem", "Discrete elements", "displacement / displacement of collapse"),
 )
 
 
@@ -210,10 +210,10 @@ def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns), ("discrete elements", row.dem_turns))
         if value is not None
     ]
-    told = f" Verdicts change at: {'; '.join(turned)}." if turned else " No value that was run changes a verdict."
+    told = f" Verdicts change at: {'; '.join(turned)}." if turned else " No calculated value changes a verdict."
     if any(row.dem_base is not None for row in rows):
-        told += " Discrete elements: displacement of their blocks over that of collapse."
-    return saved, f"Margins with one value of the deck varied, all others unchanged.{told}"
+        told += " Discrete elements: displacement of the blocks / displacement that counts as collapse."
+    return saved, f"Margins when one value of the deck varies and all others are unchanged.{told}"
 
 
 def _short(key: str) -> str:

@@ -271,7 +271,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
         saved = style.save(fig, folder, NAME)
     *first, last = [words.number(h) for h in structure["storeys"]]
     heights = f"{words('Storeys, from the ground up')}: {', '.join([*first, last])} m" if first else f"{words('Storey')}: {last} m"
-    told = words("length of each wall on its middle plane, and its greatest thickness")
+    told = words("for each wall the length of its middle plane and its greatest thickness")
     found = [(saved, f"{words('Plan of the building')}: {told}. {heights}.")]
     faces = elevation.wall_views(walls, storeys, words)
     with style.canvas() as fig:
@@ -280,7 +280,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
             elevation.draw_wall(sheet, view, wall, storeys, words)
         sheet.finish(words, _titled(deck))
         saved = style.save(fig, folder, ELEVATION)
-    seen = words("Elevations of the walls, each with its start at the left; width over height in its openings.")
+    seen = words("Elevations of the walls, each with its start at the left. Numbers in openings: width above height.")
     left = len(walls) - len(faces)
     found.append((saved, f"{seen} {words('Walls without an elevation: {count}.', count=left)}" if left else seen))
     return found
@@ -308,7 +308,9 @@ def _panel(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words:
         sheet.dimension(foot[0], foot[1], words.number(thick), -LINE)
         sheet.finish(words, _titled(deck))
         saved = style.save(fig, folder, NAME)
-    told = words("The wall: elevation and cross-section at scale 1:{scale} on A4; width over height in its openings.", scale=sheet.scale)
+    told = words(
+        "The wall: elevation and cross-section at scale 1:{scale} on A4. Numbers in openings: width above height.", scale=sheet.scale
+    )
     return [(saved, told)]
 
 

@@ -1,15 +1,13 @@
-"""What the page shows of stored runs: words, charts and bodies that move, by the entry of the kind, from the arrays that are
-there."""
+"""Charts of stored runs for the page, by the entry of the kind, from the available arrays."""
 
 from typing import Any
 
 import numpy as np
 
-from extrados.kinds import ANALYSES, STRUCTURES, load, table
+from extrados.kinds import ANALYSES, load
 from extrados.results.store import Stored, StoreError
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
-from extrados.schema.keys import unit_along
 
 MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
 MOST_ROWS, MOST_COLUMNS = 200, 10
@@ -51,7 +49,7 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     if name is None:
         return words, {}
     if name not in run.arrays:
-        raise StoreError(f"the run has no analysis {name[:60]!r} with arrays")
+        raise StoreError(f"the run has no analysis {name[:60]!r} with stored arrays")
     kind = run.analysis(name)["kind"]
     arrays = {key: array.numbers for key, array in run.arrays[name].items()}
     made = Shown(run, name, arrays)
@@ -59,7 +57,7 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     try:
         draw(made)
     except KeyError as error:
-        raise StoreError(f"the results of {name} lack the array {error}") from None
+        raise StoreError(f"the results of {name} do not contain the array {error}") from None
     results = run.analysis(name)["results"]
     numbers = [[k, v] for k, v in results.items() if isinstance(v, SINGLE)]
     words |= {
@@ -88,7 +86,7 @@ def _rows(name: str, value: Any) -> dict[str, Any] | None:
 
 
 class Shown:
-    """Collects what the page is sent of one analysis."""
+    """Collects the data of one analysis for the page."""
 
     def __init__(self, run: Stored, name: str, arrays: Arrays):
         self.run, self.name, self.arrays = run, name, arrays
@@ -127,13 +125,24 @@ class Shown:
         share = np.linspace(0.0, 1.0, MOST_STATES)
         step = 0.1 * size / max(float(np.hypot(velocity[:, 0], velocity[:, 1]).max()), 1e-300)
         pose = np.concatenate([centroid, np.zeros((len(centroid), 1))], axis=1) + step * share[:, None, None] * velocity
-        self._moving(share, pose, "", "share of the motion shown")
+        self._moving(share, pose, "", "displayed part of the motion")
 
     def _moving(self, time: np.ndarray, pose: np.ndarray, unit: str, label: str, **lines: np.ndarray) -> None:
         """A body of stones that moves along `time`."""
         self._stones()
         self.out |= {"body_time": time, "body_pose": pose, **{f"body_{k}": v for k, v in lines.items()}}
         self.body = {"sort": "stones", "unit": unit, "label": label, "line": "line" in lines}
+
+    def _mechanism(self, pose: str, label: str) -> None:
+        """A body of stones that moves from rest to the stored pose (blocks, 3)."""
+        rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
+        share = np.linspace(0.0, 1.0, 24)
+        self._moving(share, rest + share[:, None, None] * (self.arrays[pose] - rest), "", label)
+
+    def _blocks(self, time: np.ndarray, pose: np.ndarray, **body: Any) -> None:
+        """Blocks in space that move along `time` by poses (times, blocks, 6)."""
+        self.out |= {name: self.arrays[source] for name, source in SOLIDS.items()} | {"body_time": time, "pose": pose}
+        self.body = {"sort": "space", **body}
 
     def _lines(self, *names: str) -> list[dict[str, str]]:
         """Stored lines of thrust, of states that are named."""
@@ -148,15 +157,13 @@ class Shown:
     # Kinds
 
     def _solids(self) -> None:
-        """Blocks in space that move along a mechanism, and what they bear over the direction."""
-        for name, source in SOLIDS.items():
-            self.out[name] = self.arrays[source]
-        self.out |= {"body_time": np.linspace(0.0, 1.0, 24), "pose": self.arrays["mechanism_pose"]}
-        self.body = {"sort": "space", "unit": "", "label": "mechanism", "swings": True, "push": self._results.load_direction_deg}
+        """Blocks in space that move along a mechanism, and their capacity over the direction."""
+        share, pose = np.linspace(0.0, 1.0, 24), self.arrays["mechanism_pose"]
+        self._blocks(share, pose, unit="", label="mechanism", swings=True, push=self._results.load_direction_deg)
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
             self._draw(
-                "Capacity over the direction of the push",
+                "Capacity over the direction of the acceleration",
                 _axis("rose_direction", "direction in plan", "deg"),
                 _axis("", "collapse acceleration", "g"),
                 [_series("rose_capacity", "capacity", sort="both")],
@@ -220,25 +227,32 @@ class Shown:
             self._solids()
             return
         self._stones()
-        rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
         lines = self._lines("collapse", "least", "most")
         if "mechanism_pose" in self.arrays:
-            share = np.linspace(0.0, 1.0, 24)[:, None, None]
-            self.out["body_time"] = share[:, 0, 0]
-            self.out["body_pose"] = rest + share * (self.arrays["mechanism_pose"] - rest)
+            self._mechanism("mechanism_pose", "mechanism")
         self.body = {"sort": "stones", "unit": "", "label": "mechanism", "lines": lines, "swings": True}
         if "collapse_friction" in self.arrays:
             self.out["joint"] = np.arange(len(self.arrays["collapse_friction"]))
             self.send("collapse_friction", "collapse_normal")
             self._draw(
-                "Friction needed at collapse",
+                "Required friction at collapse",
                 _axis("joint", "joint", ""),
                 _axis("", "coefficient of friction", ""),
                 [_series("collapse_friction", "needed", sort="points")],
             )
 
     def thrust(self) -> None:
-        """The lines of least and greatest thrust."""
+        """The lines of least and greatest thrust; of solids the blocks and the thrusts of their sections."""
+        if "solid_vertex" in self.arrays:
+            rest = np.zeros((len(self.arrays["solid_centroid"]), 6))
+            self._blocks(np.linspace(0.0, 1.0, 24), rest, unit="", label="", swings=True, push=self._results.load_direction_deg)
+            columns = ["section", "direction", "least [kN]", "central [kN]", "greatest [kN]"]
+            rows = [
+                [one.name, one.direction, *(None if n is None else 1e-3 * n for n in (one.least_N, one.central_N, one.greatest_N))]
+                for one in self._results.sections
+            ]
+            self.tables.append({"title": "thrust", "columns": columns, "rows": rows, "left_out": 0})
+            return
         self._stones()
         self.body = {"sort": "stones", "unit": "", "label": "", "lines": self._lines("least", "most", "central")}
 
@@ -279,25 +293,20 @@ class Shown:
             if "support_outline" in self.arrays:
                 self.send("support_outline", "support_start")
         elif "solid_vertex" in self.arrays:
-            for name, source in SOLIDS.items():
-                self.out[name] = self.arrays[source]
-            self.out |= {"body_time": time[keep], "pose": self.arrays["pose"][keep]}
-            self.body = {"sort": "space", "unit": "s", "label": "time", "over_time": True}
+            self._blocks(time[keep], self.arrays["pose"][keep], unit="s", label="time", over_time=True)
         fine = self._over_time(len(time))
         self.out["time"] = time[fine]
         axis = _axis("time", "time", "s")
+        rows = []
         if "turn" in self.arrays:  # of blocks in space: by how much, whatever the axis
-            rows = []
             for i in self.arrays["tracked"][:6].tolist():
                 self.out[f"turn_{i}"] = np.linalg.norm(self.arrays["turn"][fine, i], axis=1)
                 rows.append(_series(f"turn_{i}", f"stone {i + 1}", factor=1e3))
-            self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
-        if "rotation" in self.arrays:
-            tracked = self.arrays["tracked"][:6]
-            rows = []
-            for i, label in zip(tracked.tolist(), self._results.peak_rotation_rad, strict=False):
+        elif "rotation" in self.arrays:
+            for i, label in zip(self.arrays["tracked"][:6].tolist(), self._results.peak_rotation_rad, strict=False):
                 self.out[f"rotation_{i}"] = self.arrays["rotation"][fine, i]
                 rows.append(_series(f"rotation_{i}", label, factor=1e3))
+        if rows:
             self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
         if "ground" in self.arrays:
             self.out["ground"] = self.arrays["ground"][fine]
@@ -323,9 +332,7 @@ class Shown:
             movement, pose = self.arrays[f"{which}_movement"], self.arrays[f"{which}_pose"]
             self._moving(1e3 * movement, pose, "mm", "movement", line=self.arrays[f"{which}_{line}"])
         elif "settled_pose" in self.arrays:
-            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
-            share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement")
+            self._mechanism("settled_pose", "share of the movement")
 
     def sla(self) -> None:
         """The load curve, and the wall as it cracks."""
@@ -416,7 +423,7 @@ class Shown:
             self.send("bin_count")
             self._draw(
                 "Greatest rotations",
-                _axis("bin_middle", "greatest rotation over the critical one", ""),
+                _axis("bin_middle", "greatest rotation / critical rotation", ""),
                 _axis("", "runs", ""),
                 [_series("bin_count", "runs", sort="bars")],
                 least=0.0,
@@ -461,10 +468,8 @@ class Shown:
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
         key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
-        kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
-        unit = unit_along(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
         about = key.replace("_", " ")
-        self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
+        self._draw("Capacity", _axis("value", about, self._results.unit), _axis("", "collapse acceleration", "g"), rows)
 
     def strengthen(self) -> None:
         """The value over the size of each alternative, and the building with the mechanism of the cheapest one."""
@@ -485,14 +490,12 @@ class Shown:
         self.send("place", "capacity")
         self._draw(
             "Collapse load",
-            _axis("place", "place of the first axle", "m"),
+            _axis("place", "position of the first axle", "m"),
             _axis("", "load", "kN"),
             [_series("capacity", "capacity", factor=1e-3)],
         )
         if "mechanism_pose" in self.arrays and "outline" in self.arrays:
-            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
-            share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["mechanism_pose"] - rest), "", "mechanism")
+            self._mechanism("mechanism_pose", "mechanism")
 
     def assessment(self) -> None:
         """The motion, and its primary impulses beside the pulses that bring the structure down."""
@@ -502,7 +505,7 @@ class Shown:
         self.out["impulse_amplitude"] = np.abs(self.arrays["impulse_amplitude"]) / GRAVITY
         known = [
             _series("failing_amplitude", "fails (Eq. 5.8)"),
-            _series("failing_amplitude_own", "fails, its own fit", dashed=True),
+            _series("failing_amplitude_own", "collapse, fitted to this structure", dashed=True),
             _series("computed_amplitude", "fails, computed", x="computed_period"),
             _series("impulse_amplitude", "impulses of the motion", x="impulse_period", sort="points"),
         ]
@@ -520,7 +523,7 @@ class Shown:
             self.out["impulse_period"] = np.array([i.period_s for i in r.impulses])
             self.out["impulse_amplitude"] = np.array([abs(i.amplitude_g) for i in r.impulses])
             rows.append(_series("impulse_amplitude", "impulses of motions", x="impulse_period", sort="points"))
-        self._pulses(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)
+        self._pulses(f"Lowest amplitude that causes collapse, {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)
 
     def local_mechanism(self) -> None:
         """The capacity curve of the mechanism."""
@@ -528,7 +531,7 @@ class Shown:
             return
         self.send("displacement", "acceleration")
         self._draw(
-            "Capacity of the mechanism as it moves",
+            "Capacity of the mechanism over its displacement",
             _axis("displacement", "displacement", "m"),
             _axis("", "acceleration", "g"),
             [_series("acceleration", "capacity")],
@@ -541,7 +544,7 @@ class Shown:
         order = np.argsort(np.where(np.isfinite(gamma), gamma, np.inf), kind="stable")
         self.out |= {"rank": np.arange(1, len(order) + 1), "capacity": gamma[order]}
         self._draw(
-            "Capacity of the sections, the weakest first",
+            "Capacity of the sections, in ascending order",
             _axis("rank", "rank", ""),
             _axis("", "collapse acceleration", "g"),
             [_series("capacity", "capacity", sort="points")],
@@ -558,7 +561,7 @@ class Shown:
         )
 
     def others(self) -> None:
-        """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""
+        """Any other kind: arrays over their axis, if it has numbers of its own."""
         found = self.run.arrays[self.name]
         axes = {n: a for n, a in found.items() if a.dims == (n,) and np.size(a.numbers) > 1 and np.asarray(a.numbers).dtype.kind in "fiu"}
         for axis, about in axes.items():

@@ -13,7 +13,8 @@ from extrados.show.stones import outlines, window
 
 
 def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """The mechanism or the governing wall on the plan, a* over d* with what the checks ask, and demand over capacity of each."""
+    """The mechanism or the governing wall on the plan, a* over d* with the demands of the checks, and demand over capacity of
+    each."""
     r = run.results_of(name, LocalMechanism)
     there = run.arrays.get(name, {})
     drawn = []
@@ -42,7 +43,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
         ax.set_title("Capacity of the mechanism" if r.mechanism == "building" else f"Capacity: {r.mechanism.replace('-', ' ')}")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-capacity")
-    straight = "; the straight line is the rule of the code" if r.jurisdiction == "NTC" else ""
+    straight = "; the straight line is the assumption of the code" if r.jurisdiction == "NTC" else ""
     caption = f"Capacity curve of the equivalent oscillator, divided by the confidence factor{straight}."
     return [*drawn, (saved, caption), *draw_code_checks(run, name, folder)]
 

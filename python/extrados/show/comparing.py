@@ -10,7 +10,7 @@ MOST = 40
 
 def document(names: tuple[str, str], found: Comparison) -> Document:
     """What changed from the first run to the second."""
-    blocks: list[Block] = [Words("Nothing but the time it took differs.", "answer")] if found.same else []
+    blocks: list[Block] = [Words("Only the computing time differs.", "answer")] if found.same else []
     for title, rows, head in (
         ("Verdicts", found.verdicts, ("analysis", "before", "after", "after / before")),
         ("Deck", found.deck, ("key", "before", "after", "after / before")),
@@ -20,7 +20,7 @@ def document(names: tuple[str, str], found: Comparison) -> Document:
             blocks += [Heading(title), Table(head, [row(c) for c in rows], (2.6, 2.0, 2.0, 1.0))]
     only = [(n, "before") for n in found.only_old] + [(n, "after") for n in found.only_new]
     if only:
-        blocks += [Heading("Analyses of one run alone"), Table(("analysis", "only"), only, (3.0, 1.0))]
+        blocks += [Heading("Analyses that only one run has"), Table(("analysis", "only"), only, (3.0, 1.0))]
     if found.numbers:
         blocks.append(Heading("Numbers"))
     for name, there in found.numbers.items():
@@ -29,8 +29,8 @@ def document(names: tuple[str, str], found: Comparison) -> Document:
             Table(("key", "before", "after", "after / before"), [row(c) for c in there[:MOST]], (2.6, 2.0, 2.0, 1.0)),
         ]
         if len(there) > MOST:
-            blocks.append(Words(f"and {len(there) - MOST} smaller ones"))
-    for title, lines in (("Warnings that are gone", found.warnings_gone), ("New warnings", found.warnings_new)):
+            blocks.append(Words(f"and {len(there) - MOST} smaller differences"))
+    for title, lines in (("Warnings that no longer occur", found.warnings_gone), ("New warnings", found.warnings_new)):
         if lines:
             blocks += [Heading(title), *(Words(line, "warn") for line in lines)]
     return Document(f"{names[0]} and {names[1]}", [("Before", names[0]), ("After", names[1])], blocks, "")

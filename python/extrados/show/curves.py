@@ -43,8 +43,8 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
         if len(places):
             falls = [sum(c.run_outcomes[k] == "collapse" for c in r.curves) for k in range(len(places))]
             for marker, colour, text, some in (
-                ("o", style.THRUST, "causes collapse of all", [k for k, n in enumerate(falls) if n == len(r.curves)]),
-                ("^", style.MODES[2], "causes collapse of some", [k for k, n in enumerate(falls) if 0 < n < len(r.curves)]),
+                ("o", style.THRUST, "causes collapse of all structures", [k for k, n in enumerate(falls) if n == len(r.curves)]),
+                ("^", style.MODES[2], "causes collapse of some structures", [k for k, n in enumerate(falls) if 0 < n < len(r.curves)]),
                 ("s", style.SAFE, "causes no collapse", [k for k, n in enumerate(falls) if n == 0]),
             ):
                 if some:
@@ -61,20 +61,22 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
         plain.set_xlim(0.0, None)
         plain.set_xlabel(first)
         plain.set_ylabel("amplitude [g]")
-        plain.set_title(f"Lowest failing {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}")
+        plain.set_title(
+            f"Lowest amplitude that causes collapse, {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}"
+        )
         scaled.set_ylim(0.0, None)
         if slender:
-            scaled.set_xlabel("frequency of the pulse over p")
-            scaled.set_ylabel("amplitude over g tan(alpha)")
+            scaled.set_xlabel("frequency of the pulse / p")
+            scaled.set_ylabel("amplitude / (g tan(alpha))")
         else:
             scaled.set_xlabel(first.replace("[s]", "/ sqrt(R/g)"))
-            scaled.set_ylabel("amplitude over the uplift acceleration")
-        scaled.set_title("Over natural time and uplift")
+            scaled.set_ylabel("amplitude / uplift acceleration")
+        scaled.set_title("Normalised by natural time and uplift")
         if len(r.curves) <= MOST_IN_AXES:
             plain.legend(loc="upper right", frameon=True)
         else:
             style.legend_below(fig, plain)
-        caption = "Lowest amplitudes of collapse of each (dotted: start of rocking), and the same over its natural time and its uplift."
+        caption = "Left: lowest amplitude that causes collapse of each structure (dotted: start of rocking). Right: the same, normalised by the natural time and the uplift acceleration of the structure."
         if len(places):
             named = ", ".join(f"{k + 1} {i.name}" for k, i in enumerate(r.impulses))
             caption += f" Points: primary impulses of {named}."

@@ -6,9 +6,19 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, DemDomain, DemParameters, DemRun, DemTilt, SolidDemRun, SolidDemTilt
+from extrados.results.dem import (
+    HINGED_FIRST,
+    HINGED_SECOND,
+    BlocksRun,
+    BlocksTilt,
+    DemDomain,
+    DemParameters,
+    DemRun,
+    DemTilt,
+    SolidDemRun,
+    SolidDemTilt,
+)
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, solid_dem, style
@@ -28,7 +38,7 @@ def _stored(run: Stored, name: str) -> DemRun | DemTilt:
 def _balance(run: Stored, name: str) -> float:
     """Error of the energy balance over the energy exchanged, of a run in a plane or in space."""
     found = run[name]
-    assert isinstance(found, DemRun | DemTilt | SolidDemRun | SolidDemTilt)
+    assert isinstance(found, BlocksRun | BlocksTilt)
     return found.energy_residual_ratio
 
 
@@ -200,7 +210,11 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if rigid is not None and len(tracked) == 1:
             other = run.arrays[rigid["name"]]
             top.plot(
-                other["time"].numbers, 1e3 * other["rotation"].numbers, color="#999999", linewidth=2.4, label="rocking by one mechanism"
+                other["time"].numbers,
+                1e3 * other["rotation"].numbers,
+                color="#999999",
+                linewidth=2.4,
+                label="rocking of the single mechanism",
             )
         for i in most:
             top.plot(time, 1e3 * rotation[:, i], label=label[int(i)])
@@ -211,8 +225,8 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         low.set_xlabel("time [s]")
         low.set_xlim(0.0, time[-1])
         saved = style.save(fig, folder, f"{name}-rotation")
-    slips = "" if slid is None else ", slip of the joint that slides most"
-    return saved, f"Rotation of the blocks from their settled state{slips}, and the ground acceleration."
+    slips = "" if slid is None else ", slip of the joint with the greatest slip"
+    return saved, f"Rotation of the blocks, measured from equilibrium under self-weight{slips}, and the ground acceleration."
 
 
 def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -258,23 +272,19 @@ def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(0.0, time[-1] or 1.0)
         style.legend_above(ax)
         saved = style.save(fig, folder, f"{name}-ties")
-    return [(saved, "Forces of the ties" + (f", the {SHOWN} greatest." if len(rows) > SHOWN else "."))]
+    return [(saved, "Forces of the ties" + (f", the {SHOWN} ties with the greatest forces." if len(rows) > SHOWN else "."))]
 
 
 def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    states = {
+        "hinge, first end\n(of a ring: intrados)": style.HINGE,
+        "closed": "#f4f1ea",
+        "hinge, second end\n(of a ring: extrados)": style.THRUST,
+        "open": "#d9a400",
+    }
     time, hinge = run.array(name, "time"), run.array(name, "hinge")
-    colours = ListedColormap([style.HINGE, "#f4f1ea", style.THRUST, "#d9a400"])
-    with style.figure(8.0, min(7.0, 1.6 + 0.18 * hinge.shape[1])) as (fig, (ax,)):
-        norm = BoundaryNorm([-1.5, -0.5, 0.5, 1.5, 2.5], 4)
-        mesh = ax.pcolormesh(time, np.arange(hinge.shape[1]), hinge.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
-        bar = fig.colorbar(mesh, ax=ax, ticks=[-1, 0, 1, 2])
-        bar.ax.set_yticklabels(["hinge, first end\n(of a ring: intrados)", "closed", "hinge, second end\n(of a ring: extrados)", "open"])
-        style.numbers(ax.yaxis)
-        ax.set_xlabel("time [s]")
-        ax.set_ylabel("joint")
-        ax.grid(False)
-        saved = style.save(fig, folder, f"{name}-hinges")
-    return saved, "Where joints are hinged, over time."
+    saved = solid_dem.draw_states(time, hinge, states, HINGED_FIRST, "joint", folder, f"{name}-hinges")
+    return saved, "State of the joints over time: hinges at either end, closed and open joints."
 
 
 def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -322,7 +332,7 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
-    drawn = [(saved, "Shortest failing pulses; to the right of a curve it collapses.")]
+    drawn = [(saved, "Shortest pulse that causes collapse at each amplitude. Right of a curve the structure collapses.")]
     return [*drawn, _both_solvers(run, name, folder)] if run.results_of(name, DemDomain).cross_check is not None else drawn
 
 
@@ -334,10 +344,10 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ("nonsmooth", "compliant") if run.results_of(name, DemDomain).curves[0].solver == "nonsmooth" else ("compliant", "nonsmooth")
     )
     kinds = (
-        (fails[0] & fails[1], "collapses by both", {"marker": "s", "color": style.HINGE}),
-        (~fails[0] & ~fails[1] & 1, "stable by both", {"marker": "s", "color": "#d8d4c8"}),
-        (fails[0] & ~fails[1] & 1, f"collapses by {first} only", {"marker": "X", "color": style.THRUST}),
-        (~fails[0] & 1 & fails[1], f"collapses by {second} only", {"marker": "P", "color": "#d9a400"}),
+        (fails[0] & fails[1], "collapse with both", {"marker": "s", "color": style.HINGE}),
+        (~fails[0] & ~fails[1] & 1, "no collapse with either", {"marker": "s", "color": "#d8d4c8"}),
+        (fails[0] & ~fails[1] & 1, f"collapse with {first} only", {"marker": "X", "color": style.THRUST}),
+        (~fails[0] & 1 & fails[1], f"collapse with {second} only", {"marker": "P", "color": "#d9a400"}),
     )
     with style.figure(6.5, 4.6) as (fig, (ax,)):
         for cells, label, look in kinds:
@@ -352,7 +362,7 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.set_title(f"both solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells")
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         saved = style.save(fig, folder, f"{name}-solvers")
-    return saved, "Outcome of every cell by springs (compliant) and by rigid contacts (nonsmooth)."
+    return saved, "Outcome of every cell with springs (compliant) and with rigid contacts (nonsmooth)."
 
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Figures of a stored analysis as objects: to look at in a notebook, to change, to save."""
+"""Figures of a stored analysis as objects, to view in a notebook, to change, or to save."""
 
 import base64
 import html
@@ -19,7 +19,7 @@ from extrados.show.limit.self_weight import draw_self_weight
 
 @dataclass(frozen=True)
 class Drawn:
-    """Figures of matplotlib by their names, and what each shows: `drawn["tilt-mechanism"].savefig("a.pdf")`."""
+    """Figures of matplotlib by name, with their captions: `drawn["tilt-collapse"].savefig("a.pdf")`."""
 
     figures: dict[str, Figure]
     captions: dict[str, str]
@@ -35,11 +35,11 @@ class Drawn:
 
     def __getitem__(self, name: str) -> Figure:
         if name not in self.figures:
-            raise KeyError(f"no figure '{name}'; there are {', '.join(self.figures) or 'none'}")
+            raise KeyError(f"the analysis has no figure '{name}'; its figures are {', '.join(self.figures) or 'none'}")
         return self.figures[name]
 
     def save(self, folder: str | Path, suffix: str = "png") -> list[Path]:
-        """Write each into `folder` as NAME.SUFFIX, in any format of matplotlib by its `suffix`; returns the files."""
+        """Write every figure into `folder` as NAME.SUFFIX; `suffix` is any format of matplotlib. Returns the files."""
         place = Path(folder)
         place.mkdir(parents=True, exist_ok=True)
         paths = [place / f"{name}.{suffix}" for name in self.figures]
@@ -48,7 +48,7 @@ class Drawn:
         return paths
 
     def html(self, most: int | None = None) -> str:
-        """The first `most` of them, all by default, with their captions as HTML; "" where nothing was drawn."""
+        """The first `most` figures (default: all) with their captions as HTML; "" without figures."""
         return "".join(self._one(name) for name in list(self.figures)[:most])
 
     def _one(self, name: str) -> str:
@@ -72,7 +72,7 @@ def figures_of(run: Stored, name: str) -> Callable[[Stored, str, Path], list[tup
 
 
 def draw(run: Stored, name: str) -> Drawn:
-    """The figures of an analysis of a run by its name, none where it has no arrays; KeyError where there is no such analysis."""
+    """The figures of an analysis of a run, empty for an analysis without arrays; KeyError if there is no such analysis."""
     row = run.analysis(name)
     if row["status"] not in ("ok", "interrupted") or row["kind"] not in kinds.ANALYSES or not run.arrays.get(name):
         return Drawn({}, {})

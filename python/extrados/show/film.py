@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from extrados.results.store import Stored
-from extrados.schema.programs import ffmpeg
+from extrados.schema.programs import ffmpeg, film_command
 from extrados.show import style
 from extrados.show.stones import Stones, window
 
@@ -28,7 +28,7 @@ PIXELS, DPI = (1280, 720), 100
 
 
 def asked(run: Stored, name: str) -> tuple[str, float]:
-    """The kind of film that the deck asks for, "none", "gif" or "mp4", and its speed over real time."""
+    """The kind of film that the deck requests, "none", "gif" or "mp4", and its speed relative to real time."""
     index = [row["name"] for row in run.analyses].index(name)
     options = run.summary["deck"]["resolved"]["analysis"][index]
     return options.get("animation", "none"), float(options.get("animation_speed", 1.0))
@@ -92,34 +92,10 @@ def gif(images: list[Image.Image], rate: int) -> bytes:
 
 
 def _mp4(path: Path, drawn: Iterator[np.ndarray], rate: int) -> None:
-    """Pictures through ffmpeg; OSError with its words where it fails."""
+    """Write pictures through ffmpeg; OSError with its message on failure."""
     with tempfile.TemporaryFile() as told:
         process = subprocess.Popen(
-            [
-                ffmpeg() or "ffmpeg",
-                "-y",
-                "-loglevel",
-                "error",
-                "-f",
-                "rawvideo",
-                "-pix_fmt",
-                "rgb24",
-                "-s",
-                f"{PIXELS[0]}x{PIXELS[1]}",
-                "-framerate",
-                str(rate),
-                "-i",
-                "-",
-                "-c:v",
-                "libx264",
-                "-pix_fmt",
-                "yuv420p",
-                "-crf",
-                "20",
-                "-movflags",
-                "+faststart",
-                str(path),
-            ],
+            film_command(ffmpeg() or "ffmpeg", ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{PIXELS[0]}x{PIXELS[1]}"], rate, path),
             stdin=subprocess.PIPE,
             stdout=told,
             stderr=told,

@@ -58,8 +58,8 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     made.append(
         (
             saved,
-            f"Capacity curves of {len(r.runs)} pushovers; thin: with accidental eccentricity. Dots: ultimate displacement, by a loss of 20 % "
-            "or by the drift limits of all piers of a storey of a wall.",
+            f"Capacity curves of {len(r.runs)} pushovers. Thin: with accidental eccentricity. Dots: ultimate displacement, "
+            f"at a loss of 20 % of the base shear or when all piers of a wall in one storey reach their drift limits.",
         )
     )
     for angle in angles:
@@ -168,7 +168,7 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
         ax.set_ylim(0.0, float(height.max()) * 1.1)
         ax.set_aspect("equal")
         ax.grid(False)
-        ax.set_xlabel("walls side by side, along each [m]")
+        ax.set_xlabel("distance along the walls, side by side [m]")
         ax.set_ylabel("height [m]")
         ax.set_title(told)
         handles = [Patch(facecolor=c, edgecolor=style.EDGE, label=w) for c, w in zip(COLOURS, WORDS, strict=True)]
@@ -208,7 +208,7 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
         saved = style.save(fig, folder, f"{name}-modes")
     where = "on the plan" if place.shape[1] == 3 else "of the blocks in their section"
-    return [(saved, f"Displacements in the first modes, {where}; the colour is their height.")]
+    return [(saved, f"Displacements in the first modes, {where}. The colour shows the height above the ground.")]
 
 
 def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -222,7 +222,7 @@ def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         right.set_xlabel("control displacement [mm]")
         right.set_ylabel("base shear [kN]")
         saved = style.save(fig, folder, f"{name}-history")
-    return [(saved, "Displacement of the control level relative to the ground, and base shear over it.")]
+    return [(saved, "Left: displacement of the control level relative to the ground. Right: base shear over this displacement.")]
 
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -257,6 +257,6 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
             axes[1].set_xlabel(f"{r.intensity} [g]")
             axes[1].set_ylabel("greatest drift of a pier [%]")
         saved = style.save(fig, folder, f"{name}-fragility")
-    caption = f"Fragility over {r.motions} motions: fitted curves" + (", and shares at the levels" if r.levels_g else "")
-    caption += f"; right: greatest drift of every run, at most {LARGEST_DRIFT:g} %." if history else "; steps: shares of the motions."
+    caption = f"Fragility over {r.motions} motions: fitted curves" + (", and shares of the motions at each level" if r.levels_g else "")
+    caption += f". Right: greatest drift of every run, drawn up to {LARGEST_DRIFT:g} %." if history else ". Steps: shares of the motions."
     return [(saved, caption)]

@@ -1,4 +1,4 @@
-"""The picture of a survey before it is computed: stones, joints, supports, and what is amiss between them."""
+"""The picture of a survey before the calculation: blocks, joints, supports, and gaps and overlaps between blocks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -120,10 +120,10 @@ def draw_stones(
     with style.figure(10.5, 5.0, columns=2) as (fig, axes):
         for ax, solids, title in (
             (axes[0], whole, f"{count} stones"),
-            (axes[1], both, f"{len(contacts)} contacts between them, {int(grounded.sum())} on the ground"),
+            (axes[1], both, f"{len(contacts)} contacts, {int(grounded.sum())} of them on the ground"),
         ):
             scene.show(ax, scene.picture(solids, view, frame, colours), frame)
             scene.ground(ax, points, view)
-            scene.compass(ax, points, view)
+            scene.compass(ax, view)
             ax.set_title(title)
         style.write(fig, folder, name)

@@ -39,7 +39,7 @@ class Language:
         return told.format(**fields) if fields else told
 
     def has(self, text: str) -> bool:
-        """Whether the text can be told in this language."""
+        """Whether the catalogue of this language contains the text."""
         return self.code == "en" or bool(self.catalogue.get(text))
 
     def number(self, value: float, figures: int = 3) -> str:

@@ -52,7 +52,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found.append(
             (
                 style.save(fig, folder, f"{name}-history"),
-                "Acceleration with its strongest single-sine impulses, velocity, displacement, and growth of the Arias intensity (dotted: 5 and 95 %).",
+                "Acceleration with its strongest impulses (single sines), velocity, displacement, and cumulative Arias intensity (dotted: 5 and 95 %).",
             )
         )
     period, damping = run.array(name, "period"), run.array(name, "damping")
@@ -65,7 +65,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             for key, label, line in (("psa_rotd50", "RotD50", "k--"), ("psa_rotd100", "RotD100", "k:")):
                 psa.semilogx(period, run.array(name, key) / GRAVITY, line, linewidth=1.1, label=label)
             psa.set_ylim(top=1.35 * psa.get_ylim()[1])  # room for the longer legend
-            caption += f"; black: median and greatest over all directions ({100 * r.rotd_damping:g} % damping)"
+            caption += f"; black: median and maximum over all directions ({100 * r.rotd_damping:g} % damping)"
         psa.set_ylabel("pseudo-acceleration [g]")
         sd.set_ylabel("displacement [cm]")
         psa.legend(title="damping", loc="upper right", ncols=2 if "psa_rotd50" in run.arrays[name] else 1)
@@ -83,7 +83,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 label="smoothed (Konno and Ohmachi)",
             )
             fourier.legend(loc="lower left", fontsize=7)
-            caption += ", raw and smoothed by Konno and Ohmachi's window (b = 40)"
+            caption += ", unsmoothed, and smoothed by the window of Konno and Ohmachi (b = 40)"
         found.append((style.save(fig, folder, f"{name}-spectra"), f"{caption}."))
     return found
 
@@ -149,7 +149,11 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             (
                 style.save(fig, folder, f"{name}-spectra"),
                 "Response spectra of the set"
-                + ("; root mean square Fourier amplitude (the sum of few lines has peaks at them)." if columns == 2 else "."),
+                + (
+                    ", and root mean square Fourier amplitude (generated motions with few spectral lines have a peak at each line)."
+                    if columns == 2
+                    else "."
+                ),
             )
         )
     with style.figure(5.0, 3.6) as (fig, (ax,)):
@@ -158,7 +162,7 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.set_ylim(bottom=0.0)
-        found.append((style.save(fig, folder, f"{name}-impulses"), "Primary impulses: the single sine that fits each motion best."))
+        found.append((style.save(fig, folder, f"{name}-impulses"), "Primary impulses: for each motion the single sine that fits best."))
     return found
 
 
@@ -193,7 +197,10 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         acc.set_ylabel("acceleration amplitude [g]")
         dis.legend(loc="lower left")
         found.append(
-            (style.save(fig, folder, f"{name}-capacity"), "Capacity of the table for harmonic motion, as displacement and as acceleration.")
+            (
+                style.save(fig, folder, f"{name}-capacity"),
+                "Capacity of the shake table for harmonic motion, as displacement and as acceleration.",
+            )
         )
     if "drive_time" in arrays:
         r = run.results_of(name, ShakeTable)
@@ -222,7 +229,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             found.append(
                 (
                     style.save(fig, folder, f"{name}-drive"),
-                    f"Drive of the table, time scaled by {r.time_scale:.3f} and acceleration by {r.amplitude_factor:.3f}; dashed: its limits.",
+                    f"Motion of the shake table: time scaled by {r.time_scale:.3f} and acceleration by {r.amplitude_factor:.3f}. Dashed: limits of the table.",
                 )
             )
     return found

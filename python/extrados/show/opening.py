@@ -207,7 +207,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
             said.append(words("The clause was not verified against the standard. Compare it before use."))
         open_parts = [a["name"] for a in run.analyses if isinstance(run[a["name"]], Checked) and a["verdict"]["ratio"] is None]
         if open_parts:
-            said.append(words("No check decides for: {parts}.", parts=", ".join(open_parts)))
+            said.append(words("These parts have no check with a verdict: {parts}.", parts=", ".join(open_parts)))
     verified = getattr(r, "verification", None)
     if verified is not None:
         if verified.confidence_factor is not None:
@@ -218,7 +218,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
         clauses = {c.clause for c in verified.checks}
         said.append(words("Clauses: {clauses}.", clauses="; ".join(sorted(clauses))))
         if any("verify clause" in clause for clause in clauses):
-            said.append(words("Clauses so marked were not verified against the standard. Compare them before use."))
+            said.append(words("Marked clauses were not verified against the standard. Compare them before use."))
     if v["bound"] in ("upper", "lower"):
         said.append(words(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound."))
     if v["violated"]:
@@ -250,7 +250,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
                 return words("Resolve the first assumption that does not hold.")
             return f"Resolve the first assumption that does not hold: {v['violated'][0]}"
         if isinstance(r, Assess) and r.not_done:
-            return words("Finish the steps that the time limit cut off, with a larger budget: {step}.", step=r.not_done[0])
+            return words("Run again with a larger budget: the time limit stopped {step}.", step=r.not_done[0])
         return words("Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first.")
     if outcome == "stands":
         if factor is not None and factor < THIN:
@@ -281,13 +281,15 @@ def _strengthening(run: Stored, lead: dict[str, Any], words: Language) -> str:
         return ""
     met = [one for one in r.advice.interventions if one.meets_target]
     if not met:
-        return " " + words("No intervention considered carries the peak of the hazard as a constant horizontal acceleration.")
+        return " " + words(
+            "With none of the interventions considered does the building carry the peak of the hazard as a constant horizontal acceleration."
+        )
     told = "; ".join(f"{one.name}, {size_told(one)}" for one in met)
     text = words("Strengthening for the peak of the hazard as a constant horizontal acceleration: {interventions}.", interventions=told)
     least = r.advice.by_rocking
     if least is not None and least.required_N is not None:
         force = words.quantity(least.required_N, "N")
-        text += " " + words("By rocking under this motion the first tie needs {force}.", force=force)
+        text += " " + words("To prevent collapse by rocking under this motion the first tie needs {force}.", force=force)
     return f" {text}"
 
 

@@ -1,4 +1,4 @@
-"""The picture of a building before it is computed: its plan, and its walls with their mesh; of a vault its mesh in space."""
+"""Picture of a building before the calculation: plan, walls with their mesh; for a vault the mesh in space."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -59,7 +59,7 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
         plan.autoscale_view()
         plan.margins(0.15)
         plan.set_aspect("equal")
-        plan.set_title("plan, walls from their starts")
+        plan.set_title("plan; an arrow shows the direction from start to end of each wall")
         plan.set_xlabel("x [m]")
         plan.set_ylabel("y [m]")
         for k, wall in enumerate(walls):
@@ -124,7 +124,7 @@ def draw_shells(folder: Path, name: str, parts: list[tuple[str, np.ndarray, np.n
             [f"{1e3 * t:.4g} mm thick" for t in thick],
             loc="outside lower center",
             ncols=min(6, len(thick)),
-            title=f"{sum(len(c) for _, c, _ in parts)} elements; triangles: nodes that are held",
+            title=f"{sum(len(c) for _, c, _ in parts)} elements; triangles mark supported nodes",
         )
         style.write(fig, folder, name)
     return folder / f"{name}.png"

@@ -1,4 +1,4 @@
-"""Many assessed buildings in order, the worst first, and a page for each."""
+"""Ranking of many assessed buildings, the worst first, with a page for each."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Figures and the report of a stored run: one self-contained HTML page, and on A4 paper as PDF."""
+"""Figures and report of a stored run: one self-contained HTML page, and PDF on A4."""
 
 import contextlib
 import os
@@ -28,9 +28,9 @@ PRINTED, ANNEX, SOURCE, ANNEX_SOURCE = "report.pdf", "annex.pdf", "report.typ", 
 
 
 def draw(run: Stored, folder: Path) -> dict[str, Figures]:
-    """All figures of a run into folder/figures; analysis name -> (figure name, caption).
+    """Draw all figures of a run into folder/figures; analysis name -> (figure name, caption).
 
-    StoreError where the stored results lack what a figure needs, or a figure cannot be written.
+    StoreError if the stored results lack an array of a figure, or if a figure cannot be written.
     """
     shown = [a for a in run.analyses if a["kind"] in kinds.ANALYSES and run.arrays.get(a["name"])]
     (folder / "figures").mkdir(exist_ok=True)
@@ -44,7 +44,7 @@ def _draw_one(run: Stored, name: str, figures: Callable[..., Figures], folder: P
         with _stored(run.folder, f"the figures of '{name}'"):
             return figures(run, name, folder)
     except OSError as error:
-        raise StoreError(f"{run.folder}: figures could not be written: {reason(error)}") from None
+        raise StoreError(f"{run.folder}: the figures could not be written: {reason(error)}") from None
 
 
 @contextlib.contextmanager
@@ -57,8 +57,8 @@ def _stored(folder: Path | None, what: str) -> Iterator[None]:
     except Exception as error:
         said = error.args[0] if error.args else error
         raise StoreError(
-            f"{folder}: {what} cannot be made, the results are damaged: {type(error).__name__}: {said}; "
-            "if they are unchanged since extrados wrote them, this is a fault of extrados"
+            f"{folder}: {what} cannot be made, because the results are damaged ({type(error).__name__}: {said}). "
+            "If no other program has changed the results, report this as a fault of extrados"
         ) from error
 
 
@@ -73,7 +73,7 @@ def _drawn(tasks: list[tuple]) -> list[Figures]:
     try:
         return side_by_side([partial(_draw_one, *task) for task in tasks], workers)
     except Lost as error:
-        raise StoreError(f"{tasks[0][0].folder}: figures could not be drawn: {error}; the results are kept") from None
+        raise StoreError(f"{tasks[0][0].folder}: the figures could not be drawn: {error}. The results are kept") from None
 
 
 def write_report(

@@ -1,6 +1,6 @@
-"""Pictures of solids: parallel projection, hidden parts by a depth buffer, edges where one face ends before another.
+"""Pictures of solids: parallel projection, hidden parts by a depth buffer, edges at the borders of faces.
 
-A depth buffer draws any bodies right, also where they pierce each other, and needs no graphics card or window system.
+A depth buffer draws any bodies correctly, also if they intersect, and requires no graphics card or window system.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ NARROW = 6.0  # lengths of an axis of the compass that a picture is wide at leas
 
 @dataclass(frozen=True)
 class View:
-    """Where it is looked at from [deg]: azimuth in plan from +x to +y of the eye, and height above the level."""
+    """Direction of view [deg]: azimuth of the eye in plan from +x to +y, and its elevation."""
 
     azimuth: float = -60.0
     elevation: float = 25.0
@@ -125,8 +125,8 @@ def ground(ax: Axes, points: np.ndarray, view: View) -> None:
     ax.fill(*corners.T, facecolor="#f2efe8", edgecolor="#d8d2c4", linewidth=0.6, zorder=1)
 
 
-def compass(ax: Axes, points: np.ndarray, view: View, push: float | None = None) -> None:
-    """The axes x, y, z, the scale, and where it is pushed [deg in plan], below the solids."""
+def compass(ax: Axes, view: View, push: float | None = None) -> None:
+    """The axes x, y, z, the scale, and the direction of the load [deg in plan], below the solids."""
     left, right, low, high = (*ax.get_xlim(), *ax.get_ylim())
     size = 0.09 * max(right - left, high - low)
     if right - left < NARROW * size:  # of a tall picture: axes and scale stand side by side

@@ -1,4 +1,4 @@
-"""Figures of pushed buildings and vaults: capacity curves, cracks on the unfolded walls, from above and in space, drifts and
+"""Figures of pushovers of buildings and vaults: capacity curves, cracks on unfolded walls, from above and in space, drifts and
 damage by storey."""
 
 from functools import partial
@@ -85,12 +85,12 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.axhline(0.0, color="#999", linewidth=0.5)
             ax.axvline(0.0, color="#999", linewidth=0.5)
             push = of == "push"
-            ax.set_xlabel("control displacement [mm]" if push else "way of the ground that moves most [mm]")
-            ax.set_ylabel("base shear [kN]" if push else "force that moves the ground [kN]")
+            ax.set_xlabel("control displacement [mm]" if push else "greatest movement of the ground [mm]")
+            ax.set_ylabel("base shear [kN]" if push else "force on the moving ground [kN]")
             ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "All stages one after the other, each with the damage of those before: base shear of lateral loads, and the "
-            "force along the settlement of the ground, summed over the moving supports."
+            "Stages in order, each with the damage of the stages before. Lateral loads: base shear over control "
+            "displacement. Settlement: force along the movement, summed over the moving supports."
         )
 
 
@@ -165,7 +165,7 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                     color=color,
                     linestyle="--",
                     linewidth=0.9,
-                    label=f"bilinear, ductility {idea.ductility:.2g}",
+                    label=f"bilinear idealisation, ductility {idea.ductility:.2g}",
                 )
         if r.sliding_capacity_N is not None and r.sliding_capacity_N < 1.2 * ax.get_ylim()[1] * 1e3:
             ax.axhline(r.sliding_capacity_N / 1e3, color=LOST, linestyle=":", linewidth=1.2, label=f"slides on {r.sliding_level}")
@@ -178,10 +178,10 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_ylabel("base shear over weight")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area; dots, states found by "
-            "equilibrium iterations beyond single events; dotted, Coulomb's limit of the level that slides first, "
-            "which the curve does not include; "
-            "variants of the assumptions in blue-grey, other analyses of the run in grey."
+            "Capacity curves: every state (thin), the envelope and its bilinear idealisation "
+            "of equal area. Dots: states found by equilibrium iterations. Dotted line: Coulomb "
+            "limit of the level that slides first; the curve does not include this sliding. "
+            "Blue-grey: variants of the assumptions. Grey: other analyses of the run."
         )
 
 
@@ -269,8 +269,8 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             axes[-1].set_xlabel("along the walls, each from its start [m]")
         fig.colorbar(drawn, ax=list(axes), label="crack width [mm]", shrink=0.7, pad=0.01)
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-walls"), (
-            "Cracks on the walls, laid side by side, at the greatest base shear and at the end: of each point the widest "
-            "through the thickness, by colour and weight."
+            "Cracks on the walls, laid side by side, at the greatest base shear and at the end: for each point the widest crack through the thickness. "
+            "Colour and line width show the crack width."
         )
 
 
@@ -324,11 +324,11 @@ def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str,
             ["widest towards the extrados", "widest towards the intrados"],
             loc="outside lower center",
             ncols=2,
-            title=f"cracks, the widest {1e3 * most:.3g} mm",
+            title=f"cracks, up to {1e3 * most:.3g} mm wide",
         )
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-plan"), (
-            "Cracks seen from above, at the greatest load and at the end: the widest through the thickness at each place, "
-            "red if widest towards the extrados and blue if towards the intrados; line width in proportion."
+            "Cracks seen from above, at the greatest load and at the end: for each point the widest crack through the thickness. Red: widest at the "
+            "extrados. Blue: widest at the intrados. The line width is in proportion."
         )
 
 
@@ -359,7 +359,7 @@ def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
             ax.set_title(_state_word(run, name, prefix, k))
         fig.colorbar(drawn, ax=list(panels), label="crack width [mm]", shrink=0.7)
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-space"), (
-            f"The building at the greatest base shear and at the end, displacements {factor:g} times as large; of each "
+            f"The building at the greatest base shear and at the end, displacements magnified {factor:g} times; of each "
             "element the widest crack. The fields are in the VTU files, for ParaView."
         )
 
@@ -391,12 +391,12 @@ def _paint(ax: Axes, run: Stored, name: str, place: np.ndarray, values: np.ndarr
     return scale
 
 
-def _magnified(node: np.ndarray, moved: np.ndarray, part: float = 0.05) -> float:
-    """A round factor that makes the largest displacement a small part of the building."""
+def _magnified(node: np.ndarray, moved: np.ndarray) -> float:
+    """A round factor that makes the largest displacement about a twentieth of the building."""
     most = float(np.linalg.norm(moved, axis=-1).max())
     if not most > 0.0:
         return 1.0
-    exact = part * float(np.ptp(node, axis=0).max()) / most
+    exact = 0.05 * float(np.ptp(node, axis=0).max()) / most
     power = 10.0 ** np.floor(np.log10(exact))
     return float(max(v for v in (1.0, 2.0, 5.0) if v * power <= exact or v == 1.0) * power)
 
@@ -429,6 +429,6 @@ def _storeys(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, st
         axes[2].set_xlabel("cracked places in the walls")
         axes[2].set_ylabel("storey")
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-storeys"), (
-            "At the greatest base shear: drift of each storey, the part that each wall carries in its own plane (black: "
-            "before it cracks), and the places that have cracked by storey."
+            "At the greatest base shear: drift of each storey, part of the base shear that each wall carries "
+            "in its plane (black: before cracking), and number of cracked places in each storey."
         )

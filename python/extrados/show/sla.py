@@ -25,7 +25,7 @@ MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 #: What the names of the figures of each sense of the load have in them
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
-OPPOSITE = dict(zip(PREFIXES, ("", ", pushed the opposite way"), strict=True))
+OPPOSITE = dict(zip(PREFIXES, ("", ", load in the opposite direction"), strict=True))
 MOST_NAMED = 12  # bars that a legend still names
 NOTHING = 1e-3  # of the greatest stress: less is drawn as none
 #: A curve is drawn as far as so many times the way to nearly its greatest load
@@ -97,8 +97,8 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.legend(title="stage")
         title = style.save(fig, folder, f"{name}-stages")
     return title, (
-        "All stages: load against displacement, every event in equilibrium (thin) and envelopes; a dot where a stage begins. "
-        "Stages in one direction, or its opposite, share a panel, in the sense of the first of them."
+        "Load against displacement in all stages: every event in equilibrium (thin), and envelopes. A dot marks the "
+        "start of a stage. Stages along one line of action share a panel, with the sign of the first of them."
     )
 
 
@@ -132,7 +132,7 @@ def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     if not shown:
         return []
     title = _draw_cracks(run, name, folder, shown, f"{name}-stage-cracks")
-    return [(title, "Cracks on the deformed shape at the end of each stage, all to one scale.")]
+    return [(title, "Cracks on the deformed shape at the end of each stage, at the same scale.")]
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -159,13 +159,13 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 _draw_sense(ax, run, name, prefix, numbers)
         most = _frame_curve(ax, run, name)
         ax.axhline(0.0, color="#999", linewidth=0.5)
-        ax.set_xlabel(f"control displacement [mm]{f', continues to {1e3 * most:.0f}' if most else ''}")
+        ax.set_xlabel(f"control displacement [mm]{f', curve continues to {1e3 * most:.0f}' if most else ''}")
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            f"Load against displacement: every state (thin; dots are those of equilibrium iterations), the envelope and its "
-            f"bilinear idealisation; grey, the steps of "
-            f"an incremental solution of the same deck, if there is one.{_dropped(r)}"
+            f"Load against displacement: every state (thin; dots: by equilibrium iterations), the envelope and its "
+            f"bilinear idealisation. Grey, if present: the steps of "
+            f"an incremental solution of the same deck.{_dropped(r)}"
         )
 
 
@@ -214,7 +214,7 @@ def _draw_sense(ax: Axes, run: Stored, name: str, prefix: str, numbers: SlaCurve
             color=color if prefix else ENVELOPE,
             linestyle="-." if prefix else "--",
             linewidth=0.9,
-            label=f"bilinear of equal area, load to {numbers.sense}",
+            label=f"bilinear idealisation of equal area, load to {numbers.sense}",
         )
 
 
@@ -242,7 +242,7 @@ def _frame_curve(ax: Axes, run: Stored, name: str) -> float:
 def _dropped(r: Sla) -> str:
     """A sentence on the events of all curves that are not drawn, because they lie out of reach."""
     count = sum(curve.events_out_of_reach for curve in (r, r.minus) if curve is not None)
-    return f" Not drawn: {count} events out of reach of small displacements or of ten times the peak load." if count else ""
+    return f" Not drawn: {count} events beyond the range of small displacements or above ten times the peak load." if count else ""
 
 
 def near_the_peak(displacement: np.ndarray, load: np.ndarray) -> float:
@@ -259,7 +259,7 @@ def _measured(run: Stored, name: str, ax: Axes, here: bool) -> None:
     least, greatest = (run.array(name, f"measured_{end}") / 1e3 for end in ("least", "greatest"))
     band = bool((greatest > least).any())
     if band:
-        ax.fill_between(test, least, greatest, color="#d9d9d9", linewidth=0, zorder=0.5, label="tests, least to greatest")
+        ax.fill_between(test, least, greatest, color="#d9d9d9", linewidth=0, zorder=0.5, label="range of the tests")
     ax.plot(test, 0.5 * (least + greatest), color="#8c8c8c", linewidth=1.2, zorder=0.6, label="tests, mean" if band else "test")
 
 
@@ -290,7 +290,10 @@ def _peak(run: Stored, name: str, prefix: str) -> int:
 def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     shown = [(prefix, s, f"event {run.array(name, f'{prefix}state_event')[s]}") for s in _peak_state(run, name, prefix)]
     title = _draw_cracks(run, name, folder, shown, f"{name}{SENSES[prefix]}-cracks")
-    return (title, f"Cracks on the deformed shape{OPPOSITE[prefix]}, at the peak and at the end; colour and thickness give the width.")
+    return (
+        title,
+        f"Cracks on the deformed shape{OPPOSITE[prefix]}, at the peak and at the end. Colour and line width show the crack width.",
+    )
 
 
 def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, int, str]], file: str) -> str:
@@ -406,8 +409,8 @@ def _section(run: Stored, name: str, folder: Path, i: int, height: Array, least:
         axes[0].legend(fontsize=7)
         title = style.save(fig, folder, f"{name}-section-{i}")
     return title, (
-        f"Range of the load that each point admits, {about}: equilibrium where the greatest lower limit (dotted, green) "
-        "stays below the least upper limit (dotted, red)."
+        f"Range of the load that each point permits, {about}. Equilibrium is possible if the greatest lower limit (dotted, green) "
+        "is below the least upper limit (dotted, red)."
     )
 
 
@@ -474,8 +477,8 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
                 style.legend_above(ax)
         title = style.save(fig, folder, f"{name}{SENSES[prefix]}-bars")
     return title, (
-        "Forces of bars and ties: from event to event, in equilibrium, of those held at their ends; along embedded "
-        "ones at the greatest load and in the last state in equilibrium."
+        "Forces of bars and ties. Bars fixed at their ends: force at every event in equilibrium. Embedded bars: force along the bar "
+        "at the greatest load and in the last state in equilibrium."
     )
 
 
@@ -486,13 +489,13 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         number = np.arange(1, len(state) + 1)[state]
         ax.stackplot(number, get("stored")[state], get("dissipated")[state], colors=["#cfe3d6", "#f2c28b"], labels=["stored", "dissipated"])
         ax.plot(number, get("external")[state], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads")
-        ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="area of the teeth")
+        ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="energy of the teeth (area of the saw-tooth curves)")
         style.numbers(ax.xaxis)
         ax.set_xlabel("event")
         ax.set_ylabel("energy [J]")
         style.legend_below(fig, ax)
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
-        f"Energies in the states: the work of the loads is stored, dissipated, or lost where the structure goes from one state "
-        f"to the next; the balance of all three closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
+        f"Energies in the states: the work of the loads is stored, dissipated, or lost when "
+        f"the structure changes from one state to the next. The energy balance closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
     )

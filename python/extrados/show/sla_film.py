@@ -1,4 +1,4 @@
-"""The film of a wall as it cracks."""
+"""Film of the cracking of a wall."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Figures of discrete elements in space: drawings at telling times, histories, energies, contacts, the film."""
+"""Figures of discrete elements in space: selected times, histories, energies, contacts, the film."""
 
 from pathlib import Path
 
@@ -63,7 +63,7 @@ class _Stage:
     def show(self, ax: Axes, k: int, push: float | None) -> None:
         scene.show(ax, self.image(k), self.frame)
         scene.ground(ax, self.still.vertices, VIEW)
-        scene.compass(ax, self.still.vertices, VIEW, push)
+        scene.compass(ax, VIEW, push)
 
 
 def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -82,14 +82,14 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if stage.share.any():
             legend(fig, list(axes[: rows * columns]), stage.farthest)
         saved = style.save(fig, folder, f"{name}-snapshots")
-    what = f"Collapse by {tilt.collapse_acceleration_g:.4f} g" if tilt is not None else "The stones as they move"
+    what = f"Collapse at {tilt.collapse_acceleration_g:.4f} g" if tilt is not None else "Displaced stones"
     return saved, f"{what}; colours show the displacement of each block, at most {stage.farthest:.3g} m."
 
 
 def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
-    """What the colours of the stones tell [m]."""
+    """Legend of the colours of the blocks [m]."""
     bar = fig.colorbar(ScalarMappable(Normalize(0.0, farthest), MOVED), ax=axes, shrink=0.6, pad=0.02, aspect=30, panchor=False)
-    bar.set_label("displacement of a stone [m]")
+    bar.set_label("displacement of the stone [m]")
 
 
 def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -118,29 +118,35 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         axes[4].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
         saved = style.save(fig, folder, f"{name}-displacements")
     return saved, (
-        f"Greatest displacements of blocks from their settled places, and their rotations; the ground moves along "
-        f"{r.direction_deg:g} degrees in plan{' and across' if both else ''}."
+        f"Greatest displacements and rotations of blocks, measured from equilibrium under self-weight. The ground moves along "
+        f"{r.direction_deg:g} degrees in plan{' and at right angles to it' if both else ''}."
     )
 
 
 def _contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    states = {"closed": "#f4f1ea", "open at\nsome corners": style.THRUST, "apart": style.HINGE}
     time, state = run.array(name, "time"), run.array(name, "state")
-    colours = ListedColormap(["#f4f1ea", style.THRUST, style.HINGE])
+    return draw_states(time, state, states, 0, "contact", folder, f"{name}-contacts"), "State of the contacts over time."
+
+
+def draw_states(time: np.ndarray, state: np.ndarray, states: dict[str, str], first: int, what: str, folder: Path, target: str) -> str:
+    """States (times, joints) over time as a map into a file; `states` are their words and colours, from the number `first` on."""
+    numbers = np.arange(first, first + len(states))
     with style.figure(8.0, min(7.0, 1.6 + 0.18 * state.shape[1])) as (fig, (ax,)):
-        norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
-        mesh = ax.pcolormesh(time, np.arange(state.shape[1]), state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
-        bar = fig.colorbar(mesh, ax=ax, ticks=[0, 1, 2])
-        bar.ax.set_yticklabels(["closed", "open at\nsome corners", "apart"])
+        norm = BoundaryNorm([first - 0.5, *(numbers + 0.5)], len(states))
+        colours, joints = ListedColormap(list(states.values())), np.arange(state.shape[1])
+        mesh = ax.pcolormesh(time, joints, state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
+        bar = fig.colorbar(mesh, ax=ax, ticks=numbers)
+        bar.ax.set_yticklabels(list(states))
         style.numbers(ax.yaxis)
         ax.set_xlabel("time [s]")
-        ax.set_ylabel("contact")
+        ax.set_ylabel(what)
         ax.grid(False)
-        saved = style.save(fig, folder, f"{name}-contacts")
-    return saved, "Where contacts are open, over time."
+        return style.save(fig, folder, target)
 
 
 def _film(run: Stored, name: str, folder: Path) -> None:
-    """The motion as a film, where the deck asks for one."""
+    """The motion as a film, if the deck requests one."""
     kind, speed = film.asked(run, name)
     if kind == "none":
         return

@@ -4,13 +4,14 @@ import itertools
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 
 from extrados.results.limit import DILATANT
 from extrados.results.solid_files import rotations
-from extrados.results.solids import SolidTilt
+from extrados.results.solids import SolidThrust, SolidTilt
 from extrados.results.store import Stored
 from extrados.show import film, scene, style
 from extrados.show.limit import tilt
@@ -71,20 +72,19 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
         for ax, solids, colours in ((axes[0], stones, plain), (axes[1], moved, SPEED(speed)[:, :3])):
             scene.show(ax, scene.picture(solids, VIEW, frame, colours), frame)
             scene.ground(ax, stones.vertices, VIEW)
-            scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg if ax is axes[1] else None)
+            scene.compass(ax, VIEW, r.load_direction_deg if ax is axes[1] else None)
             if ax is axes[0] and len(strands):
                 ax.add_collection(LineCollection(list(strands), colors=TIE, linewidths=1.6, zorder=3))
         x, y, z = np.ptp(stones.vertices, axis=0)
         axes[0].set_title(f"{r.blocks} stones, {r.contacts} contacts; {x:.3g} x {y:.3g} x {z:.3g} m")
         axes[1].set_title(_title(r))
         bar = fig.colorbar(ScalarMappable(Normalize(0.0, 1.0), SPEED), ax=axes[1], shrink=0.6, pad=0.01)
-        bar.set_label("speed of a stone over the fastest")
+        bar.set_label("speed of the stone / greatest speed")
         found = [
             (
                 style.save(fig, folder, f"{name}-mechanism"),
-                f"The stones, and the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, "
-                f"carried on; {r.moving_blocks} of {r.blocks} stones move."
-                + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
+                f"Left: the stones. Right: the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, continued to a visible displacement; "
+                f"{r.moving_blocks} of {r.blocks} stones move." + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
             )
         ]
     found.append(_draw_forces(run, name, folder, r, stones))
@@ -108,33 +108,116 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
     force, centre = run.array(name, "contact_force"), run.array(name, "contact_centre")
     size = np.linalg.norm(force, axis=1)
     frame = scene.frame_of(stones.vertices, VIEW)
-    span = max(frame[1] - frame[0], frame[3] - frame[2])
-    reach = LONGEST * span / float(size.max())
-    pressed = np.flatnonzero(size > FAINT * size.max())
-    half = 0.5 * reach * force[pressed] @ VIEW.axes[:2].T
-    middle = centre[pressed] @ VIEW.axes[:2].T
-    pale = np.tile(1.0 - 0.45 * (1.0 - np.array(to_rgb(style.STONE))), (int(stones.block.max()) + 1, 1))
     wide = (frame[1] - frame[0]) / (frame[3] - frame[2])
     with style.figure(7.0, float(np.clip(6.0 / wide + 1.4, 3.8, 7.0))) as (fig, (ax,)):
-        image = scene.picture(stones, VIEW, frame, pale)
-        image[..., 3] *= 0.75
-        scene.show(ax, image, frame)
-        scene.ground(ax, stones.vertices, VIEW)
-        scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
-        ax.add_collection(
-            LineCollection(list(np.stack([middle - half, middle + half], axis=1)), colors=style.THRUST, linewidths=1.1, zorder=3)
-        )
-        ax.plot(*middle.T, ".", color=style.THRUST, markersize=2.0, zorder=3)
+        pale_stones(ax, stones, frame, r.load_direction_deg)
+        pressing(ax, force, centre, frame, float(size.max()), style.THRUST)
         ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the longest is {size.max() / 1e3:.3g} kN")
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
-        "Forces between the stones and from the ground at collapse, through the stones: each at the centre of its compression, "
-        f"with length in proportion to it; the longest is {size.max() / 1e3:.3g} kN."
+        "Forces between the stones, and on the ground, at collapse. Each acts at the centre "
+        f"of compression of its contact; its length is in proportion. The longest is {size.max() / 1e3:.3g} kN."
     )
 
 
+def pale_stones(ax: Axes, stones: scene.Faces, frame: tuple[float, float, float, float], direction: float | None) -> None:
+    """The blocks pale, for forces drawn upon them, with the direction of the push [deg]."""
+    pale = np.tile(1.0 - 0.45 * (1.0 - np.array(to_rgb(style.STONE))), (int(stones.block.max()) + 1, 1))
+    image = scene.picture(stones, VIEW, frame, pale)
+    image[..., 3] *= 0.75
+    scene.show(ax, image, frame)
+    scene.ground(ax, stones.vertices, VIEW)
+    scene.compass(ax, VIEW, direction)
+
+
+def pressing(
+    ax: Axes, force: np.ndarray, centre: np.ndarray, frame: tuple[float, float, float, float], longest: float, colour: str
+) -> None:
+    """Forces (n, 3) [N] through their centres (n, 3) [m], as long as they are great; longest: the force [N] of the longest line."""
+    size = np.linalg.norm(force, axis=1)
+    reach = LONGEST * max(frame[1] - frame[0], frame[3] - frame[2]) / max(longest, 1e-300)
+    pressed = np.flatnonzero(size > FAINT * longest)
+    half = 0.5 * reach * force[pressed] @ VIEW.axes[:2].T
+    middle = centre[pressed] @ VIEW.axes[:2].T
+    ax.add_collection(LineCollection(list(np.stack([middle - half, middle + half], axis=1)), colors=colour, linewidths=1.1, zorder=3))
+    ax.plot(*middle.T, ".", color=colour, markersize=2.0, zorder=3)
+
+
+def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Forces between the blocks in the states of least and greatest thrust of the first section, and in the most central one; the
+    range of the thrust of every section."""
+    r = run[name]
+    assert isinstance(r, SolidThrust)
+    stones = faces_of(run, name)
+    states = []
+    if r.sections:
+        first = r.sections[0]
+        for which, value, colour in (("least", first.least_N, style.THRUST), ("greatest", first.greatest_N, style.HINGE)):
+            if value is not None:
+                title = f"{which} thrust at '{first.name}'\n{value / 1e3:.4g} kN"
+                states.append((title, run.array(name, f"{which}_force")[0], run.array(name, f"{which}_centre")[0], colour))
+    if r.least_part_of_joints is not None:
+        title = f"most central state\nwithin {100.0 * r.least_part_of_joints:.1f} % of the contacts"
+        states.insert(1, (title, run.array(name, "central_force"), run.array(name, "central_centre"), "#444444"))
+    frame = scene.frame_of(stones.vertices, VIEW)
+    tall = (frame[3] - frame[2]) / (frame[1] - frame[0])
+    found = []
+    if states:
+        longest = max(float(np.linalg.norm(force, axis=1).max()) for _, force, _, _ in states)
+        with style.figure(4.2 * len(states), float(np.clip(4.2 * tall + 2.0, 3.4, 7.0)), columns=len(states)) as (fig, axes):
+            for ax, (title, force, centre, colour) in zip(axes, states, strict=True):
+                pale_stones(ax, stones, frame, r.load_direction_deg if r.gamma_g else None)
+                pressing(ax, force, centre, frame, longest, colour)
+                ax.set_title(title)
+            caption = f"Forces between the blocks at {r.gamma_g:g} g, each through the centre of its compression; the longest is {longest / 1e3:.3g} kN."
+            found.append((style.save(fig, folder, f"{name}-forces"), caption))
+    if r.sections:
+        found.append(_draw_ranges(folder, name, r))
+    return found
+
+
+def _draw_ranges(folder: Path, name: str, r: SolidThrust) -> tuple[str, str]:
+    """Least, central and greatest thrust of the sections; an arrow where there is no greatest."""
+    with style.figure(7.0, 1.4 + 0.4 * len(r.sections)) as (fig, (ax,)):
+        known = [v for one in r.sections for v in (one.least_N, one.central_N, one.greatest_N) if v is not None]
+        reach = 1.15 * max((abs(v) for v in known), default=1.0)
+        for k, one in enumerate(r.sections):
+            low, high = (-reach if one.least_N is None else one.least_N), (reach if one.greatest_N is None else one.greatest_N)
+            ax.plot([low / 1e3, high / 1e3], [k, k], color=style.STONE, linewidth=9.0, solid_capstyle="butt")
+            for value, end, marker in ((one.least_N, low, "<"), (one.greatest_N, high, ">")):
+                ax.plot(end / 1e3, k, "|" if value is not None else marker, color=style.EDGE, markersize=12 if value is not None else 7)
+            if one.central_N is not None:
+                ax.plot(one.central_N / 1e3, k, "o", color="#444444", markersize=5)
+        ax.set_yticks(range(len(r.sections)), [f"{one.name} ({one.direction})" for one in r.sections])
+        ax.set_ylim(len(r.sections) - 0.5, -0.5)
+        ax.set_xlabel("thrust [kN]")
+        ax.set_title(f"Least, most central (dot) and greatest thrust at {r.gamma_g:g} g")
+        return style.save(fig, folder, f"{name}-sections"), (
+            "Thrust of the sections: from the least to the greatest; dot: the most central state. An arrow head marks an end without a limit."
+        )
+
+
+def draw_examples(run: Stored, name: str, folder: Path, captions: dict[int, str]) -> list[tuple[str, str]]:
+    """The mechanisms of solids that a sweep stored; captions: what each is called, by its number."""
+    numbers = run.array(name, "example_mechanism").tolist()
+    rest = [faces_of(run, name, which=f"_{k}") for k in numbers]
+    poses = [run.array(name, f"solid_pose_{k}") for k in numbers]
+    moved = [faces_of(run, name, pose, f"_{k}") for k, pose in zip(numbers, poses, strict=True)]
+    if not moved:
+        return []
+    frame = scene.frame_of(np.concatenate([faces.vertices for faces in moved]), VIEW)
+    tall = (frame[3] - frame[2]) / (frame[1] - frame[0])
+    with style.figure(3.6 * len(numbers) + 0.4, float(np.clip(3.6 * tall + 1.2, 3.2, 6.5)), columns=len(numbers)) as (fig, axes):
+        for ax, k, still, faces, pose in zip(axes, numbers, rest, moved, poses, strict=True):
+            scene.show(ax, scene.picture(faces, VIEW, frame, SPEED(speeds(still, faces, len(pose)))[:, :3]), frame)
+            scene.ground(ax, still.vertices, VIEW)
+            ax.set_title(f"Mechanism {k}")
+        saved = style.save(fig, folder, f"{name}-mechanisms")
+    return [(saved, "; ".join(f"{k}: {captions[k]}" for k in numbers) + ". Coloured by the speed of each block (the fastest red).")]
+
+
 def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray) -> None:
-    """The mechanism as a film, where the deck asks for one: out and back, so that it goes on without a jump."""
+    """The mechanism as a film, if the deck requests one: forward and backward, so that it repeats without a jump."""
     kind, speed = film.asked(run, name)
     if kind == "none":
         return
@@ -147,7 +230,7 @@ def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float
         scene.show(ax, scene.picture(stones, VIEW, frame, colours, FILM_PIXELS), frame)
         (drawn,) = ax.images
         scene.ground(ax, stones.vertices, VIEW)
-        scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
+        scene.compass(ax, VIEW, r.load_direction_deg)
         ax.set_title(_title(r))
 
         def draw(k: int) -> None:
@@ -158,7 +241,7 @@ def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float
 
 
 def speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:
-    """How far the fastest vertex of each stone goes, over that of all."""
+    """Displacement of the fastest vertex of each block, relative to the greatest of all."""
     gone = np.linalg.norm(moved.vertices - stones.vertices, axis=1)
     found = np.zeros(count)
     for face, block in zip(stones.faces, stones.block, strict=True):
@@ -186,9 +269,10 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
         ax.tick_params(axis="y", labelsize=7)
         ax.set_xlabel("capacity [g]; 0 deg is +x, 90 deg is +y")
         ax.set_title(
-            "Capacity over the direction of the push\n"
+            "Capacity over the direction of the acceleration\n"
             f"least {r.least_acceleration_g:.4f} g along {r.least_direction_deg % 360.0:g} deg (red)"
         )
         return style.save(fig, folder, f"{name}-rose"), (
-            "Capacity over the direction in plan of the push." + (" The line is the upper bound by dilatant friction." if rows else "")
+            "Capacity over the direction of the acceleration in plan."
+            + (" The line is an upper bound (dilatant friction)." if rows else "")
         )

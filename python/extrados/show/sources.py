@@ -50,8 +50,8 @@ UNCERTAIN = re.compile(r"from memory|derived here")
 
 
 def references(kinds: Iterable[str], sources: Iterable[str], trains: Sequence[str]) -> list[str]:
-    """The bibliography: methods first, then the sources of values and rules, each once; places within the dissertation are told with
-    its whole title, values without a certain source are left to their table."""
+    """The bibliography: methods first, then the sources of values and rules, each once. Places in the dissertation have its full
+    title; values without a certain source appear only in their table."""
     found = [one for kind in kinds for one in METHODS.get(kind, ())]
     clauses = sorted({TRAINS[train] for train in trains if train in TRAINS})
     if clauses:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from extrados.results.codes import Checked
-from extrados.results.rocking import COLLAPSE, RECOVERY
+from extrados.results.rocking import COLLAPSE, RECOVERY, SLID
 from extrados.results.statistics import Ensemble, HarmonicMap, OverDurations, OverLevels, Resonance, RockingSpectrum
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
@@ -56,7 +56,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.bar([1.0 + width], [100 * r.collapsed / n], width=1.6 * width, align="edge", color=style.THRUST, label="collapse")
         ax.set_axisbelow(True)
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
-        ax.set_xlabel("greatest rotation over the critical rotation")
+        ax.set_xlabel("greatest rotation / critical rotation")
         ax.set_ylabel("share of the runs [%]")
         ax.set_title(f"{r.count} runs, {100 * (r.collapse_probability or 0.0):.1f} % collapse")
         full = np.flatnonzero(counts)
@@ -65,7 +65,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.text(
                 0.5,
                 0.5,
-                f"{int(counts[full[0]])} runs rotate by {where} of the critical rotation",
+                f"{int(counts[full[0]])} runs have greatest rotations of {where} times the critical rotation",
                 transform=ax.transAxes,
                 ha="center",
                 fontsize=8,
@@ -73,7 +73,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.legend()
         return style.save(
             fig, folder, f"{name}-histogram"
-        ), "Greatest rotation of all runs, beyond 1 in the last bin; the red bar holds those that collapse."
+        ), "Greatest rotations of all runs. The last bin contains all rotations beyond 1; the red bar counts the runs that collapse."
 
 
 def _ensemble(run: Stored, name: str) -> Ensemble | OverLevels:
@@ -96,15 +96,15 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     with style.figure(9.0, 4.2, columns=2, sharex=True) as (fig, (left, right)):
         up, fell = outcome == RECOVERY, outcome == COLLAPSE
         place = place_of_collapse(ratio[up])
-        left.plot(x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and recover")
+        left.plot(x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} motions: rocking and recovery")
         left.plot(x[fell], np.full(int(fell.sum()), place), "x", color=style.THRUST, markersize=4, label=f"{int(fell.sum())} collapse")
         rest = int((outcome == 0).sum())
         left.set_xscale("log")
         left.set_yscale("log")
         left.set_ylim(max(1e-4, 0.5 * ratio[up].min()) if up.any() else 1e-3, 1.35 * place)
         left.axhline(1.0, color=style.THRUST, linewidth=0.8, linestyle=":")
-        left.set_ylabel("greatest rotation over the critical one")
-        left.set_title(f"{r.count} motions, {rest} leave it at rest" if rest else f"{r.count} motions")
+        left.set_ylabel("greatest rotation / critical rotation")
+        left.set_title(f"{r.count} motions, no rocking under {rest}" if rest else f"{r.count} motions")
         left.legend(loc="center left", frameon=True)
         share = np.where(fell, 1.0, 0.0)
         right.plot(x, share, "|", color=style.EDGE, alpha=0.4, markersize=5)
@@ -129,8 +129,7 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for ax in (left, right):
             ax.set_xlabel(_axis(r))
         return style.save(fig, folder, f"{name}-cloud"), (
-            "Motions as they are, each at its own intensity, and the curves fitted to them; bands of "
-            f"{100 * r.confidence:g} % by the profile of the likelihood."
+            f"Unscaled motions, each at its own intensity, and the fitted curves; bands of {100 * r.confidence:g} % by profile likelihood."
         )
 
 
@@ -141,7 +140,7 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     at, share = run.array(name, "contribution_intensity"), run.array(name, "contribution")
     with style.figure(9.0, 3.8, columns=2) as (fig, (left, right)):
         left.plot(x, rate, "o-", color=style.GROUND, markersize=4)
-        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--", label=f"collapse, {r.annual_collapse_rate:.2g} a year")
+        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--", label=f"collapse, {r.annual_collapse_rate:.2g} per year")
         low, high = (np.nan if v is None else v for v in r.annual_collapse_rate_interval)
         if np.isfinite(low):
             left.axhspan(low, high, color=style.THRUST, alpha=0.15, linewidth=0)
@@ -157,13 +156,13 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.axvline(r.median, color=style.HINGE, linestyle="--", label=f"median of collapse, {r.median:.3g}")
         right.set_xscale("log")
         right.set_ylim(bottom=0.0)
-        right.set_ylabel("rate of collapse by ln(intensity) [1/year]")
+        right.set_ylabel("contribution to the rate of collapse per ln(intensity) [1/year]")
         right.set_title("Intensities of collapse")
         right.legend()
         for ax in (left, right):
             ax.set_xlabel(_axis(r))
         return style.save(fig, folder, f"{name}-annual"), (
-            f"Hazard curve with the annual rate of collapse and its {100 * r.confidence:g} % band; the area on the right is that rate."
+            f"Left: hazard curve, and annual rate of collapse with its {100 * r.confidence:g} % band. Right: contributions of the intensities to this rate, which equals the area."
         )
 
 
@@ -179,14 +178,14 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             fell = rotation.about.endswith("collapse")
             right.plot(time.numbers, np.clip(rotation.numbers, -place, place), color=style.THRUST if fell else style.HINGE)
             left.set_title(f"{at.about}: ground [g]", fontsize=8, loc="left")
-            right.set_title(f"rotation over the critical one: {'overturns' if fell else 'recovers'}", fontsize=8, loc="left")
+            right.set_title(f"rotation / critical rotation: {'overturns' if fell else 'recovers'}", fontsize=8, loc="left")
             right.axhline(1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
             right.axhline(-1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
             right.set_ylim(-place, place)
         for ax in axes[-2:]:
             ax.set_xlabel("time [s]")
         return style.save(fig, folder, f"{name}-histories"), (
-            f"The first {n} motions and the rotation under each, over the critical one (Fig. 6-6)."
+            f"The first {n} motions and the rotation under each, divided by the critical rotation (Fig. 6-6)."
         )
 
 
@@ -235,7 +234,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 run.array(name, "stripe_rule_most"),
                 color=style.STONE,
                 linewidth=0,
-                label="collapse, between the impact rules",
+                label="collapse, range of the impact rules",
             )
         for curve, band, color, style_, text, median, dispersion in (
             ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
@@ -244,7 +243,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 "first_collapse",
                 style.HINGE,
                 "-.",
-                "collapse by the level",
+                "collapse at this or a lower level",
                 r.first_collapse_median,
                 r.first_collapse_dispersion,
             ),
@@ -267,8 +266,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_title(f"{r.motions} motions at {len(level)} levels")
         ax.legend(loc="best")
         return style.save(fig, folder, f"{name}-curve"), (
-            f"Shares of the motions with {100 * r.confidence:g} % Wilson intervals; the fitted curve of collapse at a level with "
-            "its bootstrap band; and that of collapse at the level or one below it, by interval-censored likelihood."
+            f"Points: share of the motions that cause collapse at a level, with {100 * r.confidence:g} % Wilson intervals. Curves: probability of collapse at a level, fitted, with "
+            "its bootstrap band; and probability of collapse at this or a lower level, by interval-censored likelihood."
         )
 
 
@@ -287,21 +286,21 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.plot(row, level, color=style.EDGE, alpha=0.15, linewidth=0.5)
         low, middle, high = quantile
         ax.fill_betweenx(level, low, high, color=style.HINGE, alpha=0.2, linewidth=0, label="16 to 84 % of the motions")
-        ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="half of the motions")
+        ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="median of the motions")
         i, j = np.nonzero(risen)
         if len(i):
-            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="stands again above a level that overturned it")
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="survival above a level that causes overturning")
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
         ax.axvline(place, color=style.EDGE, linewidth=0.6, linestyle=":")
         ax.set_xlim(-0.02, place + 0.03)
         ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, place]
         ax.set_xticks(ticks, [*(f"{x:g}" for x in ticks[:-1]), "collapse"])
-        ax.set_xlabel("greatest rotation over the critical rotation")
+        ax.set_xlabel("greatest rotation / critical rotation")
         ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         style.legend_below(fig, ax)
         return style.save(fig, folder, f"{name}-incremental"), (
             f"Incremental curves of {min(len(ratio), HAIRS)} motions with the percentiles of all {r.motions}; "
-            f"{r.resurrections} have resurrections."
+            f"{r.resurrections} motions have a survival above a level that causes overturning."
         )
 
 
@@ -311,16 +310,19 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     with style.figure(7.5, 3.6, columns=2) as (fig, (left, right)):
         left.errorbar(d, mean, yerr=deviation, fmt="o-", color=style.HINGE, capsize=3, markersize=4)
         left.set_ylim(bottom=0.0)
-        left.set_ylabel("greatest rotation over the critical one")
+        left.set_ylabel("greatest rotation / critical rotation")
         left.set_title("mean and standard deviation")
         right.errorbar(d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4)
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
-        right.set_title("share that collapses, 95 % interval")
+        right.set_title("share of collapses, 95 % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [
-            (style.save(fig, folder, f"{name}-durations"), "Greatest rotation (Fig. 6-8) and probability of collapse against the duration.")
+            (
+                style.save(fig, folder, f"{name}-durations"),
+                "Greatest rotation (Fig. 6-8) and probability of collapse against the duration of the motion.",
+            )
         ]
 
 
@@ -338,7 +340,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-motion"),
-                f"The motion that feeds most energy under a cap of {r.cap_g:.3f} g, and the response to it (Fig. 6-2).",
+                f"The motion of at most {r.cap_g:.3f} g that supplies the most energy, and the response to this motion (Fig. 6-2).",
             )
         )
     if "least_cap_ratio" not in arrays:
@@ -348,15 +350,15 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         drawn = ax.contourf(x, aspect, table, levels=np.linspace(0.0, 0.5, 11), cmap="YlOrBr_r", extend="max")
         lines = ax.contour(x, aspect, table, levels=np.linspace(0.05, 0.5, 10), colors="k", linewidths=0.5)
         ax.clabel(lines, fontsize=7)
-        fig.colorbar(drawn, ax=ax, label="least acceleration over uplift")
+        fig.colorbar(drawn, ax=ax, label="least acceleration / uplift acceleration")
         ax.plot(r.initial_rotation_ratio, 0.5, "k+")
-        ax.set_xlabel("initial rotation over the critical one")
+        ax.set_xlabel("initial rotation / critical rotation")
         ax.set_ylabel("B/H")
         ax.grid(False)
         found.append(
             (
                 style.save(fig, folder, f"{name}-least-cap"),
-                "Least acceleration whose optimal motion overturns the block in the end (Fig. 6-3).",
+                "Least limit of the acceleration at which the motion that supplies the most energy finally overturns the block (Fig. 6-3).",
             )
         )
     with style.figure(8.0, 3.6, columns=2, sharey=True) as (fig, (left, right)):
@@ -365,7 +367,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
             left.plot(s, row, label=f"T_p = {value:g} T_n")
         for value, row in zip(run.array(name, "impulse_rotation"), run.array(name, "energy_by_rotation"), strict=True):
             right.plot(s, row, label=f"from {value:g} of the critical rotation")
-        left.set_ylabel("energy supplied over that at the start")
+        left.set_ylabel("energy supplied / energy at the start")
         for ax in (left, right):
             ax.axhline(0.0, color=style.EDGE, linewidth=0.8)
             ax.set_xlabel("start of the impulse t_start/T_n")
@@ -373,7 +375,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-impulse"),
-                f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4 a from a quarter of the critical rotation, b with T_p = T_n/2).",
+                f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4; a: from a quarter of the critical rotation, b: with T_p = T_n/2).",
             )
         )
     return found
@@ -386,16 +388,16 @@ def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[st
     with style.figure(7.0, 4.0) as (fig, (ax,)):
         if "rule_least" in run.arrays[name]:
             least, most = (np.minimum(run.array(name, key), place) for key in ("rule_least", "rule_most"))
-            ax.fill_between(period, least, most, color=style.STONE, linewidth=0, label="between the impact rules")
+            ax.fill_between(period, least, most, color=style.STONE, linewidth=0, label="range of the impact rules")
         for member, row, fell in zip(run.results_of(name, RockingSpectrum).family, ratio, over, strict=True):
             line = ax.plot(period, np.where(fell == 1, np.nan, row), ".-", markersize=3, label=member)[0]
             ax.plot(period[fell == 1], np.full(int(fell.sum()), place), "x", color=line.get_color(), markersize=5)
         ax.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle=":")
         ax.set_ylim(0.0, place + 0.05)
-        ax.set_xlabel("2 pi/p [s] (grows with the root of the size)")
-        ax.set_ylabel("greatest rotation over alpha")
+        ax.set_xlabel("2 pi/p [s] (in proportion to the square root of the size)")
+        ax.set_ylabel("greatest rotation / alpha")
         ax.legend()
-        return [(style.save(fig, folder, name), "Rocking spectra of the motion; crosses: overturned.")]
+        return [(style.save(fig, folder, name), "Rocking spectra of the motion. Crosses: the block overturns.")]
 
 
 def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -405,18 +407,25 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
     with style.figure(7.0, 4.4) as (fig, (ax,)):
         shown = np.where(outcome == RECOVERY, np.minimum(ratio, 1.0), np.nan)
         drawn = ax.pcolormesh(f, a, shown.T, cmap="YlGnBu", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
-        fell = np.where(outcome == COLLAPSE, 1.0, np.nan)
         from matplotlib.colors import ListedColormap
 
-        ax.pcolormesh(f, a, fell.T, cmap=ListedColormap([style.MODES[3]]), shading="nearest", rasterized=True)
-        fig.colorbar(drawn, ax=ax, label="greatest rotation over the critical one")
+        for code, color, text in ((COLLAPSE, style.MODES[3], "overturned"), (SLID, style.MODES[SLID], "blocks only slide")):
+            here = np.where(outcome == code, 1.0, np.nan)
+            if code == COLLAPSE or np.isfinite(here).any():
+                ax.pcolormesh(f, a, here.T, cmap=ListedColormap([color]), shading="nearest", rasterized=True)
+                ax.plot([], [], "s", color=color, label=text)
+        fig.colorbar(drawn, ax=ax, label="greatest rotation / critical rotation")
         ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.8)
-        ax.plot([], [], "s", color=style.MODES[3], label="overturned")
         ax.legend(loc="upper left", frameon=True)
         ax.set_xlabel("frequency [Hz]")
         ax.set_ylabel("amplitude [g]")
         ax.grid(False)
-        return [(style.save(fig, folder, name), f"Harmonic motion of {r.cycles} cycles; dashed: uplift.")]
+        return [
+            (
+                style.save(fig, folder, name),
+                f"Greatest rotation under harmonic motion of {r.cycles} cycles. Dashed: acceleration at which rocking starts.",
+            )
+        ]
 
 
 def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -442,12 +451,12 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             if any(check.alternative for check in found.checks.values())
             else ""
         )
-        pale = " Pale bars: formulas for comparison." if any(not code for _, _, code in rows) else ""
+        pale = " Pale bars: formulas that serve only for comparison." if any(not code for _, _, code in rows) else ""
         return [
             (
                 style.save(fig, folder, name),
                 (
-                    f"Demand over capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
+                    f"Demand / capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
                     f"{found.overall().statement}"
                 ),
             )

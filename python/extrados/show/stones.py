@@ -1,4 +1,4 @@
-"""Stones as stored results have them: outlines, and outlines carried to a pose."""
+"""Blocks in stored results: outlines, also displaced to a pose."""
 
 import itertools
 

@@ -77,8 +77,8 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
             ax.set_ylim(every[:, 1].min() - room, every[:, 1].max() + room)
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
-        "Collapse mechanisms that govern, exaggerated: the existing building, and the building with interventions of the size that meets the target "
-        "(or of the greatest size considered, if none does)."
+        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention "
+        "of the size that meets the target (if no size meets it: the greatest size considered)."
     )
 
 
@@ -109,8 +109,8 @@ def _mechanisms_in_space(run: Stored, r: Strengthen, name: str, folder: Path) ->
                 ax.add_collection(LineCollection(lines, colors=section.TIE, linewidths=1.6, zorder=3))
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
-        "Collapse mechanisms that govern, exaggerated, coloured by the speed of each block (the fastest red): the existing building, and the "
-        "building with interventions of the size that meets the target. Lines: hoops, chains and ties."
+        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention of "
+        "the size that meets the target. Colour: speed of each block (red: fastest). Lines: hoops, chains and ties."
     )
 
 
@@ -156,7 +156,7 @@ def _curves(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
         axes[0].set_ylabel(_axis(r))
         saved = style.save(fig, folder, f"{name}-curves")
     return saved, (
-        "Value over the size of each intervention. Dots: another mechanism begins to govern. Stars: the least size that meets the target."
+        "Capacity over the size of each intervention. Dots: sizes from which another mechanism governs. Stars: least size that meets the target."
     )
 
 
@@ -177,17 +177,23 @@ def _places(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
             good = np.isfinite(rows[:, 2])
             colour = section.CHAIN_COLOURS[k % len(section.CHAIN_COLOURS)]
             ax.plot(rows[good, 2] / 1e3, place[good], "-o", color=colour, markersize=3.5, label=label)
-            ax.plot(np.zeros((~good).sum()), place[~good], "x", color=colour, label=f"{label}: no force suffices" if (~good).any() else "_")
+            ax.plot(
+                np.zeros((~good).sum()),
+                place[~good],
+                "x",
+                color=colour,
+                label=f"{label}: no yield force meets the target" if (~good).any() else "_",
+            )
         ax.set_xlabel("required yield force [kN]")
         ax.set_ylabel("place, x of the middle [m]" if across else "height of the middle [m]")
         ax.set_xlim(left=0.0)
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-places")
-    return saved, "Yield force that meets the target over the place of the tie. Crosses: no force suffices there."
+    return saved, "Yield force that meets the target, over the place of the tie. Crosses: no yield force meets the target at this place."
 
 
 def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, str] | None:
-    """Cost against value: curves of all alternatives, and the line of those that no other beats."""
+    """Cost against value: curves of all alternatives, and the Pareto front."""
     curves = _paths(run, name, "curve")
     rows = [one for one in r.interventions if one.name in curves][:MOST]
     if len(rows) < 2:
@@ -207,16 +213,16 @@ def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, st
             if one.cost is not None and one.capacity_after is not None:
                 ax.plot(one.cost, one.capacity_after, "*", color=colour, markersize=10, zorder=4)
         front = _front(points, falls)
-        ax.plot(*front.T, color="black", linewidth=3.5, alpha=0.25, zorder=1, label="no alternative is cheaper and safer")
+        ax.plot(*front.T, color="black", linewidth=3.5, alpha=0.25, zorder=1, label="no alternative is both cheaper and safer")
         ax.axhline(r.target, color=style.EDGE, linewidth=1.0, linestyle="--", label="target")
-        ax.set_xlabel("cost by the weights of the deck")
+        ax.set_xlabel("relative cost, by the weights in the deck")
         ax.set_ylabel(_axis(r))
         ax.set_xlim(left=0.0)
         ax.set_ylim(bottom=0.0)
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-costs")
     best = r.best
-    told = "" if best is None else f" Least relative cost that meets the target: {best.name}, {size_told(best)}."
+    told = "" if best is None else f" Alternative of least relative cost that meets the target: {best.name}, {size_told(best)}."
     return saved, f"Cost against safety of all alternatives (Pareto front: thick line).{told}"
 
 
@@ -230,16 +236,18 @@ def _front(points: list[tuple[float, float]], falls: bool) -> np.ndarray:
 
 
 def _fragility(pair: FragilityPair, name: str, folder: Path) -> tuple[str, str]:
-    """Probabilities of collapse over the factor on the motions, with their intervals."""
+    """Probabilities of collapse over the scale factor of the motions, with their intervals."""
     with style.figure(5.5, 3.8) as (fig, (ax,)):
         for word, colour, label in (("before", style.THRUST, "existing building"), ("after", style.SAFE, f"with {pair.name}")):
             share = np.array([np.nan if p is None else p for p in getattr(pair, word)])
             low, high = getattr(pair, f"{word}_low"), getattr(pair, f"{word}_high")
             ax.fill_between(pair.levels, low, high, color=colour, alpha=0.2, linewidth=0.0)
             ax.plot(pair.levels, share, "-o", color=colour, markersize=3.5, label=label)
-        ax.set_xlabel("factor on the motions")
+        ax.set_xlabel("scale factor of the motions")
         ax.set_ylabel("probability of collapse")
         ax.set_ylim(-0.02, 1.02)
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-fragility")
-    return saved, (f"Share of {pair.motions} motions that cause collapse, before and after, with 95 % score intervals.")
+    return saved, (
+        f"Share of the {pair.motions} motions that cause collapse, before and after the intervention, with 95 % score intervals."
+    )

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 STEPS = "#3a7d44"  # states found by equilibrium iterations
 STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
-MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d")
+MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d", "#9db4cf")
 
 #: Marks labels that are spread as a figure is saved
 LETTER = "letter"
@@ -114,7 +114,7 @@ def legend_below(fig: Figure, ax: Axes) -> None:
 
 
 def whole_figure(ax: Axes) -> Figure:
-    """The figure in which axes stand."""
+    """The figure that contains the axes."""
     fig = ax.get_figure(root=True)
     assert fig is not None  # axes are made by a figure
     return fig
@@ -205,7 +205,7 @@ def pair(point: np.ndarray) -> tuple[float, float]:
 
 
 def letters(ax: Axes, points: Iterable[Any], labels: list[str], colour: str) -> None:
-    """Labels beside places; where each stands is settled as the figure is saved, so that none hides another."""
+    """Labels beside points; their positions are determined when the figure is saved, so that they do not overlap."""
     for point, label in zip(points, labels, strict=False):
         ax.annotate(
             label,

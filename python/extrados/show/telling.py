@@ -1,5 +1,5 @@
-"""What the report of a run says, in order: the answer, the building, the hazard, every strategy, its factors and limits, its sources.
-The annex holds all numbers and how to repeat the run. From stored results only."""
+"""The content of a report in its order: conclusion, building, hazard, analyses, factors, limits, sources. The annex has all
+numbers and the commands to repeat the run. From stored results only."""
 
 import re
 from dataclasses import replace
@@ -89,11 +89,7 @@ def told(
             parts += [Figure(f"figures/{name}", caption) for name, caption in figures[most:]]
     note: list[Block] = [Words(_flowing(deck["note"]), lang=_foreign(words))] if deck.get("note") else []
     if words.code != "en":
-        note.append(
-            Words(
-                words("Sentences that the analyses write and captions of figures are printed in English, as the results hold them."), "warn"
-            )
-        )
+        note.append(Words(words("Sentences from the analyses and captions of figures are in English, as in the results."), "warn"))
     sections: dict[str, list[Block]] = {
         "answer": _verdicts(run, words),
         "building": _building(run, deck, shown, words),
@@ -202,11 +198,11 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         found.append(Heading(words("Why they differ"), 2))
         labels = {v.strategy: v.label for v in r.verdicts}
         pairs = [(one.rule, one.text, "; ".join(f"{labels[a]} and {labels[b]}" for a, b in one.explains)) for one in r.reasons]
-        found.append(Table(_heads(words, "rule", "reason, with the numbers that show it", "explains"), pairs, (1.2, 4.6, 2.4)))
+        found.append(Table(_heads(words, "rule", "reason, with the numbers for it", "explains"), pairs, (1.2, 4.6, 2.4)))
     if r.unexplained:
         labels = {v.strategy: v.label for v in r.verdicts}
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
-        found.append(Words(f"No rule has found a reason why these differ: {text}.", "bad"))
+        found.append(Words(f"No reason was found for the difference between these strategies: {text}.", "bad"))
     if r.sensitivity:
         found.append(Heading(words("Sensitivity of the verdicts"), 2))
         moved = [
@@ -245,15 +241,19 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             if m.dem_base is not None
         ]
         if shaken:
-            found.append(Words("Values that only discrete elements consider: displacement of their blocks over that of collapse."))
+            found.append(
+                Words("Values that only discrete elements consider: displacement of the blocks / displacement that counts as collapse.")
+            )
             head = ("key", "value", "moved", "at the value", "varied", "rotates at")
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
         found.append(Heading(words("Further runs"), 2))
         probed = [(p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes]
-        found.append(Table(("analysis", "difference from the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2)))
+        found.append(
+            Table(("analysis", "change with respect to the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2))
+        )
     if r.not_done:
-        found.append(Words("Not done, or not decided: " + "; ".join(r.not_done) + ".", "warn"))
+        found.append(Words("Not done, or without a verdict: " + "; ".join(r.not_done) + ".", "warn"))
     return found
 
 
@@ -320,7 +320,7 @@ def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:
 
 
 def label_of(words: Language, table: str, key: str) -> str:
-    """A key of the deck in words: "compressive strength", "spans 2: clear span" where it stands within another table."""
+    """A key of the deck in words: "compressive strength"; "spans 2: clear span" for a key within another table."""
     parts = []
     for part in table.split(".")[1:]:
         name, _, number = part.partition(" ")
@@ -357,7 +357,7 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             h = run.results_of(a["name"], Assess).hazard
-            text = f"{h.told[:1].upper()}{h.told[1:]}. Strategies of a constant acceleration take {h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
+            text = f"{h.told[:1].upper()}{h.told[1:]}. Static strategies use the constant acceleration {h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
             if h.pulse_amplitude_g is not None and h.pulse_period_s is not None:
                 text += f" The primary impulse has {h.pulse_amplitude_g:.3g} g over {h.pulse_period_s:.3g} s."
             found.append(Words(text, lang=_foreign(words)))
@@ -434,7 +434,9 @@ def _stresses(run: Stored, a: dict[str, Any], words: Language) -> list[Block]:
     return [
         Heading(f"{words('Forces and stresses')} {words(said)}", 2),
         Words(
-            words("The joints of greatest stress. Mean stress: compression over twice its distance to the nearer edge, times the depth.")
+            words(
+                "The joints with the greatest stress. Mean stress: compressive force / (2 x distance of the force from the nearer edge x depth)."
+            )
         ),
         Table(head, rows, (2.0, 1.2, 0.9, 1.1, 1.2, 1.1)),
     ]
@@ -460,7 +462,9 @@ def _factors(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
             if isinstance(found, int | float):
                 rows.append((title, words(label), words.given(float(found))))
                 values.append(float(found))
-    remark = words("All partial factors are 1: loads and strengths are characteristic. The result has no margin of a code.")
+    remark = words(
+        "All partial factors are 1: loads and strengths are characteristic values. The result contains no safety margin of a code."
+    )
     told: list[Block] = [Heading(words("Partial and confidence factors"))]
     if rows:
         told.append(Table(_heads(words, "analysis", "factor", "value"), rows, (2.4, 2.4, 1.0)))
@@ -486,7 +490,7 @@ def _assumed(run: Stored, words: Language) -> list[Block]:
                 Heading(title_of(words, a["name"], a["kind"]), 2),
                 Table(_heads(words, "property", "value", "from"), rows, (2.6, 1.6, 1.2)),
             ]
-    return [Heading(words("Properties that each result rests on")), *found] if found else []
+    return [Heading(words("Properties that each result depends on")), *found] if found else []
 
 
 def _own_tables(run: Stored, words: Language) -> list[tuple[str, str, Table]]:
@@ -514,7 +518,7 @@ def _own_tables(run: Stored, words: Language) -> list[tuple[str, str, Table]]:
                 )
             )
         if walls := getattr(r, "walls", None) if a["kind"] == "local-mechanism" else None:
-            head = _heads(words, "wall", "rotates at the foot of storey", "alpha_0", "a_0*", "d_0*", "margin")
+            head = _heads(words, "wall", "rotates about the foot of storey", "alpha_0", "a_0*", "d_0*", "margin")
             tried = [
                 (
                     w.wall,
@@ -574,7 +578,7 @@ def _numbers(run: Stored, hidden: set[str], words: Language) -> list[Block]:
 def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Language) -> list[Block]:
     lines = [f"extrados run {deck['path'] or 'deck.toml'}"]
     parts = [n for b in run.analyses if b["kind"] == "assess" and b["results"] for n in run.results_of(b["name"], Assess).parts]
-    lines += [f"extrados run {n}.toml        # of assess/, put beside the deck" for n in parts]
+    lines += [f"extrados run {n}.toml        # the deck is in assess/: copy it beside the original deck first" for n in parts]
     files = run.summary.get("files", {})
     sums = [
         (name, files[name]) for name in (STORE, *sorted(n for n in files if n.endswith(".csv") or n.startswith("assess/"))) if name in files
@@ -593,7 +597,7 @@ def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Lang
             ],
             (1.0, 5.0),
         ),
-        Words(words("Checksums (sha256) of the files beside this report, as {file} gives them:", file=SUMMARY)),
+        Words(words("Checksums (sha256) of the files in the folder of this report, from {file}:", file=SUMMARY)),
         Table(("file", "sha256"), sums, (1.6, 5.0)),
     ]
     rows = flat(settings)

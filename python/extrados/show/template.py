@@ -33,20 +33,20 @@ Text = Annotated[str, Field(max_length=200)]
 class ReportTable(Table):
     """The keys of report.toml; entries of the title block that the deck does not give."""
 
-    language: Literal["en", "it", "es", "fr", "de"] | None = key(None, "language of the report; default that of the deck")
+    language: Literal["en", "it", "es", "fr", "de"] | None = key(None, "language of the report; default: that of the deck")
     project: Text = key("", "name or number of the project")
     client: Text = key("", "client")
     office: Text = key("", "office that issues the report")
     author: Text = key("", "author")
     reviewer: Text = key("", "reviewer")
     revision: Text = key("", "revision")
-    date: Text = key("", "date, in any form")
+    date: Text = key("", "date of the report, in any form")
     fields: dict[Text, Text] = key({}, "further entries of the title block: label and text", max_length=12)
-    signatures: list[Text] = key([], "labels of the fields for signatures; default author and reviewer", max_length=6)
+    signatures: list[Text] = key([], "labels of the fields for signatures; default: author and reviewer", max_length=6)
     logo: str | None = key(None, "PNG or JPEG file inside the template's folder", max_length=200)
     colour: str = key("#1f4e79", "colour of headings and rules: # and six hexadecimal digits", pattern=r"^#[0-9a-fA-F]{6}$")
     sections: list[Section] = key(list(SECTIONS), "sections of the report in their order", min_length=1, max_length=len(SECTIONS))
-    figures: int = key(2, "figures of each analysis in the report; the annex has the others", ge=0, le=20)
+    figures: int = key(2, "number of figures of each analysis in the report; the other figures are in the annex", ge=0, le=20)
 
     @field_validator("sections")
     @classmethod
@@ -79,10 +79,10 @@ def read_template(path: Path) -> Template:
             raise files.BadFile(f"{path}: logo: expected a name that ends in {', '.join(PICTURES)}, found {table.logo}")
         logo = files.read(table.logo, LARGEST_LOGO, path.resolve().parent).content
         if not logo.startswith(PICTURES[suffix]):
-            raise files.BadFile(f"{path}: logo: the content of {table.logo} is no {suffix[1:].upper()} picture")
+            raise files.BadFile(f"{path}: logo: the content of {table.logo} is not a {suffix[1:].upper()} picture")
         return Template(table, logo, suffix)
     except tomllib.TOMLDecodeError as error:
-        raise StoreError(f"{path}: is no TOML: {error}") from None
+        raise StoreError(f"{path} is not valid TOML: {error}") from None
     except ValidationError as error:
         told = "; ".join(f"{'.'.join(map(str, one['loc'])) or 'template'}: {one['msg']}" for one in error.errors())
         raise StoreError(f"{path}: {told}") from None

@@ -1,4 +1,4 @@
-"""Capacity curves of several analyses in one picture: walls of plane stress, buildings of shells, incremental solutions."""
+"""Capacity curves of several analyses in one picture: walls in plane stress, buildings of shells, incremental solutions."""
 
 import tempfile
 from dataclasses import dataclass
@@ -44,14 +44,13 @@ class Push:
 
 
 def pushes(runs: list[tuple[str, Stored]]) -> list[Push]:
-    """All curves of load against displacement of some runs, each with what it is called; StoreError names a run without
-    any."""
+    """All load-displacement curves of some runs, with their names; StoreError names a run without any."""
     found = []
     last = [Path(title).name for title, _ in runs]
     for (title, run), short in zip(runs, last, strict=True):
         names = [name for name in run.arrays if "envelope_load" in run.arrays[name]]
         if not names:
-            raise StoreError(f"{title}: no analysis of it has a capacity curve; expected sla or pushover")
+            raise StoreError(f"{title}: the run has no analysis with a capacity curve; expected sla or pushover")
         for name in names:
             r: Any = run[name]  # of a wall, of a building or of a frame
             incremental = bool((run.array(name, "event_point") < 0).all())
@@ -99,7 +98,7 @@ def draw(curves: list[Push], path: Path) -> Path:
             labels.append("incremental solution")
         if any(curve.walls for curve in curves):
             marks.append(Line2D([], [], color="#555", marker="+", markersize=7, linestyle=""))
-            labels.append("its walls at its greatest load")
+            labels.append("walls of the building at its greatest load")
         ax.set_xlabel("control displacement [mm]")
         ax.set_ylabel("base shear [kN]" if all(curve.weight is not None for curve in curves) else "load [kN]")
         ax.set_xlim(left=min(0.0, *(1e3 * float(curve.displacement.min()) for curve in curves), 0.0))

@@ -102,7 +102,7 @@ def markup(document: Document, folder: Path) -> str:
     lines.append(f"#outline(depth: 1, title: {_words(words('Contents'))})")
     lines += _set(document.blocks, folder, words)
     if document.annex:
-        lines.append(_paragraph(Words(words("The annex is a document of its own: all numbers, settings and checksums."))))
+        lines.append(_paragraph(Words(words("The annex is a separate document with all numbers, settings and checksums."))))
     return "\n".join(lines)
 
 
@@ -159,7 +159,7 @@ def _table(block: Table, words: Language) -> str:
 
 
 def _shares(block: Table) -> list[float]:
-    """Widths of the columns [mm]: as asked, but none less than its longest word."""
+    """Widths of the columns [mm]: as requested, but at least as wide as the longest word."""
     every = [block.head, *block.rows] if block.head else block.rows
     least = [
         BESIDE + LETTER * max((len(word) for row in every for word in BREAKS.sub(lambda m: m[0] + " ", row[k]).split()), default=0)
@@ -192,4 +192,4 @@ def pdf(source: bytes, folder: Path) -> bytes:
     try:
         return bytes(typst.compile(text, root=str(folder), format="pdf", ignore_system_fonts=True, pdf_standards=["ua-1"]))
     except Exception as error:  # typst raises errors of its own and RuntimeError
-        raise StoreError(f"the report could not be set as PDF: {error}") from None
+        raise StoreError(f"the PDF of the report could not be made: {error}") from None

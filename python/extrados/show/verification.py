@@ -1,4 +1,4 @@
-"""The verification by displacement as a figure and as rows: capacity curve, idealised curve, demand and capacity."""
+"""Figure and table of the verification by displacement: capacity curve, bilinear curve, demand and capacity."""
 
 from pathlib import Path
 
@@ -76,8 +76,8 @@ def draw_verification(run: Stored, name: str, folder: Path) -> list[tuple[str, s
     return [
         (
             saved,
-            f"Verification by displacement, {found.code}: base shear over control displacement with the bilinear curve, demands and "
-            "capacities; the same of the equivalent oscillator with the elastic spectra (dots: demands).",
+            f"Verification by displacement, {found.code}. Left: base shear over control displacement, bilinear curve, "
+            f"demands and capacities. Right: the equivalent oscillator and the elastic spectra (dots: demands).",
         )
     ]
 

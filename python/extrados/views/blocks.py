@@ -82,8 +82,10 @@ class Masonry(Description):
             more = sorted(self.materials[name].model_fields_set - {"density"})
             if more:
                 raise BadGeometry(
-                    f"[materials.{name}] gives stones another {more[0]}; discrete and finite elements have one elastic "
-                    "material for all stones, that of [material]: remove it, or give the joints their stiffness",
+                    (
+                        f"[materials.{name}] gives blocks a different {more[0]}. Discrete and finite elements use one elastic material "
+                        "for all blocks, [material]: remove this value, or give the stiffness of the joints"
+                    ),
                     ("materials", name, more[0]),
                 )
 
@@ -100,8 +102,10 @@ class Masonry(Description):
         stones = self.blocks() if assembly is None else assembly
         if not (stones.mass > 0.0).all():
             raise NoView(
-                f"'{stones.block_names[int(stones.mass.argmin())]}' has no weight, by which blocks stand, rock and "
-                "overturn: give a density above zero",
+                (
+                    f"block '{stones.block_names[int(stones.mass.argmin())]}' has no weight, which the analysis requires: give a "
+                    "density above zero"
+                ),
                 ("material", "density"),
             )
 
@@ -142,7 +146,9 @@ class Masonry(Description):
                 else:
                     known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
                     groups = ", ".join([*assembly.groups, "ground"])
-                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}", key)
+                    raise BadGeometry(
+                        f"joints.types {k} names joint '{name}', which does not exist; the joints are {known}, and {groups}", key
+                    )
 
     def anchored(self) -> Anchored:
         """The stones at the ends of its ties, in their order; BadGeometry where an end is in none, or in several."""
@@ -154,7 +160,7 @@ class Masonry(Description):
             if tie.ground is None:
                 block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end", ("ties", k), "end")
             if block[k, 0] == block[k, 1]:
-                raise BadGeometry(f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'", ("ties", k))
+                raise BadGeometry(f"{tie.name}: both ends of the tie are in block '{assembly.block_names[block[k, 0]]}'", ("ties", k))
         return Anchored(block, point)
 
     @property

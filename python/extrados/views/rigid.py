@@ -160,7 +160,7 @@ def _block_parts(assembly: Assembly, outlines: list[np.ndarray], i: int) -> list
         raise BadGeometry(f"{name}: its area is zero")
     crossing = crossing_edges(outline)
     if crossing is not None:
-        raise BadGeometry(f"{name}: its outline crosses itself (edges from vertices {crossing[0] + 1} and {crossing[1] + 1})")
+        raise BadGeometry(f"{name}: the outline crosses itself (edges from vertices {crossing[0] + 1} and {crossing[1] + 1})")
     outline = clean(outline)
     if is_convex(outline):
         return [(outline, np.ones(len(outline), dtype=bool))]

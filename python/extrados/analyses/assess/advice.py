@@ -15,7 +15,7 @@ def size_interventions(asker: Asker, peak_g: float, rocks: bool) -> Advice | str
     """Interventions that carry the peak of the hazard, with the outcome of rocking; why there are none, in words."""
     dropped = tuple(what for what in asker.cannot_bear("tilt") if what != "[supports] abutting_wall")
     if dropped:
-        return f"limit analysis, which sizes interventions, neglects {' and '.join(dropped)}"
+        return f"limit analysis gives the sizes of interventions, and it neglects {' and '.join(dropped)}"
     try:
         result, _ = asker.ask("strengthen", {"acceleration": f"{peak_g!r} g"})
     except Refused as error:
@@ -65,10 +65,11 @@ def _least_by_rocking(asker: Asker, tie: Intervention) -> Intervention | None:
 def _told_by_rocking(least: Intervention, tie: Intervention) -> str:
     """The least tie by rocking against that of limit analysis, in words."""
     if not least.meets_target or least.required_N is None or tie.required_N is None:
-        return f"By rocking under the hazard no force of this tie up to that value gives the verdict stands: {least.reason}."
+        return f"By rocking under the hazard, this tie does not suffice with any force up to that value: {least.reason}."
     return (
-        f"By rocking under the hazard the same tie needs {engineering(least.required_N, 'N')}, {100.0 * least.required_N / tie.required_N:.0f} % "
-        "of the force for the sustained peak. This force holds for this one motion."
+        f"By rocking under the hazard the same tie needs {engineering(least.required_N, 'N')}. This is "
+        f"{100.0 * least.required_N / tie.required_N:.0f} % of the force for the sustained peak, and it is valid only for "
+        "this motion."
     )
 
 
@@ -93,8 +94,11 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
     """The mechanism, the least interventions, and what governs then."""
     now = "none" if r.value_before is None else f"{r.value_before:.3g} g (horizontal, constant)"
     said = [
-        f"Collapse acceleration of the existing building: {now}. Governing mechanism: {r.mechanism_before}. Each of these interventions carries the "
-        f"peak of the hazard, {r.target:.3g} g, as a constant horizontal acceleration:"
+        (
+            f"Collapse acceleration of the existing building: {now}. Governing mechanism: {r.mechanism_before}. The peak of "
+            f"the hazard is {r.target:.3g} g. With each of these interventions the building carries this peak as a constant "
+            "horizontal acceleration:"
+        )
     ]
     met = [one for one in r.interventions if one.meets_target]
     for one in met:
@@ -102,5 +106,5 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
         moves = f" (under the hazard the strengthened building {rocking[one.name]})" if one.name in rocking else ""
         said.append(f"{one.name}, {size_told(one)}{then}{moves}.")
     if not met:
-        said.append("no tie and no thickness that was considered suffices.")
+        said.append("none: no tie and no thickness of those considered is sufficient.")
     return " ".join(said)

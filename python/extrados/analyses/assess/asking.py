@@ -138,7 +138,7 @@ def row_of(
     elif isinstance(r, Sla | Pushover) and any(c.peak_load_N is None for c in (r, r.minus) if c is not None):
         low = verdict.ratio  # it bears so much at least
         if verdict.outcome == "stands":
-            statement = f"The run passed no peak: the capacity is not known. {statement}"
+            statement = f"The run did not reach a peak, so the capacity is not known. {statement}"
     elif verdict.bound == "lower" and isinstance(r, Sla | Pushover | FramePushover):
         low = verdict.ratio
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
@@ -147,7 +147,7 @@ def row_of(
     if violated and outcome in ("stands", "collapses"):
         outcome, statement = "open", f"{statement} {' '.join(violated)}"
     if outcome == "collapses" and (held := [what for what in without if what in RESTRAINTS]):
-        violated.append(f"The strategy neglects {' and '.join(held)}, which may prevent the collapse.")
+        violated.append(f"This strategy neglects {' and '.join(held)}, which may prevent the collapse.")
         outcome, margin, statement = "open", None, f"{statement} {violated[-1]}"  # of another building
     return StrategyVerdict(
         strategy=strategy.name,
@@ -224,8 +224,8 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
     least, most = wilson(collapsed, count)
     outcome = "stands" if share <= acceptable else "collapses" if share > 0.5 else "open"
     text = (
-        f"{collapsed} of {count} collapse: {100 * share:.3g} %, between {100 * float(least):.3g} and {100 * float(most):.3g} % by the count; "
-        f"{100 * acceptable:g} % are acceptable."
+        f"{collapsed} of {count} runs collapse: {100 * share:.3g} %, with an interval of {100 * float(least):.3g} to "
+        f"{100 * float(most):.3g} %; {100 * acceptable:g} % are acceptable."
     )
     return share, acceptable, "probability", outcome, text, low, high
 

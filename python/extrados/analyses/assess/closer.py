@@ -49,7 +49,7 @@ def _finer(work: Work) -> None:
     levels = [round(float(v), 5) for v in np.linspace(low, high, FINE + 2)]
     found = work.probe(
         "rocking",
-        f"the motion at {FINE} factors between {low:g} and {high:g}",
+        f"the motion at {FINE} scale factors between {low:g} and {high:g}",
         "fragility",
         {"intensity": "scale", "levels": levels, "bootstrap": 0},
         tell=False,
@@ -64,14 +64,17 @@ def _cheap_probes(work: Work, pairs: list[Pair]) -> None:
     results = work.results
     if "assessment" in names and (impulse := results["assessment"].of(Assessment).primary_impulse) is not None:
         sine = {"kind": "sine-pulse", "amplitude": f"{impulse.amplitude_g!r} g", "period": impulse.period_s}
-        work.keep("sine", work.probe("rocking", "the primary impulse alone, one sine", "rocking", {}, sine))
+        work.keep("sine", work.probe("rocking", "the primary impulse alone, as a single sine", "rocking", {}, sine))
     if "sla" in names and "tilt" in results and not work.context.building.meshed_by_stones:
         keys = {"joints": {"friction": "no-sliding"}}
         work.keep("tilt-no-sliding", work.probe("tilt", "no joint slides", "tilt", keys))
 
     if "[[ties]]" in work.bare.get("sla", ()) and {"sla", "tilt"} <= set(results):
         work.keep(
-            "tilt-without", work.probe("tilt", "without the restraints that the elements neglect", "tilt", {}, without=work.bare["sla"])
+            "tilt-without",
+            work.probe(
+                "tilt", "without the restraints that the analysis of finite elements (sla) neglects", "tilt", {}, without=work.bare["sla"]
+            ),
         )
     if work.bare and "rocking" in results and any(n in names for n in work.bare):
         every = tuple(sorted({w for there in work.bare.values() for w in there}))
@@ -117,18 +120,19 @@ def _turning(work: Work, left: int, choice: Choice) -> None:
         table = hazard.scaled(motion, model, factor)
         if table is None:
             work.not_done.append(
-                "discrete elements at other scale factors of the motion: its code spectrum does not grow in proportion to its peak"
+                "discrete elements at other scale factors of the motion: the motion is matched to a code spectrum, which is "
+                "fixed and cannot be scaled with the peak"
             )
             break
         if left < 1:
-            work.not_done.append(f"discrete elements at {factor:g} times the motion and beyond")
+            work.not_done.append(f"discrete elements at {factor:g} times the motion and at larger factors")
             break
         left -= 1
         found = work.probe("dem", f"the motion times {factor:g}", "dem", choice.keys | ONE_RUN, table)
         if found is None:
             break
         if found.results.require_verdict(work.asker.demand(work.peak)).outcome == "open":
-            work.not_done.append(f"discrete elements at {factor:g} times the motion still move in the end")
+            work.not_done.append(f"discrete elements at {factor:g} times the motion still move at the end of the run")
             break
         falls = found.of(DemRun).outcome == "collapse"
         low, high = (low, factor) if falls else (factor, high)

@@ -96,14 +96,14 @@ def conclude(work: Work, result: Result) -> None:
 def _hazard_told(work: Work, motion: Any) -> str:
     name = work.context.deck.require_motion().kind
     if work.many:
-        return f"{work.motions} motions of kind {name}; single runs take motion {work.chosen['member']}, {work.chosen['chosen_by']}"
+        return f"{work.motions} motions of kind {name}; single runs use motion {work.chosen['member']}, {work.chosen['chosen_by']}"
     return f"{motion.name or name}, {motion.end:.3g} s"
 
 
 def _arrays(work: Work, facts: Facts, rows: list[out.StrategyVerdict], result: Result) -> None:
     low, high = np.array([facts.interval(r.strategy) for r in rows]).reshape(-1, 2).T
     result.arrays = {
-        "margin_low": Array(low, ("strategy",), "", "factors on the hazard between which each verdict changes"),
+        "margin_low": Array(low, ("strategy",), "", "scale factors of the hazard between which each verdict changes"),
         "margin_high": Array(np.where(np.isinf(high), np.nan, high), ("strategy",), "", "NaN: not known"),
     }
     time_s, ground = facts.motion.series()

@@ -28,7 +28,7 @@ def run(context: Context, options: Assess) -> Result:
     try:
         ask_cheap(work)
         context.tell(f"First results:\n{table_of(list(work.rows.values()))}")
-        work.further("measures and durations that cheap strategies call for", lambda: look_early(work))
+        work.further("runs that the results of the cheap strategies require", lambda: look_early(work))
         ask_costly(work)
         work.further("longer runs", lambda: prolong(work))
         if options.advise and not work.advised:
@@ -39,7 +39,7 @@ def run(context: Context, options: Assess) -> Result:
             work.asker.deadline = budget.STOPPED_AFTER * options.budget
             work.further("sensitivity", lambda: move_values(work))
     except Interrupted:
-        result.status, result.reason = "interrupted", "interrupted; the strategies that had run are reported"
+        result.status, result.reason = "interrupted", "interrupted; the strategies that were complete are reported"
     conclude(work, result)
     return result
 
@@ -71,7 +71,7 @@ def ask_costly(work: Work) -> None:
         if not work.wants(name) or name in work.rows:
             continue
         if name == "probability" and "rocking" in work.rows and work.rows["rocking"].status == "refused":
-            text = "the strategy counts collapses by rocking, and this building does not rock as one mechanism"
+            text = "this strategy counts collapses by rocking, and this building does not rock as one mechanism"
             work.rows[name] = no_row(strategies.of(name), "left out", text)
         else:
             work.ask(strategies.of(name))
@@ -90,19 +90,26 @@ def _scaled(work: Work) -> None:
         work.parts.pop()
         work.decks.pop()
     if found is None:
-        work.context.warnings.append(f"the margin of rocking is not known: {row.reason}")
+        work.context.warnings.append(f"the critical scale factor by rocking is not known: {row.reason}")
         return
     curve = found.of(OverLevels)
     low, high = scaled_margin(curve)
-    down = work.rows["rocking"].outcome == "collapses"  # the run under the hazard itself is a factor of 1
-    work.bracket("rocking", low, 1.0 if high is None and down else high)
     words = f"{work.rows['rocking'].parameters}; its margin from {row.parameters}"
     if high is None and low != curve.levels[-1]:
-        words += "; at the next factor blocks slide or hinges form elsewhere, so that rocking bounds the margin from below alone"
+        words += (
+            "; at the next scale factor blocks slide or hinges form at other joints, so rocking gives only a lower bound of "
+            "the critical factor"
+        )
     work.rows["rocking"] = work.rows["rocking"].model_copy(update={"parameters": words})
+    outcome = work.rows["rocking"].outcome  # the run under the hazard itself is a factor of 1, on contacts where blocks slide
+    if high is None and outcome == "collapses":
+        high = 1.0
+    elif high is None and outcome == "stands":
+        low = max(low or 0.0, 1.0)
+    work.bracket("rocking", low, high)
     if curve.resurrections:
         work.context.warnings.append(
-            "Rocking recovers at some factors above the least one that causes collapse. Do not rely on these safe regions."
+            "Rocking recovers at some scale factors above the least factor that causes collapse. Do not rely on these safe regions."
         )
 
 
@@ -112,7 +119,7 @@ def _scaled_set(work: Work) -> None:
     if strategies.SCALED.applies(work.context.building):
         found = work.ask(strategies.SCALED)
         row = work.rows.pop("scaled")
-    member, how = 1, "the first, for nothing rocks that could choose"
+    member, how = 1, "the first motion, because the structure does not rock and rocking cannot select one"
     if row is not None and row.status == "ok":
         strategy = strategies.of("probability")
         work.rows["probability"] = row.model_copy(
@@ -122,7 +129,7 @@ def _scaled_set(work: Work) -> None:
     if found is not None:
         work.results["probability"] = work.results.pop("scaled")
         member = _governing(found)
-        how = f"the motion of the set under which its rotation is larger than under {100 * hazard.GOVERNING:g} % of the others"
+        how = f"the motion of the set whose rotation exceeds that of {100 * hazard.GOVERNING:g} % of the other motions"
     work.chosen = {"member": member, "chosen_by": how}
     work.asker.motion = {**work.asker.motion, "member": member}
     if not isinstance(work.context.deck.motion, kinds.table("motion", "compatible")):

@@ -32,7 +32,10 @@ def _tell_finer(work: Work, names: set[str]) -> None:
         work.finer_told = (
             f"Strategies that contradict each other were run again with finer settings: {' and '.join(ran)}."
             if ran
-            else f"No finer check ran for strategies that contradict each other: {' and '.join(sorted(work.rows[n].label for n in names))}."
+            else (
+                "No finer check was run for these strategies, which contradict each other: "
+                f"{' and '.join(sorted(work.rows[n].label for n in names))}."
+            )
         )
 
 

@@ -84,7 +84,7 @@ def peak_of(context: Context) -> tuple[float, str]:
         except ValueError as error:
             raise Refused(str(error), ("motion",)) from None
         if model.floor is None:
-            return at_zero / GRAVITY, "the code's spectrum at period 0, a_g S"
+            return at_zero / GRAVITY, "the code spectrum at period 0, a_g S"
     whose = "motion" if model is None or model.floor is None else "floor"
     return context.motion.peak / GRAVITY, f"the greatest horizontal acceleration of the {whose}"
 

@@ -27,8 +27,8 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
             high=1.0,
             contributions=[],
             without={},
-            statement="Probability of collapse 100 %: collapse under self-weight has a certificate.",
-            method=f"The certificate of {proven.label} has no model uncertainty within its assumptions.",
+            statement="Probability of collapse 100 %: a certificate proves collapse under self-weight.",
+            method=f"Within its assumptions, the certificate of {proven.label} has no model uncertainty.",
         )
     tested: list[tuple[StrategyVerdict, ModelUncertainty]] = []
     without: dict[str, str] = {}
@@ -58,16 +58,19 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
             without=without,
             **dynamic,
             statement=said.strip()
-            or "No probability of collapse is given: no strategy has both a critical scale factor and comparisons with known results in the verification book.",
+            or (
+                "No probability of collapse is given. It requires a strategy with a critical scale factor and with comparisons "
+                "to known results in the verification book, and no strategy has both."
+            ),
             method=left.strip(),
         )
     p = sum(one.weight * one.probability for one in contributions)
     low, high = min(one.low for one in contributions), max(one.high for one in contributions)
     names = " and ".join(labels[one.strategy] for one in contributions)
     said += (
-        f"If the peak of the hazard acted as a constant horizontal acceleration, the probability of collapse would be {percent(p)} (90 % confidence: "
-        f"{percent(low)} to {percent(high)}), from the model uncertainty of {names}. This static number is not the probability of collapse in "
-        "the earthquake."
+        "If the peak of the hazard acted as a constant horizontal acceleration, the probability of collapse would be "
+        f"{percent(p)} (90 % confidence interval {percent(low)} to {percent(high)}). It follows from the model "
+        f"uncertainty of {names}. This static number is not the probability of collapse in the earthquake."
     )
     if any(row.axis != STATIC and row.outcome == "stands" for row in rows):
         said += " A peak that exceeds the capacity only briefly may cause no collapse."
@@ -77,9 +80,9 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
         for one in contributions
     )
     method = (
-        "The ratio of computed to measured capacity is lognormal. Bias and scatter come from the tests of the verification book, and their "
-        "number gives the confidence interval. The weight of a strategy is its share of the tests. The interval encloses those of all "
-        f"contributions. {each}.{left}"
+        "The ratio of calculated to measured capacity is assumed lognormal. Bias and scatter come from the tests of the "
+        "verification book, and their number gives the confidence interval. The weight of a strategy is its share of the "
+        f"number of tests. The interval encloses the intervals of all contributions. {each}.{left}"
     )
     return CollapseProbability(
         probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method, **dynamic
@@ -113,7 +116,7 @@ def _motion_told(one: CollapseInMotion) -> str:
     elif one.collapsed == one.count:
         told = f"at least {percent(one.low)}"
     text = f"Probability of collapse under the hazard by rocking {told}: {one.collapsed} of {one.count} runs collapse."
-    return f"{text} Assumptions of rocking do not hold in these runs." if one.violated else text
+    return f"{text} Assumptions of rocking are violated in these runs." if one.violated else text
 
 
 def _entry(row: StrategyVerdict) -> ModelUncertainty | str:
@@ -122,7 +125,7 @@ def _entry(row: StrategyVerdict) -> ModelUncertainty | str:
         return "no result"
     entries = [one for one in uncertainties_of(of(row.strategy).kind) if one.quantity in CAPACITIES]
     if row.axis != STATIC or not entries:
-        return "the verification book has no comparisons of its capacity with known results"
+        return "the verification book does not compare its capacity with known results"
     if row.violated:
         return "assumptions that do not hold"
     if row.margin is None:

@@ -32,13 +32,16 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if abs(check.capacity * part * fc / (q * least) - 1.0) > 0.02:
         return None  # another mechanism, or a weight that these factors do not hold
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
-    taking = "" if abs(part - 1.0) < 0.005 else f", divided by e* = {part:.3g}, the part of the moving weight that takes part"
-    reserve = " The factor q is the reserve of rocking beyond uplift." if q != 1.0 else ""
+    taking = "" if abs(part - 1.0) < 0.005 else f", divided by e* = {part:.3g}, the participating share of the moving weight"
+    reserve = " The factor q represents the reserve of rocking beyond uplift." if q != 1.0 else ""
     return reason(
         "code-factors",
         other,
-        f"{name} of the code compares a demand of {check.demand:.3g} g with a capacity of {check.capacity:.3g} g. This capacity is the collapse "
-        f"acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}, which is {'one' if q == 1.0 else f'the behaviour factor q = {q:g}'} over the confidence factor FC = {fc:g}.{reserve}",
+        (
+            f"{name} of the code compares a demand of {check.demand:.3g} g with a capacity of {check.capacity:.3g} g. This "
+            f"capacity is the collapse acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}, which is "
+            f"{'1' if q == 1.0 else f'the behaviour factor q = {q:g}'} divided by the confidence factor FC = {fc:g}.{reserve}"
+        ),
         code_capacity=check.capacity,
         static_capacity=least,
         demand=check.demand,
@@ -77,12 +80,14 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
         mine = [p for p in mine if facts.relation(*p) != "disagree"]
         if not mine or max(other, margin) < facts.apart * min(other, margin):
             return None
-    moves = ", a displacement, which statics does not give" if check.unit == "m" else ""
+    moves = ", a displacement, which static analysis does not give" if check.unit == "m" else ""
     return reason(
         "code-check",
         mine,
-        f"The governing check of the codes is {name} of {check.code}, {check.demand:.3g} against {check.capacity:.3g} {check.unit}{moves}: a margin of "
-        f"{margin:.3g}. By {what} it would be {other:.3g}.",
+        (
+            f"The governing check of the codes is {name} of {check.code}, demand {check.demand:.3g}, capacity "
+            f"{check.capacity:.3g} {check.unit}{moves}. The safety factor is {margin:.3g}. By {what} it would be {other:.3g}."
+        ),
         governing_margin=margin,
         demand=check.demand,
         capacity=check.capacity,
@@ -104,9 +109,12 @@ def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "torn-off",
         mine,
-        f"The codes consider each wall apart from those across it: wall {wall.wall} overturns out of its plane about the foot of storey "
-        f"{wall.storey} at alpha_0 = {wall.multiplier:.3g}. In the {facts.rows[weakest].label} corners and floors hold the walls together, and the "
-        f"whole carries {carried[weakest]:.3g} g, as far as the walls are bonded and anchored.",
+        (
+            f"The codes consider each wall separately from the transverse walls: wall {wall.wall} overturns out of its plane "
+            f"about the foot of storey {wall.storey} at alpha_0 = {wall.multiplier:.3g}. By the {facts.rows[weakest].label}, "
+            f"corners and floors hold the walls together. The whole building then carries {carried[weakest]:.3g} g, if the "
+            "walls are bonded and anchored."
+        ),
         multiplier=wall.multiplier,
         whole_g=carried[weakest],
     )
@@ -125,8 +133,11 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "weaker-direction",
         mine,
-        f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis the area of the walls is {area[weak]:.3g} m^2, along the "
-        f"{facts.rows[strong].label.removeprefix('push along ')} axis {area[strong]:.3g} m^2.",
+        (
+            f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis the cross-sectional area of the walls is "
+            f"{area[weak]:.3g} m^2, and along the {facts.rows[strong].label.removeprefix('push along ')} axis "
+            f"{area[strong]:.3g} m^2."
+        ),
         weak_m2=area[weak],
         strong_m2=area[strong],
     )
@@ -150,11 +161,11 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
         if max(one, other) <= (1.0 + SHELLS_APART) * min(one, other):
             continue
         axis = name.removeprefix("push-")
-        text = f"Along {axis} the frame carries {one / 1e3:.3g} kN and the shells {other / 1e3:.3g} kN"
+        text = f"Along {axis} the frame carries {one / 1e3:.3g} kN, and the shells carry {other / 1e3:.3g} kN"
         if any(c.peak_load_N is None for c in (shells, shells.minus) if c is not None):
-            text += ", which have not passed their peak"
+            text += ", without having passed their peak"
         if shells.flanges is not None and shells.walls:
-            text += f"; walls across carry {100 * shells.flanges.share:.2g} % of the latter"
+            text += f"; transverse walls carry {100 * shells.flanges.share:.2g} % of the shells' base shear"
             numbers[f"across_share_{axis}"] = shells.flanges.share
         told.append(f"{text}.")
         mine.append(next((p for p in pairs if set(p) == {"frame", name}), ("frame", name)))
@@ -164,9 +175,11 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "frame-and-shells",
         mine,
-        f"{' '.join(told)} Sections of the frame carry no tension, its piers slide or crack by the strengths of codes, and flanges act only "
-        "through the vertical shear at corners. Shells have the tensile strength of the masonry and bend out of their planes; they slide "
-        "only along drawn joints.",
+        (
+            f"{' '.join(told)} In the frame, sections carry no tension, piers slide or crack by the strengths of codes, and "
+            "flanges act only by the vertical shear at corners. The shells have the tensile strength of the masonry and also "
+            "bend out of plane. They slide only along joints that are drawn."
+        ),
         **numbers,
     )
 

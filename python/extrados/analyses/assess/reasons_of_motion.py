@@ -26,9 +26,12 @@ def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "left-out",
         mine,
-        f"The restraints of the mechanism are {' and '.join(sorted(every))}, neglected by "
-        f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them the greatest rotation is "
-        f"{100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them {100 * r.peak_rotation_ratio:.3g} %.",
+        (
+            f"The restraints of the mechanism are {' and '.join(sorted(every))}. These are neglected by "
+            f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them the greatest "
+            f"rotation is {100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them "
+            f"{100 * r.peak_rotation_ratio:.3g} %."
+        ),
         rotation_ratio_without=other.peak_rotation_ratio,
         rotation_ratio=r.peak_rotation_ratio,
     )
@@ -52,8 +55,10 @@ def impact_rule(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "impact-rule",
         mine,
-        f"The energy loss at impacts decides: rocking collapses by {told(falls)} and recovers by {told(stands)}. Discrete elements "
-        "lose energy by the damping of their contacts, which is neither rule.",
+        (
+            f"The energy loss at impacts decides the outcome: rocking collapses by {told(falls)} and recovers by "
+            f"{told(stands)}. Discrete elements lose energy by the damping of their contacts instead."
+        ),
         **numbers,
     )
 
@@ -75,10 +80,13 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sine-for-record",
         mine,
-        f"The criterion replaces the motion by its strongest sine, {abs(a.primary_impulse.amplitude_g):.3g} g over "
-        f"{a.primary_impulse.period_s:.3g} s ({100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared acceleration there): "
-        f"under that sine alone the greatest rotation is {100 * sine.peak_rotation_ratio:.0f} % of the critical rotation, under the whole "
-        f"motion {100 * whole.peak_rotation_ratio:.0f} %.",
+        (
+            f"The criterion replaces the motion by its strongest sine, {abs(a.primary_impulse.amplitude_g):.3g} g with a "
+            f"period of {a.primary_impulse.period_s:.3g} s (it explains {100 * a.primary_impulse.goodness_of_fit:.0f} % of "
+            "the squared acceleration over its duration). Under this sine alone the greatest rotation is "
+            f"{100 * sine.peak_rotation_ratio:.0f} % of the critical rotation. Under the whole motion it is "
+            f"{100 * whole.peak_rotation_ratio:.0f} %."
+        ),
         sine_amplitude_g=abs(a.primary_impulse.amplitude_g),
         sine_period_s=a.primary_impulse.period_s,
         sine_rotation_ratio=sine.peak_rotation_ratio,
@@ -96,8 +104,10 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "last-digits",
         mine,
-        "Rocking under this motion is chaotic: sensitive to perturbations of 1e-6 to 1e-4. One run is one sample. Its greatest "
-        f"rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical one.",
+        (
+            "The rocking response to this motion is chaotic: perturbations of 1e-6 to 1e-4 change it strongly. One run is "
+            f"only one sample. Its greatest rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical rotation."
+        ),
         rotation_ratio=r.peak_rotation_ratio,
     )
 
@@ -114,8 +124,10 @@ def elements_of_last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
         f"The discrete-element response is chaotic here: with a change of 1e-6 in the motion the outcome is {dem.perturbed_outcome} instead of "
         f"{dem.outcome}. Treat one run as one sample."
         if dem.perturbed_outcome != dem.outcome
-        else "The discrete-element response is chaotic here: a change of 1e-6 in the motion grows "
-        f"{dem.perturbation_growth:.2g} times. Treat one run as one sample.",
+        else (
+            "The discrete-element response is chaotic here: a change of 1e-6 in the motion grows by a factor of "
+            f"{dem.perturbation_growth:.2g}. Treat one run as one sample."
+        ),
         growth=dem.perturbation_growth,
     )
 
@@ -129,8 +141,10 @@ def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "chance",
         mine,
-        f"Of {row.parameters.split(' (coef')[0]}, {100 * row.demand:.0f} % collapse under the hazard itself: a single run of one building "
-        "under one motion is one draw of these.",
+        (
+            f"Under the hazard itself, {100 * row.demand:.0f} % of the sample collapse ({row.parameters.split(' (coef')[0]}). "
+            "A single run of one building under one motion is one member of this sample."
+        ),
         share=row.demand,
     )
 
@@ -142,7 +156,7 @@ def violated(facts: Facts, pairs: list[Pair]) -> list[Reason]:
         row = facts.rows[name]
         mine = [p for p in pairs if name in p and facts.relation(*p) == "open"]
         if mine and row.outcome == "open" and row.violated:
-            text = f"The outcome by {row.label} is open: an assumption does not hold. {' '.join(row.violated)}"
+            text = f"The outcome by {row.label} is open, because an assumption is violated. {' '.join(row.violated)}"
             found.append(reason("violated", mine, text))
     return found
 
@@ -158,7 +172,10 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if dem.peak_slip_m < SLID * shortest:
         return None
     numbers: dict[str, float | None] = {"slip_m": dem.peak_slip_m, "slip_ratio": dem.peak_slip_m / shortest}
-    text = f"Stones slide by up to {1e3 * dem.peak_slip_m:.3g} mm, {100 * dem.peak_slip_m / shortest:.2g} % of the shortest joint"
+    text = (
+        f"Blocks slide by up to {1e3 * dem.peak_slip_m:.3g} mm, {100 * dem.peak_slip_m / shortest:.2g} % of the length of "
+        "the shortest joint"
+    )
     if without is None or not isinstance(without.results, DemRun):
         return None
     other = without.results
@@ -169,9 +186,12 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        f"{text}, which a rocking mechanism excludes. Without sliding the elements "
-        f"{'collapse' if other.outcome == 'collapse' else 'stand'} and move by {other.peak_displacement_m:.3g} m, with it "
-        f"{'they collapse' if dem.outcome == 'collapse' else f'by {dem.peak_displacement_m:.3g} m'}.",
+        (
+            f"{text}, which a rocking mechanism excludes. Without sliding the discrete elements "
+            f"{'collapse' if other.outcome == 'collapse' else 'stand'}, with a displacement of "
+            f"{other.peak_displacement_m:.3g} m. With sliding "
+            f"{'they collapse' if dem.outcome == 'collapse' else f'the displacement is {dem.peak_displacement_m:.3g} m'}."
+        ),
         **numbers,
     )
 
@@ -193,8 +213,11 @@ def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "hinges-elsewhere",
         mine,
-        f"The thrust line of the assumed mechanism leaves the blocks in {100 * share:.0f} % of the rocking time, by up to "
-        f"{100 * float(out.max()):.0f} % of their thickness: hinges form elsewhere too, which only discrete elements follow.",
+        (
+            f"The thrust line of the assumed mechanism passes outside the blocks in {100 * share:.0f} % of the rocking time, "
+            f"by up to {100 * float(out.max()):.0f} % of their thickness. Hinges then also form at other joints, which only "
+            "discrete elements represent."
+        ),
         share_of_time=share,
         farthest_ratio=float(out.max()),
     )
@@ -216,9 +239,11 @@ def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "drums",
         mine,
-        f"Rocking takes the {stones} blocks as one body. As one body the elements "
-        f"{'collapse' if one.results.outcome == 'collapse' else 'stand'} too, moving by "
-        f"{one.results.peak_displacement_m:.3g} m; apart the blocks move by {dem.peak_displacement_m:.3g} m.",
+        (
+            f"Rocking treats the {stones} blocks as one body. If the discrete elements are joined into one body, they "
+            f"{'collapse' if one.results.outcome == 'collapse' else 'stand'} too, with a displacement of "
+            f"{one.results.peak_displacement_m:.3g} m. As separate blocks they move by {dem.peak_displacement_m:.3g} m."
+        ),
         displacement_of_one_body_m=one.results.peak_displacement_m,
         displacement_m=dem.peak_displacement_m,
     )

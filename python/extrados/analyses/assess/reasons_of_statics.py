@@ -47,15 +47,16 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     needed = facts.needed_s(amplitude)
     told = f"{amplitude:.3g} g" if factor == 1.0 else f"{amplitude:.3g} g (the motion times {factor:.3g})"
     text = (
-        f"Static analysis applies the peak of {told} as a constant horizontal acceleration; the motion exceeds the {capacity:.3g} g of "
-        f"{facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, for {longest:.3g} s at most"
+        f"Static analysis applies the peak of {told} as a constant horizontal acceleration; the motion exceeds the "
+        f"{capacity:.3g} g of {facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, each time for "
+        f"{longest:.3g} s at most"
     )
     numbers = {"static_capacity": capacity, "peak": amplitude, "excursions": float(count), "longest_s": longest, "needed_s": needed}
     if needed is not None and longest < needed:
         return reason(
             "static-peak",
             mine,
-            f"{text}, while a constant lateral acceleration of that peak needs {needed:.3g} s to cause collapse.",
+            f"{text}. A constant horizontal acceleration of that peak must act for {needed:.3g} s to cause collapse.",
             **numbers,
         )
     if needed is not None:
@@ -69,7 +70,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     return reason(
         "static-peak",
         [p for p in mine if "dem" in p],
-        f"{text}: in that time the blocks move by {100 * moved:.2g} % of the displacement that counts as collapse.",
+        f"{text}. In that time the blocks move by only {100 * moved:.2g} % of the displacement that counts as collapse.",
         displacement_ratio=moved,
         **numbers,
     )
@@ -94,8 +95,10 @@ def _by_passages(facts: Facts, mine: list[Pair], text: str, level: float, factor
     return reason(
         "static-peak",
         mine,
-        f"{text}. None of these times lasts long enough: the most dangerous averages {mean:.3g} g for {length:.3g} s, and a constant "
-        f"lateral acceleration of {mean:.3g} g needs {needed:.3g} s to cause collapse.",
+        (
+            f"{text}. These times are too short for collapse: the most dangerous has a mean of {mean:.3g} g over {length:.3g} "
+            f"s, and a constant horizontal acceleration of {mean:.3g} g must act for {needed:.3g} s to cause collapse."
+        ),
         **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
     )
 
@@ -113,8 +116,11 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "crack",
         mine,
-        f"Limit analysis considers a crack in the leeward buttress: {cracked:.3g} g instead of {whole:.3g} g with monolithic buttresses, which "
-        f"exceeds the peak of {facts.peak_g:.3g} g. The other strategies do not consider this crack.",
+        (
+            f"Limit analysis considers a crack in the leeward buttress. The collapse acceleration is {cracked:.3g} g with the "
+            f"crack and {whole:.3g} g with monolithic buttresses, which exceeds the peak of {facts.peak_g:.3g} g. The other "
+            "strategies do not consider this crack."
+        ),
         cracked=cracked,
         whole=whole,
         peak=facts.peak_g,
@@ -133,8 +139,10 @@ def ties_of_statics(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "left-out",
         mine,
-        f"Limit analysis uses the ties, the elements do not: {tilt.capacity:.3g} g with them, {bare:.3g} g "
-        f"without, and the elements {sla.capacity:.3g} g.",
+        (
+            f"Limit analysis includes the ties, and the finite elements do not. The capacity is {tilt.capacity:.3g} g by "
+            f"limit analysis with ties, {bare:.3g} g without ties, and {sla.capacity:.3g} g by the finite elements."
+        ),
         with_ties=tilt.capacity,
         without_ties=bare,
         elements=sla.capacity,
@@ -156,8 +164,10 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        f"Limit analysis counts sliding as collapse, from {least:.3g} g on. Under the motion the blocks slide by {1e3 * dem.peak_slip_m:.3g} mm "
-        "and do not collapse.",
+        (
+            f"Limit analysis counts sliding as collapse, from {least:.3g} g upwards. Under the motion the blocks slide by "
+            f"{1e3 * dem.peak_slip_m:.3g} mm and do not collapse."
+        ),
         static_capacity=least,
         slip_m=dem.peak_slip_m,
     )
@@ -178,9 +188,11 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
             return reason(
                 "membrane-without-sliding",
                 mine,
-                f"The wall of finite elements cannot slide along its joints: limit analysis gives {least:.3g} g with friction "
-                f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g"
-                f"{', which have a tensile strength besides' if strength and sla.capacity > 1.05 * stuck else ''}.",
+                (
+                    f"The wall of finite elements cannot slide along its joints. Limit analysis gives {least:.3g} g with friction "
+                    f"{facts.building.joints.friction} and {stuck:.3g} g without sliding; the finite elements give {sla.capacity:.3g} "
+                    f"g{', and they also have a tensile strength' if strength and sla.capacity > 1.05 * stuck else ''}."
+                ),
                 with_sliding=least,
                 without_sliding=stuck,
                 elements=sla.capacity,
@@ -189,8 +201,10 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return reason(
             "tension",
             mine,
-            f"The elements have a tensile strength of {strength / 1e6:.3g} MPa, dry joints none: {sla.capacity:.3g} g "
-            f"against {least:.3g} g.",
+            (
+                f"The finite elements have a tensile strength of {strength / 1e6:.3g} MPa, and dry joints have none. The "
+                f"capacities are {sla.capacity:.3g} g and {least:.3g} g."
+            ),
             tensile_strength=strength,
             elements=sla.capacity,
             stones=least,
@@ -208,8 +222,10 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "mortar",
         mine,
-        f"The mortar has a tensile strength of {joints.tension / 1e6:.3g} MPa and a cohesion of {joints.cohesion / 1e6:.3g} MPa "
-        "until it breaks, which limit analysis and rocking neglect.",
+        (
+            f"The mortar has a tensile strength of {joints.tension / 1e6:.3g} MPa and a cohesion of "
+            f"{joints.cohesion / 1e6:.3g} MPa until it breaks. Limit analysis and rocking neglect both."
+        ),
         tension=joints.tension,
         cohesion=joints.cohesion,
     )

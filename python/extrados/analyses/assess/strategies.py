@@ -115,9 +115,11 @@ def _levels(asked: Asked) -> Choice:
         return Choice(
             {"intensity": "scale", "levels": LEVELS_OF_A_SET, "count": asked.motions, "bootstrap": 100}
             | ({"uncertain": asked.options.uncertain} if asked.options.uncertain else {}),
-            f"{asked.motions} motions, each at {len(LEVELS_OF_A_SET)} factors from 0.5 to 3",
+            f"{asked.motions} motions, each at {len(LEVELS_OF_A_SET)} scale factors from 0.5 to 3",
         )
-    return Choice({"intensity": "scale", "levels": LEVELS, "bootstrap": 0}, "the motion at 33 factors from 0.25 to 4, 9 % apart")
+    return Choice(
+        {"intensity": "scale", "levels": LEVELS, "bootstrap": 0}, "the motion at 33 scale factors from 0.25 to 4, in steps of 9 %"
+    )
 
 
 def _scatter(asked: Asked) -> dict[str, float]:
@@ -137,17 +139,19 @@ def _scatter(asked: Asked) -> dict[str, float]:
 
 def _probability(asked: Asked) -> Choice:
     if asked.motions > 1:
-        raise LeftOut("the motions of the set vary already: their share is in the row of the set")
+        raise LeftOut("this strategy is not needed: the motions of the set vary already, and the row of the set gives their share")
     uncertain = asked.options.uncertain or _scatter(asked)
     if asked.building.restraints or asked.building.supports.abutting_wall is not None:
-        raise LeftOut("sizes of a building that is held by more than its weight are not varied")
+        raise LeftOut("the sizes of a building with restraints (ties, dampers, a wall) are not varied")
     each = RUN_SECONDS.get(asked.building.require_structure().kind, RUN_SECONDS_ELSE)
     count = int(2 ** np.floor(np.log2(np.clip(asked.share("probability") / each, 16, 1024))))
     told = ", ".join(f"{name} {100 * v:g} %" for name, v in uncertain.items())
     return Choice(
         {"count": count, "seed": 1, "uncertain": uncertain},
-        f"{count} buildings of uncertain {told} (coefficients of variation), as many as fit into "
-        f"{100 * SHARES['probability']:g} % of the budget",
+        (
+            f"{count} samples of the building with uncertain {told} (coefficients of variation); the number is limited to "
+            f"{100 * SHARES['probability']:g} % of the budget"
+        ),
     )
 
 
@@ -157,7 +161,7 @@ def _push(asked: Asked, direction: float) -> Choice:
     assert isinstance(plan, Plan)
     materials = [building.material, *building.materials.values()]
     if not any(m.tensile_strength is not None and m.fracture_energy is not None for m in materials):
-        raise LeftOut("walls crack only with [material] tensile_strength and fracture_energy, which the deck lacks")
+        raise LeftOut("the walls can crack only if the deck gives [material] tensile_strength and fracture_energy")
     name = "push-x" if direction == 0.0 else "push-y"
     size = round(min(float(np.sqrt(plan.wall_area / SHELL_ELEMENTS)), OF_A_STOREY * min(plan.storeys)), 3)
     elements = plan.wall_area / size**2
@@ -172,8 +176,9 @@ def _push(asked: Asked, direction: float) -> Choice:
         **_action(asked),
     }
     words = (
-        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, to both sides; elements of {size:g} m, "
-        f"{LAYERS} points through the thickness, {events} events at most, until the load has dropped to {FALLEN:g} of its peak"
+        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, in both senses; elements of "
+        f"{size:g} m, {LAYERS} points through the thickness, at most {events} events, until the load has decreased to "
+        f"{FALLEN:g} of its peak"
     )
     return Choice(keys, words)
 
@@ -188,11 +193,11 @@ def _frame(asked: Asked) -> Choice:
     """All pushes of a building on a plan as a frame of macro-elements."""
     building = asked.building
     if building.material.tensile_strength is None and not building.joints.cohesion:
-        raise LeftOut("piers need a shear strength, [material] tensile_strength or [joints] cohesion, which the deck lacks")
+        raise LeftOut("the piers need a shear strength: give [material] tensile_strength or [joints] cohesion")
     # walls out of their planes are a strategy of their own
     return Choice(
         {"out_of_plane": False, **_action(asked)},
-        "both directions and senses, forces by masses and by masses times height, eccentricity 0 and 5 %",
+        ("both directions and both senses; forces in proportion to the masses, and to the masses times height; eccentricity 0 and 5 %"),
     )
 
 
@@ -201,7 +206,7 @@ def _codes(asked: Asked) -> Choice:
 
     spectrum = asked.options.spectrum
     if asked.building.require_structure().rocks_as == "piers":
-        raise LeftOut("the pier rules need the vertical load on top of the wall: give options.code-checks = { axial_load = ... }")
+        raise LeftOut("the pier rules require the vertical load on top of the wall: give options.code-checks = { axial_load = ... }")
     own = asked.building.require_structure().kind in (CodeChecks.structures or ())
     own = own and set(asked.building.special_keys) <= set(CodeChecks.bears)
     keys: dict[str, Any] = {} if own else {"mechanism": "building"}
@@ -214,8 +219,8 @@ def _codes(asked: Asked) -> Choice:
     if code is not None and code.spectrum(code.concluding) is not None:
         return Choice(keys, f"{words}the seismic action of [code], {code.name}", 0.0, kind)
     if isinstance(motion, Compatible) and fits(code, motion):
-        return Choice(keys, f"{words}the spectrum that the motions match", 0.0, kind)
-    told = f"{words}no spectrum of a code is given, the demand is that of the motion itself: its peak and its response spectrum"
+        return Choice(keys, f"{words}the target spectrum of the motions", 0.0, kind)
+    told = f"{words}no code spectrum is given, so the demand is that of the motion itself: its peak and its response spectrum"
     return Choice({**keys, "motion_spectrum": True}, told, 0.0, kind)
 
 
@@ -225,21 +230,25 @@ def _sla(asked: Asked) -> Choice:
         stones = len(building.blocks().mass)
         needed = 2.0 * STONE_SECONDS * stones
         if needed > asked.share("sla"):
-            raise LeftOut(f"{stones} blocks take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s")
+            raise LeftOut(
+                f"the run of {stones} blocks takes about {needed:.0f} s, and its share of the budget is {asked.share('sla'):.0f} s"
+            )
         wall = building.supports.abutting_wall
         if wall is not None:
-            return Choice({"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, pushed away from the wall")
-        return Choice({"directions": ["+", "-"]}, "blocks with joints that open and slide, pushed to both sides")
+            return Choice({"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, loaded away from the abutting wall")
+        return Choice({"directions": ["+", "-"]}, "blocks with joints that open and slide, loaded in both senses")
     if building.material.tensile_strength is None:
-        raise LeftOut("the wall cracks only with [material] tensile_strength and fracture_energy, which the deck lacks")
+        raise LeftOut("the wall can crack only if the deck gives [material] tensile_strength and fracture_energy")
     size = getattr(building.structure, "size", None)
     keys: dict[str, Any] = {"directions": ["+"], "events": int(asked.share("sla") / EVENT_SECONDS), "stop_fraction": FALLEN}
     if size is not None:
         keys["mesh"] = {"size": max(size) / ELEMENTS}
     return Choice(
         keys,
-        f"{ELEMENTS} elements along the longer side, pushed to +x until the load has dropped to {FALLEN:g} of its peak, "
-        f"{keys['events']} events at most",
+        (
+            f"{ELEMENTS} elements along the longer side, loaded towards +x until the load has decreased to {FALLEN:g} of its "
+            f"peak, at most {keys['events']} events"
+        ),
     )
 
 
@@ -251,7 +260,7 @@ def _dem(asked: Asked) -> Choice:
         assembly = building.blocks()
     except NoView:
         _ = building.solids()
-        raise LeftOut("an assessment has no rule for discrete elements in space yet: give the deck an analysis of kind dem") from None
+        raise LeftOut("assess has no rule for discrete elements in space: add an analysis of kind dem to the deck") from None
     values = joint_values(building)
     motion = asked.context.motion
     end = strong_end(motion) + AFTER * float(np.sqrt(assembly.size / GRAVITY))
@@ -265,15 +274,15 @@ def _dem(asked: Asked) -> Choice:
         critical = STEP_RULE * 2.0 / frequency * (np.sqrt(1.0 + damped**2) - damped)
         return rate * end / (0.3 * critical)
 
-    words = f"the run ends at {end:.3g} s, {AFTER:g} sqrt(size/g) after {100 * STRONG:g} % of the Arias intensity of the motion"
+    words = f"the run ends at {end:.3g} s. This is {AFTER:g} sqrt(size/g) after {100 * STRONG:g} % of the Arias intensity of the motion"
     keys: dict[str, Any] = {"end_time": round(end, 3), "output_step": max(0.01, end / 1500.0)}
     share = asked.share("dem")
     given = building.joints.normal_stiffness is not None or any(t.normal_stiffness for t in building.joints.types)
     if seconds(1.0) <= share or given:
         if seconds(1.0) > 2.0 * share:
             raise LeftOut(_too_long(seconds(1.0), share, "with the joint stiffness of the deck"))
-        whose = "the deck says" if given else "E over the stones' length gives"
-        return Choice(keys, f"{words}; joints as stiff as {whose}", seconds(1.0))
+        whose = "the deck says" if given else "E divided by the block length gives"
+        return Choice(keys, f"{words}; joint stiffness as {whose}", seconds(1.0))
     # steps grow as the root of the stiffness
     stiffness = float(np.median(values.stiffness)) * (share / seconds(1.0)) ** 2
     grounded = (assembly.a < 0) | (assembly.b < 0)
@@ -285,21 +294,24 @@ def _dem(asked: Asked) -> Choice:
         stiffness = least
     elif stiffness < least:
         raise LeftOut(
-            _too_long(seconds(factor), share, f"even with joints of {engineering(least, 'Pa/m')}, the least that is stiff enough")
+            _too_long(seconds(factor), share, f"even with joints of {engineering(least, 'Pa/m')}, the least sufficient stiffness,")
         )
     taken = max(share, seconds(factor)) if stiffness == least else share
     stiffness = float(f"{stiffness:.1e}")
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
         keys,
-        f"{words}; joints of {engineering(stiffness, 'Pa/m')}, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
-        f"the stones' length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} would do)",
+        (
+            f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the run fits into "
+            f"{100 * SHARES['dem']:g} % of the budget (E divided by the block length gives "
+            f"{engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} is sufficient)"
+        ),
         taken,
     )
 
 
 def _too_long(seconds: float, share: float, how: str) -> str:
-    return f"{how} it takes about {seconds:.0f} s, its share of the budget is {share:.0f} s"
+    return f"{how} the run takes about {seconds:.0f} s, and its share of the budget is {share:.0f} s"
 
 
 _ALL: tuple[tuple[StrategyName, str, str, Axis, validity.Validity, Callable[[Asked], Choice]], ...] = (
@@ -316,7 +328,7 @@ _ALL: tuple[tuple[StrategyName, str, str, Axis, validity.Validity, Callable[[Ask
 )
 ALL = tuple(Strategy(name, kind, label, axis, assumed.assumes, choose) for name, kind, label, axis, assumed, choose in _ALL)
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
-SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "probability", "", _levels)
+SCALED = Strategy("scaled", "fragility", "rocking at scale factors of the hazard", "probability", "", _levels)
 
 
 def reckon_with(options: Assess, building: Building) -> set[str]:

@@ -34,49 +34,71 @@ class Assess(Analysis):
     starter: ClassVar = {"budget": "20"}
     budget: float = key(
         60.0,
-        "time limit, in s: sizes of the costly strategies follow from counted work on one core of 2024. Steps that still run "
-        "after this time are stopped and reported",
+        (
+            "time limit in s: the sizes of the expensive strategies follow from it, by counted work on one core of 2024. "
+            "Steps that still run after this time are stopped and reported"
+        ),
         ge=5,
         le=1e6,
     )
     strategies: list[Strategy] = key(
         list(STRATEGIES),
-        "strategies that are run if they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover`, `frame` is `frame-pushover` of a building on a plan",
+        (
+            "strategies to run, if they apply; `probability` means `fragility` with uncertain sizes, or with the motions of "
+            "a set; `push-x` and `push-y` mean `pushover`, `frame` means `frame-pushover` of a building in plan"
+        ),
         min_length=1,
         max_length=len(STRATEGIES),
     )
-    thin: float = key(1.5, "a margin below this, or above its inverse, is thin: further runs follow", gt=1, le=10)
-    apart: float = key(1.5, "margins that differ by more than this factor are reported as different, with the reasons", gt=1, le=10)
+    thin: float = key(
+        1.5,
+        ("critical scale factors between the inverse of this value and this value count as close to 1; further runs then follow"),
+        gt=1,
+        le=10,
+    )
+    apart: float = key(
+        1.5, "critical scale factors that differ by more than this ratio are reported as different, with the reasons", gt=1, le=10
+    )
     acceptable_probability: float = key(
-        0.05, "probability of collapse up to which `probability` says stands; above a half it says collapses", gt=0, lt=0.5
+        0.05,
+        ('greatest probability of collapse at which `probability` gives the verdict "stands"; above 0.5 the verdict is "collapses"'),
+        gt=0,
+        lt=0.5,
     )
     uncertain: dict[str, float] | None = key(
         None,
-        "coefficients of variation for `probability`, as in `fragility`; default 0.05 of the sizes and of restitution that "
-        "the kind of structure",
+        (
+            "coefficients of variation for `probability`, as in `fragility`; default: 0.05 for restitution and for the sizes "
+            "of the structure"
+        ),
     )
     motions: Annotated[int, Field(ge=2, le=10000)] | None = key(
-        None, "motions of a set; default the whole suite, 40 generated or 10 compatible ones"
+        None, "number of motions of a set; default: the whole suite, 40 generated motions or 10 compatible motions"
     )
     spectrum: CodeSpectrum | None = key(
-        None, "elastic spectrum for `code-checks`; default that of a `compatible` motion, without one the peak of the motion"
+        None, "elastic spectrum for `code-checks`; default: that of a `compatible` motion, otherwise the peak of the motion"
     )
     sensitivity: bool = key(
         False,
-        "also move thickness, corners, friction, restitution and density one by one: margins of limit analysis and rocking "
-        "anew, and the value at which each verdict changes; on discrete elements the stiffness of joints and a support that moves; "
-        "25 % of the budget are kept for it",
+        (
+            "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and rocking give new "
+            "safety factors, and the value at which each verdict changes. Discrete elements vary the joint stiffness and "
+            "move a support. This takes 25 % of the budget"
+        ),
     )
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
-        None, 'keys that are moved in place of these, with the shares by which they are: { "structure.thickness" = 0.1 }'
+        None, 'keys that are varied instead of these, each with its relative change: { "structure.thickness" = 0.1 }'
     )
     advise: bool = key(
         True,
-        "also seek the least tie and the least thickness with which the building carries the peak of the hazard as a sustained "
-        "load, if the building does not stand under all strategies",
+        (
+            "also find the least tie force and the least thickness with which the building carries the peak of the hazard as "
+            'a sustained load; only if not all strategies give the verdict "stands"'
+        ),
     )
     options: dict[Strategy, dict[str, Any]] = key(
-        {}, "keys of a strategy's own table, such as `dem = { joints.normal_stiffness = 2e10 }`; they go before the rules"
+        {},
+        ("keys of the table of a strategy, such as `dem = { joints.normal_stiffness = 2e10 }`; they replace the values set by the rules"),
     )
 
     @property
@@ -92,5 +114,5 @@ class Assess(Analysis):
     @model_validator(mode="after")
     def _once(self) -> "Assess":
         if len(set(self.strategies)) < len(self.strategies):
-            raise ValueError("strategies: one stands twice")
+            raise ValueError("strategies: one of them occurs twice")
         return self

@@ -22,7 +22,7 @@ ELEMENT_HALVINGS = 3
 def move_values(work: Work) -> None:
     """Margins with values of the deck moved one by one, as many as the budget allows."""
     if not strategies.of("tilt").applies(work.context.building):
-        work.not_done.append("sensitivity: limit analysis and rocking cannot analyse a building on a plan; `pushover` has variants")
+        work.not_done.append("sensitivity: limit analysis and rocking cannot analyse a building in plan; use the variants of `pushover`")
         return
     rocked = work.results.get("rocking")
     restitution = rocked.of(RockingResults).restitution if rocked is not None else None
@@ -46,7 +46,7 @@ def move_values(work: Work) -> None:
         work.not_done.append(f"sensitivity: {stop}")
     if margins.stopped:
         if "dem" in work.results:
-            work.not_done.append("stiffness of the joints and moving supports by discrete elements: the time ran out")
+            work.not_done.append("joint stiffness and moving supports by discrete elements: the time limit was reached")
         raise OutOfTime
     _move_elements(work)
 

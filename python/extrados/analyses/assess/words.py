@@ -43,7 +43,7 @@ def turning(moved: list[TurningValue]) -> list[str]:
             if value is not None
         ]
         if told:
-            said.append(f"- {one.key} ({one.base:.3g}{unit} here) changes the verdict of {' and of '.join(told)}.")
+            said.append(f"- {one.key} ({one.base:.3g}{unit} here) would change the verdict of {' and of '.join(told)}.")
     return said
 
 
@@ -75,12 +75,12 @@ def conclusion(
     if proven:
         overall = "cannot stand"
         first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
-        said.append(f"The {word} cannot stand: collapse under self-weight is proved by {first.label}.")
+        said.append(f"The {word} cannot stand: {first.label} proves that it collapses under self-weight.")
         if others := proven[1:]:
-            said.append(f"The conclusion of {labels(others)} is the same. Strategies share this certificate, which counts once.")
+            said.append(f"{labels(others)} gives the same conclusion by the same certificate, which counts only once.")
         said.append(first.statement)
         if stands:
-            said.append(f"The certificate overrules the opposite result of {labels(stands)}.")
+            said.append(f"This certificate overrules the opposite result of {labels(stands)}.")
     elif not stands and not collapses and not left:
         overall = "open"
         said.append(f"No strategy has a verdict on the {word} under this hazard.")
@@ -98,7 +98,7 @@ def conclusion(
         if stands or collapses:
             said.append(f"{_upper(verdict(stands or collapses, 'stands' if stands else 'collapses'))}.")
     if left:
-        said.append(f"The outcome stays open by {labels(left)}.")
+        said.append(f"The outcome by {labels(left)} is open.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]
     if decisive:
         said.append(f"The difference comes from {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")

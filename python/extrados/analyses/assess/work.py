@@ -94,7 +94,7 @@ class Work:
         without = self.asker.cannot_bear(choice.kind or strategy.kind)
         if without and name != "scaled":
             self.bare[name] = without
-            words = f"{words}; without {' and '.join(without)}, which it cannot take into account"
+            words = f"{words}; without {' and '.join(without)}, which this strategy cannot include"
         whole = name == "scaled" or (name == "probability" and self.many)
         motion = dict(self.context.deck.data["motion"]) if whole else None
         try:
@@ -228,7 +228,7 @@ class Work:
             "max_amplitude": f"{2.0 * amplitude!r} g",
             "hand_over_cells": 0,  # of the mechanism of fixed hinges: a duration to compare with, no verdict
         }
-        told = f"a constant lateral acceleration of {amplitude:.3g} g, how long"
+        told = f"a constant horizontal acceleration of {amplitude:.3g} g: time to collapse"
         found = self.probe("rocking", told, "failure-domain", keys, tell=False)
         if found is None or not isinstance(found.results, FailureDomain) or found.results.at_amplitudes is None:
             return None

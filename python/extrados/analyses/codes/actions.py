@@ -23,7 +23,7 @@ Spectrum = Callable[[float, float], float]
 OWN = {"NTC": ("NTC",), "EN1998": ("EN1998-1", "EN1998-2"), "ASCE41": ("ASCE7",), "NZSEE": ("NZS1170",)}
 #: What the limit state of operation is for
 ONLY_DISPLACEMENT = (
-    "SLO is checked for the displacement of pushed buildings alone: C8.7.1 has no check of piers or local mechanisms at SLO."
+    "At SLO only displacements of buildings by pushover are checked: C8.7.1 has no check of piers or local mechanisms at SLO."
 )
 #: The rules of a deck without [code]
 NATIVE = Code(jurisdiction="NTC")
@@ -135,11 +135,14 @@ def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism | Verifi
         if model is not None and not fits(code, model):
             assert code is not None
             raise Refused(
-                f"the spectrum is of {model.code}, the report is by {code.jurisdiction}: give the action in [code], or another jurisdiction",
+                (
+                    f"the spectrum is that of {model.code}, but the checks are by {code.jurisdiction}: give the action in [code], or "
+                    "another jurisdiction"
+                ),
                 ("analysis", name),
             )
     if getattr(options, "collapse_spectrum", None) is not None and code_of(context).jurisdiction != "NTC":
-        raise Refused("collapse_spectrum is of SLC, a limit state of NTC: remove it", ("analysis", "collapse_spectrum"))
+        raise Refused("collapse_spectrum belongs to SLC, a limit state of NTC only: remove it", ("analysis", "collapse_spectrum"))
 
 
 def demanded_spectrum(context: Context, model: CodeSpectrum | None, of_motion: bool) -> Spectrum | None:

@@ -142,11 +142,15 @@ def vertical_bending(
             if sum(setback) >= thickness:
                 if weight + load > strength * width * thickness:
                     raise CannotStand(
-                        f"the weight crushes the wall; certificate: {(weight + load) / 1e3:.3g} kN rest on a section that carries "
-                        f"{strength * width * thickness / 1e3:.3g} kN at most",
+                        (
+                            f"the wall crushes under its weight; certificate: the load is {(weight + load) / 1e3:.3g} kN, and the section "
+                            f"carries at most {strength * width * thickness / 1e3:.3g} kN"
+                        ),
                         neglects=(),
                     )
-                raise BadGeometry("more than 0.75 of the compressive strength is used at rest", ("material", "compressive_strength"))
+                raise BadGeometry(
+                    "the stress under self-weight exceeds 0.75 of the compressive strength", ("material", "compressive_strength")
+                )
         return VerticalBending(height, thickness, weight, load, arm, crack, setback)
 
     found = minimize_scalar(

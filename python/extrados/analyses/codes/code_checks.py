@@ -59,11 +59,11 @@ def run(context: Context, options: CodeChecks) -> Result:
     result.results = r
     rows = result.tables["code_checks"] = table(lines)
     result.arrays = {
-        "capacity": Array(np.array(rows.columns["capacity"]), ("rule",), "", "each in its unit, see code_checks.csv"),
+        "capacity": Array(np.array(rows.columns["capacity"]), ("rule",), "", "each in its own unit, see code_checks.csv"),
         "demand": Array(np.array(rows.columns["demand"]), ("rule",)),
     }
     compared = [x for x in lines if x.verdict in ("holds", "fails") and x.demand is not None and x.capacity is not None]
-    said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in compared]
+    said = [f"{x.rule} {x.verdict} (demand {x.demand:.3g}, capacity {x.capacity:.3g} {x.unit})" for x in compared]
     words = [r.overall().statement, *([f"In detail: {'; '.join(said)}."] if said else [])]
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
@@ -72,9 +72,9 @@ def run(context: Context, options: CodeChecks) -> Result:
             "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and recovers",
             "no-hinging": "does not rock",
         }[r.dynamic_outcome]
-        words.append(f"Computed under the motion itself, the block {spoken}.")
+        words.append(f"Calculated under the motion itself, the block {spoken}.")
     if (weakest := r.weakest()) is not None and said:
-        words.append(f"As a pier its least strength is {(weakest[1].capacity or 0.0) / 1e3:.4g} kN ({weakest[0]}).")
+        words.append(f"As a pier, its lowest strength is {(weakest[1].capacity or 0.0) / 1e3:.4g} kN ({weakest[0]}).")
     result.answer = " ".join(words)
     return result
 
@@ -109,8 +109,8 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         violated.append(ntc.below_lc1(factor))
     if friction is not None and friction < np.tan(model.alpha.min()):
         violated.append(
-            f"Friction {friction:g} is below the {np.tan(model.alpha.min()):.3g} that rocking needs: the block slides first, which these "
-            "rules do not consider."
+            f"Friction {friction:g} is below the {np.tan(model.alpha.min()):.3g} that rocking requires. The block slides "
+            "first, and these rules do not consider sliding."
         )
     if context.deck.motion is not None:
         motion = context.motion
@@ -125,7 +125,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         )
         conditions = of_one(rocker, dynamic)
         context.warnings += told(conditions)
-        violated += [text for text in conditions.violated if text.startswith("Hinges form elsewhere")]
+        violated += [text for text in conditions.violated if text.startswith("Hinges form at other joints")]
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
     if violated:
         beside["violated"] = violated
@@ -255,4 +255,4 @@ def _lateral(pier: Pier, action: Action, q: float) -> tuple[float | None, str]:
         felt, words = action.peak, "peak acceleration, rigid pier"
     else:
         return None, ""
-    return felt / GRAVITY * pier.load / q, f"{words} {felt / GRAVITY:.3g} g over q {q:g}, on N {pier.load / 1e3:.4g} kN"
+    return felt / GRAVITY * pier.load / q, f"{words} {felt / GRAVITY:.3g} g divided by q = {q:g}, with N = {pier.load / 1e3:.4g} kN"

@@ -103,7 +103,7 @@ def run(context: Context, options: LocalMechanism) -> Result:
             return Result("local-mechanism", results=none, answer=none.statement())
     else:
         if options.mechanism == "corner" and building.material.compressive_strength is not None:
-            context.warnings.append("The corner is assumed to overturn about its outer edge: crushing there is neglected.")
+            context.warnings.append("The corner is assumed to overturn about its outer edge without crushing.")
         body = body_of(options, building.material.density, building.material.compressive_strength)
         z = options.hinge_height if options.base_height is None else options.base_height
         z += 0.0 if below is None or options.base_height is not None else below.height
@@ -123,9 +123,9 @@ def _drawn(building: Building, options: LocalMechanism, body: Overturning | Bend
     if body is not None:
         rest, turned, hinge = body_outlines(options, body)
         return {
-            **packed("section", rest, "m", "bodies of the mechanism at rest"),
-            **packed("section_turned", turned, "m", "the same at the rotation of the picture"),
-            "section_hinge": Array(hinge, ("section_hinges", "axis"), "m", "hinges of the mechanism at that rotation"),
+            **packed("section", rest, "m", "outlines of the bodies of the mechanism at rest"),
+            **packed("section_turned", turned, "m", "bodies of the mechanism at the rotation of the picture"),
+            "section_hinge": Array(hinge, ("section_hinges", "axis"), "m", "hinges of the mechanism at the rotation of the picture"),
         }
     if isinstance(building.structure, Plan):
         return packed("plan_wall", plan_outlines(building.structure), "m", "walls on the plan")
@@ -144,9 +144,12 @@ def _refuse_fallen(turning: _Turning) -> None:
     """CannotStand where the weights and thrusts of a mechanism drive it at rest, which is the proof."""
     if turning.found.alpha0 > 0.0:
         return
-    work = "" if turning.body is None else f": they do work of {-turning.body.work() / 1e3:.3g} kNm per radian, and nothing resists it"
+    work = "" if turning.body is None else f": these do a work of {-turning.body.work() / 1e3:.3g} kNm per radian, without resistance"
     raise CannotStand(
-        f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; certificate: weights and thrusts set it in motion{work}",
+        (
+            f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; certificate: weights and thrusts move "
+            f"the mechanism{work}"
+        ),
         neglects=(),
     )
 
@@ -197,17 +200,19 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         {name: [np.nan if (v := getattr(row, name)) is None else v for row in walls] for name in out.WallMechanism.model_fields}
     )
     result.answer += (
-        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls, each considered apart from the walls across it; flexible floors, "
-        "joists and rods restrain none, rigid floors and props do."
+        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls. Each part is considered separately "
+        "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists and rods do "
+        "not."
     )
     if plan.rods:
         context.warnings.append(
-            "Rods are neglected: the deck does not give the strength of their anchorage. Give the strength as `ties` of a `facade` of its own."
+            "Rods are neglected, because the deck does not give the strength of their anchorage. Give the strength as `ties` "
+            "of a separate `facade` analysis."
         )
     if plan.ring_beams:
         context.warnings.append(
-            "Ring beams are neglected: the deck does not give the strength of their connection to the walls. A wall that a beam restrains has a "
-            "greater multiplier; give [[structure.props]] where the top of a wall is held."
+            "Ring beams are neglected, because the deck does not give the strength of their connection to the walls. A wall "
+            "with a ring beam has a greater multiplier. If the top of a wall is restrained, give [[structure.props]]."
         )
     return result
 
@@ -217,7 +222,9 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     found, (z, building), code = turning.found, turning.place, code_of(context)
     d0, fc = found.d0, confidence(context, options)
     if d0 is None and found.alone <= 0.0:
-        context.warnings.append("Without its ties the body has no equilibrium: the nonlinear check, which neglects them, is not made.")
+        context.warnings.append(
+            "The nonlinear check neglects ties. Without its ties the body has no equilibrium, so this check is not made."
+        )
     structure = context.building.structure
     storeys = len(structure.storeys) if isinstance(structure, Plan) else options.storeys or storeys_in(building or 0.0)
     lines, more = _checks(context, options, turning, storeys, fc)
@@ -226,8 +233,8 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         violated.append(ntc.below_lc1(fc))
     if options.mechanism in FREE_TO_VIBRATE and not z:
         violated.append(
-            f"The demand is that of the ground, but a {options.mechanism} is part of a building, which amplifies the motion. Give base_height and "
-            "building_height."
+            f"The demand is the ground acceleration, but a {options.mechanism} is part of a building, which amplifies the "
+            "motion. Give base_height and building_height."
         )
     made = out.LocalMechanism(
         mechanism=options.mechanism,
@@ -268,8 +275,8 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     if turning.links is not None and made.overall().outcome == "stands":
         if by(turning.links).overall().outcome != "stands":
             violated.append(
-                f"With one weight for each rigid link [C8.7.1.1], e* {turning.links.part:.3g}, the check fails: the verdict depends on "
-                "how the links are divided into blocks."
+                f"If each rigid link counts as one weight [C8.7.1.1], e* is {turning.links.part:.3g} and the check fails: the "
+                "verdict depends on how the links are divided into blocks."
             )
             made = made.model_copy(update={"violated": violated})
     return _Judged(turning, lines, made)
@@ -286,11 +293,11 @@ def _result(judged: _Judged) -> Result:
     }
     result.tables["local_mechanism"] = table(judged.lines)
     d0 = found.d0
-    limit = "" if d0 is None else f", and vanishes at d_0* = {d0:.3g} m"
+    limit = "" if d0 is None else f", and becomes zero at d_0* = {d0:.3g} m"
     result.answer = (
-        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}; {100 * found.part:.3g} % of the {found.weight / 1e3:.4g} kN "
-        f"of the kinematic chain participate (M* = {found.mass:.4g} kg), a_0* = {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. "
-        f"{r.overall().statement}"
+        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}. Of the kinematic chain of "
+        f"{found.weight / 1e3:.4g} kN, {100 * found.part:.3g} % participate (M* = {found.mass:.4g} kg). The acceleration "
+        f"a_0* is {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. {r.overall().statement}"
     )
     return result
 
@@ -350,14 +357,15 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
     differ = abs(links.part / found.part - 1.0) > ALIKE
     if differ:
         context.warnings.append(
-            f"e* takes each block as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
-            f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
+            f"In e*, each block counts as one weight: e* is {found.part:.3g}. If each of the {len(one.mass)} rigid links of "
+            f"the chain counts as one weight, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* changes by "
+            f"{100.0 * (found.part / links.part - 1.0):+.0f} %."
         )
     # only limit analysis looks for the mechanism that ties leave; dampers and added hinges it does not know
     bound: Bound | None = None if all(isinstance(r, Tie) for r in building.restraints) else "upper"
     if bound:
         context.warnings.append(
-            "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
+            "The mechanism was found without dampers and added hinges, which then resist it. Its multiplier is an upper bound."
         )
     return _Turning(
         found,
@@ -385,14 +393,15 @@ def _weaker(context: Context, options: LocalMechanism, side: int, turning: float
         context.warnings = told
         return None
     building = context.building
-    why, without = "Limit analysis finds a weaker mechanism", "that mechanism"
+    why, without = "Limit analysis finds a mechanism with a lower multiplier", "that mechanism"
     if found.slides:
-        why, without = f"Joints slide at a friction of {building.joints.friction}", "sliding"
+        why, without = f"Joints slide at a friction coefficient of {building.joints.friction}", "sliding"
     elif building.material.compressive_strength is not None:
         why, without = "Blocks crush at the hinges", "crushing"
         found = replace(found, words=f"{found.words}, which crushes,")
     context.warnings.append(
-        f"{why} before the rigid-body mechanism starts (multiplier {turning:.4g} without {without}): the displacement capacity is not known."
+        f"{why} before the rigid-body mechanism starts (multiplier {turning:.4g} without {without}). The displacement "
+        "capacity is therefore not known."
     )
     return found
 
@@ -425,7 +434,7 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
             least, motion = _without_dilatancy(limit, sense)
         except (NoAnswer, NoEquilibrium) as error:
             bound = "upper"
-            context.warnings.append(f"Joints slide: the multiplier is an {DILATANT}. No state without dilatancy is given: {error}.")
+            context.warnings.append(f"Joints slide, so the multiplier is an {DILATANT}. No state without dilatancy is given: {error}.")
         else:
             associated = found
             found, chain = _capacity_at_rest(stones, least, motion)
@@ -433,8 +442,8 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
                 associated = None
             else:
                 context.warnings.append(
-                    f"Joints slide: the multiplier lies between {least:.4g}, the least state found without dilatancy, and {multiplier:.4g}, "
-                    f"the {DILATANT}. The checks use the lower value."
+                    f"Joints slide: the multiplier lies between {least:.4g} (least state found without dilatancy) and "
+                    f"{multiplier:.4g} ({DILATANT}). The checks use the lower value."
                 )
     return _Turning(
         found,
@@ -463,7 +472,7 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     state, mechanism = collapse_beside(limit.without_dilatancy(), sense)
     least = sense * state.gamma
     if least <= 0.0:
-        raise NoAnswer("a block that friction alone holds between its neighbours slides out of them at any load")
+        raise NoAnswer("a block that is carried only by friction between its neighbours slides out at any load")
     assert limit.friction is not None  # blocks that cannot slide have no such state
     proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
     if not proof.holds(state.gamma):
@@ -499,7 +508,7 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
         law = member.law
         bound = np.where(slope[:, k] > 0.0, law.most, -law.least) if law.stiffness > 0.0 else np.zeros(len(rotation))
         if (bound >= FREE).any():
-            raise Refused(f"{member.name} never yields: give the strength of its anchorage", ("ties",))
+            raise Refused(f"{member.name} has no yield force: give the strength of its anchorage", ("ties",))
         moment += bound * np.abs(slope[:, k])
     return moment
 
@@ -546,8 +555,8 @@ def _ntc(context: Context, options: LocalMechanism, turning: _Turning, storeys: 
             note += "" if options.modes else f", storeys {storeys}"
         elif action.peak is not None:
             context.warnings.append(
-                f"at {z:.3g} m above the foundation the checks of NTC require the response of the building at its period: without a spectrum they "
-                "have no demand"
+                f"at {z:.3g} m above the foundation, the checks of NTC require the response of the building at its period. "
+                "Without a spectrum these checks have no demand"
             )
     free, period = options.mechanism in FREE_TO_VIBRATE, _period(context, options)
     place = ntc.Place(height is not None, at_height, free, period)

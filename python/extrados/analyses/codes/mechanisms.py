@@ -52,12 +52,15 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     width = options.width or 1.0
     weight = density * GRAVITY * thickness * width * height
     if not weight > 0.0:
-        raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
+        raise Refused("the moving part has no weight: give a density above zero", ("material", "density"))
     if options.mechanism == "vertical-bending":
         for k, floor in enumerate(options.floors):
             if floor.height < float(options.height or 0.0) or floor.pushing or floor.thrust:
                 raise Refused(
-                    "vertical bending takes the load that floors lay on the top of the wall, which they hold: give height at the top, and load",
+                    (
+                        "vertical bending includes the load of the floors on top of the wall, and these floors restrain the top: give "
+                        "height at the top, and load"
+                    ),
                     ("analysis", "floors", k),
                 )
         load = sum(f.load for f in options.floors)
@@ -68,8 +71,10 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     if options.abutment_force is None:
         if strength is None:
             raise Refused(
-                "horizontal bending needs abutment_force, the force that each side wall resists, or between side walls that do not move the "
-                "compressive_strength of [material], which then limits the thrust",
+                (
+                    "horizontal bending requires abutment_force, the force that each side wall resists. If the side walls do not "
+                    "move, give the compressive_strength of [material] instead, which then limits the thrust"
+                ),
                 ("analysis",),
             )
         # H (t - a) with H = f h a is greatest at a = t/2
@@ -80,7 +85,10 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     depth = 0.0 if strength is None else force / (strength * height)
     if depth >= 0.5 * thickness:
         raise Refused(
-            f"the strip cannot carry this thrust: it compresses {depth:.3g} m of its {thickness:g} m, of which half is the most",
+            (
+                f"the strip cannot carry this thrust: its compressed depth is {depth:.3g} m of a thickness of {thickness:g} m, "
+                "and at most half is possible"
+            ),
             ("analysis", "abutment_force"),
         )
     return HorizontalBending(width, thickness, weight + sway, force, thrust, depth)
@@ -95,14 +103,14 @@ def overturning(options: LocalMechanism, density: float, strength: float | None)
     _refuse_sizes(options)
     body = _corner(options, density) if options.mechanism == "corner" else _upright(options, density, strength)
     if not sum(w.weight for w in body.weights if w.sways) > 0.0:
-        raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
+        raise Refused("the moving part has no weight: give a density above zero", ("material", "density"))
     return body
 
 
 def _refuse_sizes(options: LocalMechanism) -> None:
     missing = [name for name in NEEDS[options.mechanism] if getattr(options, name) is None]
     if missing:
-        raise Refused(f"{options.mechanism} needs {' and '.join(missing)}", ("analysis",))
+        raise Refused(f"{options.mechanism} requires {' and '.join(missing)}", ("analysis",))
     top = float(options.height or 0.0)
     if options.hinge_height >= top:
         raise Refused(f"{options.hinge_height:g} m is not below the top of the wall, {top:g} m", ("analysis", "hinge_height"))
@@ -114,16 +122,19 @@ def _refuse_sizes(options: LocalMechanism) -> None:
     for name, users in ONLY.items():
         if name in options.model_fields_set and getattr(options, name) and options.mechanism not in users:
             raise Refused(
-                f"mechanism '{options.mechanism}' does not use {name}: remove this key, which is only for {', '.join(users)}",
+                f"mechanism '{options.mechanism}' does not use {name}: remove this key. It belongs to {', '.join(users)} only",
                 ("analysis", name),
             )
     if options.interlocking is not None and options.side_walls is not None:
         raise Refused(
-            "interlocking is for a facade that separates from its side walls, side_walls for one that moves with them: remove one of the two keys",
+            (
+                "interlocking is for a facade that separates from its side walls, and side_walls for a facade that moves with "
+                "parts of them: remove one of the two keys"
+            ),
             ("analysis", "interlocking"),
         )
     if options.interlocking is not None and options.interlocking.unit_height > top - options.hinge_height:
-        raise Refused("a course is higher than the wall that rotates", ("analysis", "interlocking", "unit_height"))
+        raise Refused("the height of a course exceeds the height of the wall that rotates", ("analysis", "interlocking", "unit_height"))
 
 
 def _upright(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
@@ -176,15 +187,19 @@ def set_back(weights: list[Weight], strength: float, width: float, thickness: fl
     weight, most = sum(w.weight for w in weights if w.rests), strength * width * thickness
     if weight > most:
         raise CannotStand(
-            f"the weight crushes the wall at the hinge; certificate: {weight / 1e3:.3g} kN rest on a section that carries {most / 1e3:.3g} kN at "
-            "most",
+            (
+                f"the wall crushes at the hinge under its weight; certificate: the load is {weight / 1e3:.3g} kN, and the section "
+                f"carries at most {most / 1e3:.3g} kN"
+            ),
             neglects=(),
         )
     setback = 2.0 * weight / (3.0 * strength * width)
     if setback >= thickness / 2.0:
         raise Refused(
-            "the triangle of stress under the weight is wider than the wall at the hinge: more than 0.75 of the compressive strength is "
-            "used at rest",
+            (
+                "the triangle of compressive stress under the weight is wider than the wall at the hinge: the stress exceeds "
+                "0.75 of the compressive strength"
+            ),
             ("material", "compressive_strength"),
         )
     return [replace(w, arm=w.arm - setback) for w in weights]

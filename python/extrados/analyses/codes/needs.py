@@ -75,14 +75,16 @@ def _read_walls(building: Building) -> None:
 
 def _refuse_unheld(what: str, key: Key) -> None:
     raise Refused(
-        f"local-mechanism takes {what} into account only for the mechanism of the blocks of the deck: remove it, or give the restraint of a wall as "
-        "`ties` of this table",
+        (
+            f"local-mechanism can include {what} only for the mechanism of the blocks of the deck. Remove it, or give the "
+            "restraint of a wall as `ties` of this table"
+        ),
         key,
     )
 
 
 def _refuse_given(name: str) -> None:
-    raise Refused(f'mechanism = "building" takes this value from [structure]: remove {name}', ("analysis", name))
+    raise Refused(f'mechanism = "building" uses the value of [structure]: remove {name}', ("analysis", name))
 
 
 def _refuse_elsewhere(context: Context, options: LocalMechanism) -> None:
@@ -91,23 +93,24 @@ def _refuse_elsewhere(context: Context, options: LocalMechanism) -> None:
     for name in ("one_second_acceleration", "storey"):
         if name in options.model_fields_set and own != "ASCE41":
             raise Refused(
-                f'{name} is of ASCE 41, the report is by {own}: remove it, or give [code] jurisdiction = "ASCE41"', ("analysis", name)
+                f'{name} belongs to ASCE 41, but the checks are by {own}. Remove the key, or give [code] jurisdiction = "ASCE41"',
+                ("analysis", name),
             )
 
 
 def _refuse_nothing(building: Building) -> None:
     if building.structure is None:
-        raise Refused('"building" needs a [structure]', ("analysis", "mechanism"))
+        raise Refused('"building" requires a [structure]', ("analysis", "mechanism"))
 
 
 def _refuse_wall(building: Building, options: CodeChecks) -> None:
     if options.axial_load is None:
-        raise Refused("a wall is checked as a pier: give axial_load", ("analysis",))
+        raise Refused("the wall is checked as a pier: give axial_load", ("analysis",))
     if len(building.pier_blocks().mass) > 1:
         raise Refused(
-            "the pier rules are for a rectangle without openings: check each pier between openings as its own panel", ("structure",)
+            "the pier rules apply to a rectangle without openings: give each pier between openings as a separate panel", ("structure",)
         )
 
 
 def _refuse_weak() -> None:
-    raise Refused("the pier rules need [material] compressive_strength (f_m)", ("material",))
+    raise Refused("the pier rules require [material] compressive_strength (f_m)", ("material",))

@@ -132,15 +132,15 @@ def toothed_edge(courses: int, unit_height: float, overlap: float, thickness: fl
 def below_lc1(fc: float) -> str:
     """What is wrong with a lesser FC where the multiplier takes no strength into account (C8.7.1.2.1.3)."""
     return (
-        f"FC is {fc:g}, but the multiplier neglects that masonry crushes: C8.7.1.2.1.3 then requires FC {LC1:g} (LC1). Give "
-        f"compressive_strength, or FC {LC1:g}."
+        f"FC is {fc:g}, but the multiplier neglects crushing of the masonry: C8.7.1.2.1.3 then requires FC {LC1:g} (LC1). "
+        f"Give compressive_strength, or FC {LC1:g}."
     )
 
 
 #: The code whose checks these are
 CODE = "NTC 2018"
 #: What the kinematic analysis of C8.7.1.2.1 is for
-SCOPE = "part of an existing masonry building or block that moves as rigid bodies and does not come apart; any restraint; any height"
+SCOPE = "part of an existing masonry building, or block, that moves as rigid bodies without disintegrating; any restraint; any height"
 
 
 @dataclass(frozen=True)
@@ -195,12 +195,17 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
     felt = place.acceleration(spectrum, peak)
     demand = None if felt is None else felt / GRAVITY
     unknown = (
-        "a part free to vibrate responds at its own period T_0: its demand is S_eZ(T_0) [C8.7.1.9]. Give [material] young, or period"
+        (
+            "a part that vibrates freely responds at its own period T_0, and its demand is S_eZ(T_0) [C8.7.1.9]. Give "
+            "[material] young, or period"
+        )
         if place.free and place.period is None
         else ""
     )
     note = found.note if place.period is None or not place.free else f"{found.note}, T_0 {place.period:.3g} s"
-    starts = "[C8.7.1.9]: alpha_0 g/(e* FC) >= S_eZ(T_0)" if place.free else "[C8.7.1.8]: alpha_0 g/(e* FC) >= a_Z, at the ground a_g S"
+    starts = (
+        "[C8.7.1.9]: alpha_0 g/(e* FC) >= S_eZ(T_0)" if place.free else "[C8.7.1.8]: alpha_0 g/(e* FC) >= a_Z; at the ground a_Z = a_g S"
+    )
     common: dict[str, Any] = {"scope": f"{SCOPE}; rigid until it starts", "state": state}
 
     def activation(name: str, **more: Any) -> Line:
@@ -216,7 +221,11 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
         compared = lines[0].demand is not None
     if compared:
         lines.append(activation(f"NTC activation ({where})", alternative=state))
-    known = "the displacement is checked: q is for mechanisms of which only the multiplier is known (C8.7.1.2.1.7)" if compared else ""
+    known = (
+        ("the displacement is checked instead: q applies only if no more than the multiplier of the mechanism is known (C8.7.1.2.1.7)")
+        if compared
+        else ""
+    )
     lines.append(
         Line(
             f"NTC linear ({where})",
@@ -224,10 +233,13 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
             q * found.a0 / GRAVITY,
             demand,
             "g",
-            "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z, at the ground a_g S; [C8.7.1.8], [C8.7.1.9], [C7.2.8]",
+            (
+                "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z (at the ground a_Z = a_g S); [C8.7.1.8], "
+                "[C8.7.1.9], [C7.2.8]"
+            ),
             f"{note}, q {q:g}",
             CODE,
-            scope=f"{SCOPE}; rigid until it starts; no displacement check",
+            scope=f"{SCOPE}; rigid until the mechanism starts; without a displacement check",
             state=state,
             alternative=state,
             barred=unknown or known,

@@ -56,11 +56,11 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
     known = part.period is not None and part.first is not None
     tuned = part.period / part.first if part.period is not None and part.first is not None else 1.0
     if q_a is None:
-        barred = f"Table 4.4 gives no q_a for this element ({part.element})"
+        barred = f"Table 4.4 gives no q_a for this kind of element ({part.element})"
     elif part.loaded:
-        barred = "the wall carries floors and is a structural element"
+        barred = "a wall that carries floors is a structural element"
     elif not part.elevated:
-        barred = "the part is taken as supported by the ground: give base_height and building_height of a part of a building"
+        barred = "the part is assumed to be supported by the ground: for a part of a building, give base_height and building_height"
     elif peak is not None:
         assert part.building is not None
         shape = 3.0 * (1.0 + part.place / part.building) / (1.0 + (1.0 - tuned) ** 2) - 0.5
@@ -74,7 +74,7 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
             "g",
             "EN 1998-1:2004 4.3.5.2 Eqs (4.24), (4.25): F_a = S_a W_a gamma_a/q_a, S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5) "
             ">= a_g S, gamma_a 1; Table 4.4 (verify clause)",
-            (f"T_a/T_1 {tuned:.3g}" if known else "T_a or T_1 unknown: resonance, T_a/T_1 1, is taken")
+            (f"T_a/T_1 {tuned:.3g}" if known else "T_a or T_1 is not known, so resonance is assumed (T_a/T_1 = 1)")
             + ("" if q_a is None else f", q_a {q_a:g}"),
             "EN 1998-1",
             state=state,
@@ -92,22 +92,24 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
             "EN 1998-3",
             state=state,
             scope="masonry walls in their plane",
-            barred="Annex C of the 2005 edition has rules for walls in their plane alone, none for rigid-body mechanisms out of plane",
+            barred=(
+                "Annex C of the 2005 edition has only rules for in-plane failure of walls. It has no rules for out-of-plane mechanisms"
+            ),
         ),
     ]
 
 
-def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = None, state: str = "LS", edition: str = "13") -> list[Line]:
+def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = None, state: str = "LS") -> list[Line]:
     """Height over thickness up to which no out-of-plane check is required, and that of parapets; s_x1, s_xs: spectral acceleration at 1 s
     and of short periods [m/s^2]."""
     slender = None if part.height is None or part.thickness is None else part.height / part.thickness
     barred = ""
     if part.element not in ("facade", "vertical-bending") or not part.anchored:
         barred = "Table 11-5 covers walls between anchored diaphragms: " + (
-            "nothing anchors the top of this facade" if part.element == "facade" else f"this element is a {part.element}"
+            "no anchor holds the top of this facade" if part.element == "facade" else f"this element is a {part.element}"
         )
     elif state == "IO":
-        barred = "Table 11-5 limits stability at LS and CP. At IO no cracking is permitted, which this program does not check"
+        barred = "Table 11-5 limits stability at LS and CP. At IO no cracking is permitted, and this program does not check cracking"
     limit = None if s_x1 is None else SLENDER[storey][0 if s_x1 <= 0.24 * GRAVITY else 1 if s_x1 <= 0.37 * GRAVITY else 2]
     told = "S_X1 is not known" if s_x1 is None else f"S_X1 {s_x1 / GRAVITY:.3g} g"
     free = "" if part.element == "parapet" else f"the limit covers parapets only; this element is a {part.element}"
@@ -120,7 +122,7 @@ def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = Non
             None if limit is None else float(limit),
             slender,
             "",
-            f"ASCE 41-{edition} 11.3.3.3 Table 11-5 (verify clause)",
+            "ASCE 41-13 11.3.3.3 Table 11-5 (verify clause)",
             f"{storey}, {told}",
             "ASCE 41",
             scope="wall between anchored diaphragms; held at foot and top; any storey",
@@ -133,7 +135,7 @@ def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = Non
             most,
             slender,
             "",
-            f"ASCE 41-{edition} 13.6.5: h/t at most 2.5 at life safety in low and moderate seismicity, else 1.5 (verify clause)",
+            "ASCE 41-13 13.6.5: at life safety h/t is at most 2.5 in low and moderate seismicity, otherwise 1.5 (verify clause)",
             f"{told}, {'high' if high else 'low or moderate'} seismicity" if s_x1 is not None else told,
             "ASCE 41",
             scope="parapet of unreinforced masonry, laterally unsupported; on a building",
@@ -167,13 +169,13 @@ def _nz_parapet(part: Part, spectrum: Callable[[float, float], float] | None, st
     h, t = float(part.height or 0.0), float(part.thickness or 0.0)
     barred, demand, note, capacity = "", None, "", None
     if part.element != "parapet":
-        barred = f"the constants hold for a parapet of one thickness, and this part is another one ({part.element})"
+        barred = f"the constants are valid for a parapet of constant thickness; this part is a {part.element}"
     else:
         slope, capacity = 1.0 + (t / h) ** 2, USABLE * t
         period = float(np.sqrt(0.65 * h * slope))
         note = f"T_p {period:.3f} s"
         if not part.elevated:
-            barred = "the height of the parapet above the ground is not given (base_height, building_height): its demand is not known"
+            barred = "the height of the parapet above the ground (base_height, building_height) is not given, so its demand is not known"
         else:
             felt, told = _part_coefficient(part.place, float(part.building or 0.0), period, spectrum)
             note += told
@@ -201,7 +203,7 @@ def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state
     if part.element != "vertical-bending":
         barred = f"the rule applies only to walls that span one way between floors; this wall does not ({part.element})"
     elif part.load < 0.0 or part.height is None or part.thickness is None:
-        barred = "the sizes of the wall are not known"
+        barred = "the dimensions of the wall are not known"
     else:
         found = one_way(part.height, part.thickness, part.weight, part.load)
         capacity = USABLE_WALL * found.instability

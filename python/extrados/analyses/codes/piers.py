@@ -98,20 +98,20 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
             "NTC sliding",
             slid,
             demand,
-            "NTC 2018 7.8.2.2.2 Eq. [7.8.3]: V = l' t f_vd, l' compressed length, f_vd = f_v0d + 0.4 sigma_n",
+            "NTC 2018 7.8.2.2.2 Eq. [7.8.3]: V = l' t f_vd; l' is the compressed length, f_vd = f_v0d + 0.4 sigma_n",
             f"{told}, l' {pressed:.3g} m",
             "NTC 2018",
             state,
             ""
             if p.cohesion > 0.0
-            else "the deck gives no f_v0 ([joints] cohesion): irregular masonry has the rule of diagonal cracking alone",
+            else "the deck gives no f_v0 ([joints] cohesion). For irregular masonry only the rule of diagonal cracking applies",
         ),
     ]
     b = float(np.clip(p.height / p.width, 1.0, 1.5))
     if p.diagonal is None:
-        irregular = "the deck gives no tau_0: diagonal_strength"
+        irregular = "the deck does not give tau_0 (key diagonal_strength)"
     else:
-        irregular = "" if p.interlocking is None else "interlocking is given: the masonry is regular [C8.7.1.17]"
+        irregular = "" if p.interlocking is None else "interlocking is given, so the masonry is regular [C8.7.1.17]"
     tension = 1.5 * (p.diagonal or 0.0) / d
     cracked = None if not tension else p.area * tension / b * float(np.sqrt(1.0 + p.stress / tension))
     lines.append(
@@ -144,11 +144,14 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
                 note,
                 "NTC 2018",
                 state,
-                "" if p.cohesion > 0.0 else "the deck gives no f_v0 ([joints] cohesion)",
+                "" if p.cohesion > 0.0 else "the deck does not give f_v0 ([joints] cohesion)",
                 "regular masonry",
             )
         )
-    rule = "NTC 2018 7.8.2.2, Circ. 7/2019 C8.7.1.3.1.1: at SLC 0.01 in flexure, 0.005 in shear; SLV is 3/4 of SLC on the bilinear curve"
+    rule = (
+        "NTC 2018 7.8.2.2, Circ. 7/2019 C8.7.1.3.1.1: drift at SLC 0.01 in flexure and 0.005 in shear; SLV is 3/4 of SLC "
+        "on the bilinear curve"
+    )
     share = 0.75 if state == "SLV" else 1.0
     drifts = (("flexure", 0.01), ("shear", 0.005))
     return lines + [_drift(f"NTC drift in {name}", drift * share, rule, state) for name, drift in drifts]
@@ -182,13 +185,13 @@ def en1998_piers(p: Pier, factor: float, demand: float | None, state: str) -> li
         _drift(
             "EN 1998-3 drift in flexure",
             worse * 0.008 * p.shear_span / p.width,
-            "EN 1998-3:2005 C.4.2.1: 0.008 H_0/D of primary walls at SD; NC 4/3 of it (verify clause)",
+            "EN 1998-3:2005 C.4.2.1: drift 0.008 H_0/D of primary walls at SD; at NC 4/3 of this value (verify clause)",
             state,
         ),
         _drift(
             "EN 1998-3 drift in shear",
             worse * 0.004,
-            "EN 1998-3:2005 C.4.3.1: 0.004 of primary walls at SD; NC 4/3 of it (verify clause)",
+            "EN 1998-3:2005 C.4.3.1: drift 0.004 of primary walls at SD; at NC 4/3 of this value (verify clause)",
             state,
         ),
     ]
@@ -205,7 +208,7 @@ def asce41_piers(p: Pier, factor: float, demand: float | None, ductility: float,
     pressed = 1.1 * p.stress
     eased = None if demand is None else demand / ductility
     told = f"kappa {1.0 / factor:.3g}, m {ductility:.3g}"
-    forced = f"kappa {1.0 / factor:.3g}, force-controlled, lower-bound strength"
+    forced = f"kappa {1.0 / factor:.3g}, force-controlled (lower-bound strength)"
     lines = [
         _strength(
             "ASCE 41 rocking of a pier",
@@ -224,7 +227,9 @@ def asce41_piers(p: Pier, factor: float, demand: float | None, ductility: float,
             told,
             "ASCE 41",
             state,
-            "" if state == "IO" else f"V_bjs1 is the strength of the uncracked joint, at IO; at {state} V_bjs2 is left",
+            ""
+            if state == "IO"
+            else f"V_bjs1 is the strength of the uncracked joint, valid at IO; at {state} the residual strength V_bjs2 applies",
             "at IO",
         ),
         _strength(
@@ -235,7 +240,7 @@ def asce41_piers(p: Pier, factor: float, demand: float | None, ductility: float,
             told,
             "ASCE 41",
             state,
-            "V_bjs2 is the residual strength, beyond IO" if state == "IO" else "",
+            "V_bjs2 is the residual strength, valid beyond IO" if state == "IO" else "",
             "beyond IO",
             "residual strength",
         ),
@@ -261,7 +266,7 @@ def asce41_piers(p: Pier, factor: float, demand: float | None, ductility: float,
             forced,
             "ASCE 41",
             state,
-            "" if split else "the deck gives no tau_0: diagonal_strength",
+            "" if split else "the deck does not give tau_0 (key diagonal_strength)",
         )
     )
     return lines
@@ -280,7 +285,7 @@ def nzsee_piers() -> list[Line]:
             "",
             "NZSEE",
             scope=PIER,
-            barred="the equations of C8 for piers in their plane are not implemented: their text could not be read",
+            barred=("the equations of C8 for in-plane strength of piers are not included in this program: their text could not be read"),
         )
     ]
 
@@ -309,4 +314,4 @@ def _strength(
 
 def _drift(rule: str, drift: float, source: str, state: str) -> Line:
     """A drift that a displacement-based analysis compares; no check by itself."""
-    return Line(rule, "drift", drift, None, "", source, "for the displacements of a pushover", scope=PIER, state=state)
+    return Line(rule, "drift", drift, None, "", source, "for the displacements of a pushover analysis", scope=PIER, state=state)

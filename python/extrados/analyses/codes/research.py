@@ -7,8 +7,8 @@ import numpy as np
 from extrados.analyses.codes.code_rules import Line
 from extrados.schema.constants import GRAVITY
 
-BLOCK = "rigid block that rocks on the ground, not anchored"
-PIER = "wall or pier without openings in its plane; its foot fixed, its top free or fixed"
+BLOCK = "rigid block that rocks on the ground, without anchors"
+PIER = "wall or pier without openings in its plane; foot fixed; top free or fixed"
 
 
 def west(tan_alpha: float, pga: float | None) -> Line:
@@ -19,7 +19,7 @@ def west(tan_alpha: float, pga: float | None) -> Line:
 def housner(p: float, alpha: float, pga: float | None, period: float) -> Line:
     """Half of a sine of period T = 2 pi/w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
     x = float(np.hypot(1.0, 2.0 * np.pi / (period * p)))
-    note = f"for half a sine of {period:.3g} s"
+    note = f"for a half sine of {period:.3g} s"
     return Line("Housner half sine", "PGA", x * np.tan(alpha), pga, "g", "Housner 1963, Eq. 15 (verify clause)", note, scope=BLOCK)
 
 
@@ -27,7 +27,7 @@ def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) 
     """Overturning needs both PGA >= (B/H) g and PGV >= 10 B/sqrt(H) cm/s with B, H in cm."""
     source = "Ishiyama 1982 (verify clause)"
     speed = 10.0 * 100.0 * width / np.sqrt(100.0 * height) / 100.0
-    note = "overturning requires that the motion exceeds both limits"
+    note = "for overturning, the motion must exceed both limits"
     return (
         Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note, scope=BLOCK),
         Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note, scope=BLOCK),
@@ -47,7 +47,7 @@ def asce43(width: float, height: float, sa: Callable[[float, float], float] | No
     c_r = 1.0 - 2.0 * ratio**2 / c3
     frequency = float(np.sqrt(2.0 * f1 * GRAVITY / (c3 * theta**2 * h)) / (2.0 * np.pi))
     capacity = float(2.0 * f1 / (c3 * theta))
-    source, scope = "ASCE/SEI 43-05, App. A (verify clause)", f"{BLOCK}; Housner's coefficient of restitution above 0"
+    source, scope = "ASCE/SEI 43-05, App. A (verify clause)", f"{BLOCK}; coefficient of restitution by Housner above 0"
     if not c_r > 0.0:
         return Line(
             "ASCE 43 rocking",
@@ -57,8 +57,10 @@ def asce43(width: float, height: float, sa: Callable[[float, float], float] | No
             "g",
             source,
             scope=scope,
-            barred=f"the block of b/h = {ratio:.3g} does not rock: Housner's coefficient of restitution is {c_r:.3g}, and "
-            "gives no equivalent damping",
+            barred=(
+                f"the block of b/h = {ratio:.3g} does not rock: its coefficient of restitution by Housner is {c_r:.3g}, which "
+                "gives no equivalent damping"
+            ),
         )
     gamma = -2.0 * np.log(c_r)
     damping = float(gamma / np.sqrt(4.0 * np.pi**2 + gamma**2))
@@ -70,7 +72,7 @@ def asce43(width: float, height: float, sa: Callable[[float, float], float] | No
         demand,
         "g",
         source,
-        f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha",
+        f"equivalent frequency {frequency:.3f} Hz and damping {100 * damping:.1f} %, at the rotation alpha",
         scope=scope,
     )
 

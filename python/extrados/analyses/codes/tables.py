@@ -21,16 +21,19 @@ class CodeChecks(BuildingAnalysis):
     beside: ClassVar = ("joints.energy_ratio", "initial.rotation_ratio", "supports.abutting_wall", "supports.stiffness")
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
-    spectrum: CodeSpectrum | None = key(None, "the demand: elastic spectrum of the code at the site; default that of a `compatible` motion")
-    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
+    spectrum: CodeSpectrum | None = key(None, "elastic spectrum of the code at the site, as demand; default: that of a `compatible` motion")
+    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default: that of the spectrum", gt=0)
     peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
     motion_spectrum: bool = key(
-        False, "without a spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity"
+        False, "if no code spectrum is given, use the response spectrum and the peak velocity of the motion in the deck"
     )
-    pulse_period: Time | None = key(None, "period of the sine whose half cycle Housner's formula takes; adds this check", gt=0)
+    pulse_period: Time | None = key(None, "period of the sine whose half cycle is used in the formula of Housner; adds this check", gt=0)
     behaviour_factor: float | None = key(
         None,
-        "q of the linear check of a mechanism, and of the demand on a pier (of ASCE 41 its m); default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)",
+        (
+            "behaviour factor q of the linear check of a mechanism, and of the demand on a pier (for ASCE 41: its m factor); "
+            "default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)"
+        ),
         ge=1,
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
@@ -38,24 +41,24 @@ class CodeChecks(BuildingAnalysis):
     confidence_factor: float | None = key(None, "FC; default that of [code]", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     partial_factor: float | None = key(
         None,
-        "gamma_M of a pier by NTC; default 2 where a demand is compared (linear analysis with q), else 1",
+        "partial factor gamma_M of a pier by NTC; default 2 if a demand is checked (linear analysis with q), otherwise 1",
         ge=1,
         le=3,
         source="NTC 2018 7.8.1.1",
     )
     axial_load: Force | None = key(None, "vertical load on top of the wall; adds the pier rules", ge=0)
-    thickness: Length | None = key(None, "thickness of the pier; default the depth of the block", gt=0)
+    thickness: Length | None = key(None, "thickness of the pier; default: the depth of the block", gt=0)
     sliding_friction: float = key(
-        0.4, "coefficient of friction that the code gives for sliding along a bed joint", gt=0, le=2, source="NTC 2018"
+        0.4, "coefficient of friction for sliding along a bed joint, as given by the code", gt=0, le=2, source="NTC 2018"
     )
     diagonal_strength: Stress | None = key(
-        None, "tau_0, shear strength of the masonry without compression; adds the rule of diagonal cracking", gt=0
+        None, "tau_0, shear strength of the masonry without compression; adds the check of diagonal cracking", gt=0
     )
     interlocking_ratio: float | None = key(
-        None, "phi = h_b/l of a pier of regular masonry: adds the rule of stepped cracking", gt=0, le=5, source="Circ. 7/2019 [C8.7.1.17]"
+        None, "phi = h_b/l of a pier of regular masonry; adds the check of stepped cracking", gt=0, le=5, source="Circ. 7/2019 [C8.7.1.17]"
     )
-    unit_strength: Stress | None = key(None, "f_b, compressive strength of the units of a pier, which limits its shear", gt=0)
-    fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top: free or held")
+    unit_strength: Stress | None = key(None, "f_b, compressive strength of the units, which limits the shear strength of the pier", gt=0)
+    fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top of the pier: free, or fixed")
 
     def reckons_with(self, building: "Building") -> set[str]:
         """Strength and cohesion are of piers, impacts and the start of what rocks."""
@@ -74,36 +77,43 @@ class Verification(Table):
     peak_acceleration: ClassVar = None
     method: Literal["N2", "capacity-spectrum", "coefficient"] | None = key(
         None,
-        "method of the displacement demand: N2 (EN 1998-1: its Annex B), capacity spectrum, or the coefficient method of ASCE 41; default "
-        "coefficient (ASCE41), N2 (others)",
+        (
+            "method for the displacement demand: N2 (EN 1998-1: its Annex B), capacity spectrum, or the coefficient method "
+            "of ASCE 41; default: coefficient (ASCE41), N2 (others)"
+        ),
     )
     secant: float = key(
         0.7,
-        "part of the greatest base shear at which the bilinear curve has its stiffness; 0.6 is the general rule of C7.3.4.2",
+        ("share of the greatest base shear at which the bilinear curve takes its stiffness; 0.6 is the general rule of C7.3.4.2"),
         ge=0.5,
         le=0.9,
         source="NTC 2018 7.8.1.6",
     )
     quality: float = key(
         0.33,
-        "factor k on the hysteretic damping, of the capacity spectrum: 1, 0.66 or 0.33 of high, moderate or low dissipation",
+        ("factor k on the hysteretic damping in the capacity spectrum method: 1, 0.66 or 0.33 for high, moderate or low dissipation"),
         ge=0,
         le=1,
         source="Circ. 7/2019 [C7.3.10]",
     )
     shape: Literal["displaced", "mode"] = key(
         "displaced",
-        "phi of the equivalent mass: elastic displacement under the pushing forces, or the mode of greatest participating mass in "
-        "the direction, which with flexible floors may have little of it",
+        (
+            "shape phi for the equivalent mass: elastic displacement under the horizontal forces, or the mode with the "
+            "greatest participating mass in the direction (which can be small with flexible floors)"
+        ),
         source="Circ. 7/2019 C7.3.4.2: first mode",
     )
     spectrum: CodeSpectrum | None = key(
-        None, "elastic spectrum of the concluding limit state; default that of [code], or of a `compatible` motion"
+        None, "elastic spectrum of the limit state that gives the verdict; default: that of [code], or of a `compatible` motion"
     )
-    motion_spectrum: bool = key(False, "without a spectrum of a code, the response spectrum of the deck's motion")
+    motion_spectrum: bool = key(False, "if no code spectrum is given, use the response spectrum of the motion in the deck")
 
     motions: int | None = key(
-        None, "motions of the set in [motion] of which N2 makes a fragility, record by record; default none", ge=2, le=10_000
+        None,
+        ("number of motions of the set in [motion] from which N2 calculates a fragility curve, record by record; default: none"),
+        ge=2,
+        le=10_000,
     )
 
     @model_validator(mode="after")
@@ -116,39 +126,42 @@ class Verification(Table):
 class Floor(Table):
     """A floor, roof or vault that rests on the wall."""
 
-    height: Length = key(about="height at which it acts, above the foot of the wall", ge=0)
-    load: Force = key(0.0, "weight that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
+    height: Length = key(about="height at which the load acts, above the foot of the wall", ge=0)
+    load: Force = key(0.0, "weight of the load that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
     pushing: Force = key(
         0.0,
-        "weight that does not rest on the wall and whose mass pushes it (Q): this mass drives the mechanism and does not stabilise it",
+        (
+            "weight whose mass pushes the wall but which does not rest on it (Q): the mass drives the mechanism, and the "
+            "weight does not stabilise it"
+        ),
         ge=0,
         source="Circ. 7/2019 [C8.7.1.1]",
     )
-    arm: Length | None = key(None, "how far behind the hinge it rests; default the middle of the wall", ge=0)
-    sways: bool = key(True, "whether its mass is accelerated with the wall; false where other walls hold it")
-    thrust: Force = key(0.0, "its horizontal thrust at rest, outward")
+    arm: Length | None = key(None, "horizontal distance of the load behind the hinge; default: the middle of the wall", ge=0)
+    sways: bool = key(True, "whether the mass of the load is accelerated with the wall; false if other walls restrain it")
+    thrust: Force = key(0.0, "horizontal thrust of the load at rest, outward")
 
 
 class WallTie(Table):
     """A tie that holds the wall."""
 
-    height: Length = key(about="its height above the foot of the wall", gt=0)
-    force: Force = key(about="strength: the least of steel, anchorage and masonry", gt=0)
+    height: Length = key(about="height of the tie above the foot of the wall", gt=0)
+    force: Force = key(about="strength of the tie: the least of steel, anchorage and masonry", gt=0)
 
 
 class Wing(Table):
     """A further part of a facade that overturns with it: a wing of another height, or an upper wall of another thickness."""
 
-    height: Length = key(about="its top, above the foot of the wall", gt=0)
+    height: Length = key(about="height of the top of this part above the foot of the wall", gt=0)
     thickness: Length = key(about="its thickness", gt=0)
     width: Length = key(about="its length", gt=0)
-    foot: Length = key(0.0, "its foot, above that of the wall", ge=0)
-    setback: Length = key(0.0, "distance of its outer face behind that of the wall", ge=0)
+    foot: Length = key(0.0, "height of the foot of this part above the foot of the wall", ge=0)
+    setback: Length = key(0.0, "distance of the outer face of this part behind that of the wall", ge=0)
 
     @model_validator(mode="after")
     def _upright(self) -> "Wing":
         if self.foot >= self.height:
-            raise ValueError(f"foot: {self.foot:g} m is not below its top, {self.height:g} m")
+            raise ValueError(f"foot: {self.foot:g} m is not below the top of this part, {self.height:g} m")
         return self
 
 
@@ -157,7 +170,7 @@ class Mode(Table):
 
     period: Time = key(about="period T_k", gt=0)
     participation: float = key(about="modal participation factor gamma_k")
-    shape: float = key(about="psi_k(z), of the mode at the height of the part")
+    shape: float = key(about="psi_k(z): mode shape at the height of the part")
     damping: float = key(0.05, "damping ratio xi_k", gt=0, le=0.3)
 
 
@@ -165,15 +178,15 @@ class SideWalls(Table):
     """Walls at right angles of which wedges go with the facade."""
 
     thickness: Length = key(about="of each", gt=0)
-    crack_angle: Angle = key(about="of the crack from the vertical", gt=0, lt=80)
+    crack_angle: Angle = key(about="angle of the crack from the vertical", gt=0, lt=80)
     count: int = key(2, "how many", ge=1, le=4)
 
 
 class Interlocking(Table):
     """Teeth by which side walls hold the whole height of a wall that turns; they slip out before collapse."""
 
-    unit_height: Length = key(about="height h_b of the units, one course", gt=0)
-    overlap: Length = key(about="overlap l of the units, the length of a tooth", gt=0)
+    unit_height: Length = key(about="height h_b of the units, equal to one course", gt=0)
+    overlap: Length = key(about="overlap l of the units: the length of a tooth of the interlocking", gt=0)
     thickness: Length = key(about="thickness t_s of each side wall", gt=0)
     count: int = key(2, "number of toothed edges", ge=1, le=4)
 
@@ -197,84 +210,99 @@ class LocalMechanism(BuildingAnalysis):
     mechanism: Literal[
         "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building"
     ] = key(
-        about="facade, corner of two walls, gable, parapet or chimney on a building, free-standing wall, tower as one body; wall that bends "
-        "between held floors, or level between side walls; or `building`, "
-        "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults), of a building on a plan its walls"
+        about=(
+            "kind of mechanism: facade, corner of two walls, gable, parapet or chimney on a building, free-standing wall, "
+            "tower as one body; wall that bends vertically between floors, or horizontally between side walls; or "
+            "`building`: the collapse mechanism of the [structure] of the deck (triumphal arches, bridges, vaults), or the "
+            "walls of a building in plan"
+        )
     )
     height: Length | None = key(None, "top of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
-    width: Length | None = key(None, "length of wall that overturns; default 1 m, of a tower its thickness", gt=0)
-    hinge_height: Length = key(0.0, "height of the hinge, the crack about which the wall rotates", ge=0)
-    crack_angle: Angle | None = key(None, "of a corner: of the cracks in both walls from the vertical", gt=0, lt=80)
-    floors: list[Floor] = key([], "floors, roofs and vaults on it", max_length=50)
+    width: Length | None = key(None, "length of the wall that overturns; default 1 m, for a tower its thickness", gt=0)
+    hinge_height: Length = key(0.0, "height of the hinge: the crack about which the wall rotates", ge=0)
+    crack_angle: Angle | None = key(None, "for a corner: angle of the cracks in both walls from the vertical", gt=0, lt=80)
+    floors: list[Floor] = key([], "floors, roofs and vaults that load the part", max_length=50)
     ties: list[WallTie] = key([], "ties that hold it", max_length=50)
-    side_walls: SideWalls | None = key(None, "wedges of side walls that go with it")
+    side_walls: SideWalls | None = key(None, "wedges of the side walls that move with the part")
     wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
     abutment_force: Force | None = key(
         None,
-        "of horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip; default side walls that "
-        "do not move, such as those that further walls flank: the strip crushes by [material] compressive_strength",
+        (
+            "for horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip. "
+            "Default: side walls that do not move (for instance between further walls); the strip then crushes at [material] "
+            "compressive_strength"
+        ),
         gt=0,
     )
-    interlocking: Interlocking | None = key(None, "teeth of side walls that hold a facade by friction", source="Circ. 7/2019 [C8.7.1.2]")
-    spectrum: CodeSpectrum | None = key(
-        None, "elastic spectrum of the site; default that of a `compatible` motion", source="EN 1998-1 3.2.2; NTC 2018 3.2.3"
+    interlocking: Interlocking | None = key(
+        None, "interlocking teeth of the side walls that restrain a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
     )
-    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
+    spectrum: CodeSpectrum | None = key(
+        None, "elastic spectrum of the site; default: that of a `compatible` motion", source="EN 1998-1 3.2.2; NTC 2018 3.2.3"
+    )
+    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default: that of the spectrum", gt=0)
     collapse_spectrum: CodeSpectrum | None = key(
         None,
-        "elastic spectrum of the site for the limit state of collapse, SLC; adds the check of d_SLC to those at SLV",
+        "elastic spectrum of the site for the limit state of collapse, SLC; adds the check of d_SLC to the checks at SLV",
         source="Circ. 7/2019, C8.7.1.2.1.8",
     )
-    motion_spectrum: bool = key(False, "without a spectrum of a code, take the response spectrum of the deck's motion")
+    motion_spectrum: bool = key(False, "if no code spectrum is given, use the response spectrum of the motion in the deck")
     behaviour_factor: float = key(
         2.0,
-        "q of the linear check of NTC, which is for mechanisms without a displacement check",
+        "behaviour factor q of the linear check of NTC, which applies to mechanisms without a displacement check",
         ge=1,
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
     )
     confidence_factor: float | None = key(
         None,
-        "FC; default that of [code], where compression strength is neglected that of LC1, 1.35",
+        "confidence factor FC; default: that of [code], or that of LC1 (1.35) if the compressive strength is neglected",
         ge=1,
         le=2,
         source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV",
     )
     base_height: Length | None = key(
         None,
-        "height z of the mechanism above the foundation: above 0 the floor amplifies; default from the geometry, the lowest hinge "
-        "between moving and fixed parts, of a table `hinge_height`",
+        (
+            "height z of the mechanism above the foundation; if z is above 0, the building amplifies the motion. Default "
+            "from the geometry: the lowest hinge between moving and fixed parts; for a table, `hinge_height`"
+        ),
         ge=0,
     )
     building_height: Length | None = key(
-        None, "height H of the building, where z is above 0; default from the geometry, the top of all, of a table `height`", gt=0
+        None,
+        ("height H of the building, required if z is above 0. Default from the geometry: the top of all parts; for a table, `height`"),
+        gt=0,
     )
     building_period: Time | None = key(None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6")
     storeys: int | None = key(
-        None, "storeys N of the building, for the modal participation; default one for each begun 3 m of its height", ge=1, le=50
+        None,
+        ("number N of storeys of the building, for the modal participation; default: one storey for each 3 m of its height, rounded up"),
+        ge=1,
+        le=50,
     )
     modes: list[Mode] = key(
         [],
-        "modes of the building for the floor spectrum; default its first mode alone, linear over the height",
+        "modes of the building for the floor spectrum; default: the first mode only, linear over the height",
         source="Circ. 7/2019 C7.2.3",
         max_length=20,
     )
     period: Time | None = key(
         None,
-        "period T_0 of a part that is free to vibrate; default from [material] young, where the deck gives it",
+        "period T_0 of a part that vibrates freely; default: calculated from [material] young, if given",
         gt=0,
         source="Circ. 7/2019 [C8.7.1.7]",
     )
     one_second_acceleration: Acceleration | None = key(
-        None, "S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
+        None, "spectral acceleration S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
     )
-    storey: Literal["one-story", "first", "top", "other"] = key("one-story", "place of the wall, for ASCE 41")
+    storey: Literal["one-story", "first", "top", "other"] = key("one-story", "storey of the wall, for ASCE 41")
 
     @model_validator(mode="after")
     def _one_building(self) -> "LocalMechanism":
         if self.modes and (given := sorted({"building_period", "storeys"} & self.model_fields_set)):
-            raise ValueError(f"{given[0]}: the modes give this value")
+            raise ValueError(f"{given[0]}: the modes already give this value, remove the key")
         return self
 
     @model_validator(mode="after")

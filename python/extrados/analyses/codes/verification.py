@@ -81,7 +81,7 @@ def with_design_strengths(context: Context, options: Verification) -> Context:
     if factor == 1.0:
         return context
     context.warnings.append(
-        f"Strengths are the values of the deck divided by the confidence factor {factor:.3g}, as the verification requires."
+        f"The strengths are the values of the deck divided by the confidence factor {factor:.3g}, as the verification requires."
     )
     return replace(context, building=divided(context.building, factor))
 
@@ -169,7 +169,10 @@ def verify(
     if options.motions is not None and made and known_states:
         more["fragility"], carried = fragilities(context, options, made, known_states)
         result.arrays["carried_pga"] = Array(
-            carried, ("motion", "limit_state"), "g", f"peak ground acceleration carried of each motion, at {', '.join(known_states)}"
+            carried,
+            ("motion", "limit_state"),
+            "g",
+            f"peak ground acceleration that the building carries for each motion, at {', '.join(known_states)}",
         )
     if code.jurisdiction == "NZSEE" and (found := least("ULS")) is not None:
         more["nbs_percent"] = 100.0 * found
@@ -189,7 +192,7 @@ def verify(
 
 def unverified(name: str) -> str:
     """The condition of a push that has no curve to be verified."""
-    return f"Push {name} has no capacity curve with a rising branch: the least factor is that of the other pushes."
+    return f"Pushover {name} has no capacity curve with a rising branch. The least factor is that of the other pushovers."
 
 
 def _idealised(curve: CapacityCurve, options: Verification, jurisdiction: str) -> Oscillator | None:

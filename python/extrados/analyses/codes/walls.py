@@ -41,8 +41,8 @@ def wall_parts(building: Building) -> list[WallPart]:
         parts += [_part(building, plan, wall, storey, loads) for storey in range(free, last + 1)]
     if not parts:
         raise NoMechanism(
-            "Rigid floors or props restrain the top of every wall: no wall overturns out of its plane as one body. The bending of a wall "
-            "between its floors is not checked"
+            "Rigid floors or props restrain the top of every wall, so no wall overturns out of its plane as one body. The "
+            "bending of a wall between its floors is not checked"
         )
     return parts
 
@@ -60,7 +60,7 @@ def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int
         bearing = {name: lengths[name] for name in floor.bears_on if name in lengths} if floor.bears_on else lengths
         if floor.load > 0.0 and not bearing:
             raise BadGeometry(
-                f"floor on storey {floor.storey}: none of the walls that carry its load lies beside it",
+                f"floor on storey {floor.storey}: none of the walls that carry its load is adjacent to it",
                 ("structure", "floors", k, "bears_on"),
             )
         for name, length in bearing.items():
@@ -77,7 +77,7 @@ def _material(building: Building, plan: Plan, wall: PlanWall, storey: int) -> Ma
     """The material of a wall in a storey; BadGeometry if the deck has no table of that name."""
     name = plan.material_of(wall, storey)
     if name is not None and name not in building.materials:
-        raise BadGeometry(f"wall '{wall.name}': there is no [materials.{name}]", ("structure", "walls", plan.walls.index(wall)))
+        raise BadGeometry(f"wall '{wall.name}': the deck has no [materials.{name}]", ("structure", "walls", plan.walls.index(wall)))
     return building.material if name is None else building.materials[name]
 
 
@@ -90,7 +90,7 @@ def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: di
     if not sole > MEETS:
         number = plan.walls.index(wall)
         raise Refused(
-            f"wall '{wall.name}' has no masonry at the foot of storey {storey}: openings take its whole length",
+            f"wall '{wall.name}' has no masonry at the foot of storey {storey}: openings occupy its whole length",
             ("structure", "walls", number, "openings"),
         )
     mass = moment = 0.0  # kg, and about the foot kg m
@@ -101,7 +101,7 @@ def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: di
             mass += part
             moment += part * (floor + 0.5 * (low + high))
     if not mass > 0.0:
-        raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
+        raise Refused("the moving part has no weight: give a density above zero", ("material", "density"))
     weights = [Weight(GRAVITY * mass, arm, moment / mass)]
     for k in range(storey, last + 1):
         top = float(plan.levels[k]) - foot

@@ -10,10 +10,11 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import measures, solid_settlement
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.from_deck import make_model
+from extrados.analyses.dem.impact_rules import ContactValues
 from extrados.analyses.dem.job import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.settlement import farthest_settlement
-from extrados.analyses.dem.solid_model import SolidModel, SolidValues, make_solid_model
+from extrados.analyses.dem.solid_model import SolidModel, make_solid_model
 from extrados.analyses.dem.standing import compared
 from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.dem.trial import start
@@ -44,7 +45,7 @@ class Curve:
     """What is asked of one set of joints and one solver."""
 
     label: str
-    values: JointValues | SolidValues
+    values: ContactValues
     rigid: bool = False
 
 
@@ -54,7 +55,7 @@ class Search:
     def __init__(self, context: Context, options: DemDomain, model: Model | SolidModel, curves: list[Curve], rounds: float):
         self.context, self.options, self.model, self.curves = context, options, model, curves
         self.settle = options.settle or dem_model.settle_time(model)
-        self.collapse = measures.Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
+        self.collapse = measures.Collapse.of(options.collapse_displacement, model.size)
         self.job = _of_section(self, model) if isinstance(model, Model) else _of_solids(self, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
         self.residual, self.steps, self.effort = 0.0, 0, dem_run.NO_EFFORT
@@ -192,18 +193,18 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
     if at_once is not None:
         numbers["mode_II_durations_s"] = at_once
         result.arrays["elements_mode_II"] = Array(
-            at_once, ("amplitude",), "s", "shortest duration that causes collapse of the elements in their first swing"
+            at_once, ("amplitude",), "s", "shortest duration that causes collapse of the discrete elements in their first swing"
         )
         table["shortest duration, mode II"], units["shortest duration, mode II"] = at_once, "s"
     if checked is not None:
         numbers["cross_check"] = _agreement(checked, amplitudes, durations)
         result.arrays |= {
-            "duration": Array(durations, ("duration",), "s", "durations of the cells that both solvers computed"),
+            "duration": Array(durations, ("duration",), "s", "durations of the cells of the map that both solvers calculated"),
             "fails": Array(
                 checked,
                 ("solver", "amplitude", "duration"),
                 "",
-                "1 if the pulse of the cell causes collapse: solver of the deck, other solver",
+                "1 if the pulse of the cell causes collapse; first by the solver of the deck, then by the other solver",
             ),
         }
         if numbers["cross_check"].agreement_ratio < AGREE:
@@ -260,11 +261,13 @@ def _agreement(fails: np.ndarray, amplitudes: np.ndarray, durations: np.ndarray)
 def _apart(check: out.CrossCheck) -> str:
     """Where the two solvers do not agree, in words."""
     where = "; ".join(
-        f"{c.amplitude_g:.3g} g for {c.duration_s:.3g} s {'falls' if c.fails_as_given else 'stands'} as given and "
-        f"{'falls' if c.fails_by_the_other else 'stands'} by the other solver"
+        (
+            f"{c.amplitude_g:.3g} g for {c.duration_s:.3g} s {'collapses' if c.fails_as_given else 'stands'} by the solver of "
+            f"the deck and {'collapses' if c.fails_by_the_other else 'stands'} by the other solver"
+        )
         for c in check.apart[:8]
     )
-    return f"the solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells only: {where}"
+    return f"the solvers agree in only {100 * check.agreement_ratio:.0f} % of {check.cells} cells: {where}"
 
 
 def _swings_once(run: dem.Run, count: int) -> bool:
@@ -330,10 +333,10 @@ def _beside(
         tried = np.linspace(0.1 * durations[0], 1.5 * durations[-1], 120)
         found = shortest_durations(arch.body, options.pulse, amplitudes, tried, settling_time(arch), 1e-4, context.threads, context)
     except (BadGeometry, Refused, CoreError) as error:
-        result.warnings.append(f"no four-hinge curves beside these: {error}")
+        result.warnings.append(f"no curves of the four-hinge model are given for comparison: {error}")
         return {}
     for mode, shortest in zip(("mode_I", "mode_II"), found, strict=True):
-        result.arrays[mode] = Array(shortest, ("amplitude",), "s", "shortest failing duration of the four-hinge model")
+        result.arrays[mode] = Array(shortest, ("amplitude",), "s", "shortest duration that causes collapse of the four-hinge model")
         table[f"four-hinge {mode}"] = shortest
         units[f"four-hinge {mode}"] = "s"
     return {"four_hinge_mode_I_durations_s": found[0], "four_hinge_mode_II_durations_s": found[1]}
@@ -341,10 +344,10 @@ def _beside(
 
 def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> str:
     told = [
-        f"{a / GRAVITY:.3g} g for {t:.3f} s" if np.isfinite(t) else f"{a / GRAVITY:.3g} g: none of those tried"
+        f"{a / GRAVITY:.3g} g for {t:.3f} s" if np.isfinite(t) else f"{a / GRAVITY:.3g} g: none of the durations tried"
         for a, t in zip(amplitudes, shortest, strict=True)
     ]
-    text = f"Shortest {r.pulse} pulses that cause collapse: {'; '.join(told)}."
+    text = f"The shortest {r.pulse} pulses that cause collapse are: {'; '.join(told)}."
     spread = [
         (c.label, np.array([np.nan if t is None else t for t in c.shortest_durations_s]))
         for c in r.curves[1:]
@@ -354,14 +357,14 @@ def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> s
         with np.errstate(invalid="ignore"):
             worst = max(spread, key=lambda item: np.nanmax(np.abs(item[1] / shortest - 1.0), initial=0.0))
         change = np.nanmax(np.abs(worst[1] / shortest - 1.0), initial=0.0)
-        text += f" The greatest change, {100 * change:.0f} %, comes with {worst[0]}."
+        text += f" The greatest change of these durations, {100 * change:.0f} %, occurs with {worst[0]}."
     if r.cross_check is not None:
         other = [f"{t:.3f}" if t is not None else "none" for t in r.curves[-1].shortest_durations_s]
         text += (
-            f" By {r.curves[-1].label}: {', '.join(other)} s; both solvers agree in {100 * r.cross_check.agreement_ratio:.0f} % "
-            f"of {r.cross_check.cells} cells."
+            f" With {r.curves[-1].label}: {', '.join(other)} s; both solvers agree in "
+            f"{100 * r.cross_check.agreement_ratio:.0f} % of {r.cross_check.cells} cells."
         )
     mode = r.four_hinge_mode_I_durations_s
     if mode and all(t is not None for t in mode) and np.isfinite(shortest).all():
-        text += f" The four-hinge model gives {', '.join(f'{t:.3f}' for t in mode)} s (after one impact)."
+        text += f" The four-hinge model gives {', '.join(f'{t:.3f}' for t in mode)} s (collapse after one impact)."
     return text

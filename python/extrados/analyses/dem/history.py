@@ -14,9 +14,9 @@ from extrados.analyses.dem.friction import friction_threshold
 from extrados.analyses.dem.job import Runs, watched
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.perturbed import probe_chaos
-from extrados.analyses.dem.seen import Seen
+from extrados.analyses.dem.seen import Seen, begun_result, doubts_of_run, numbers_of
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.ties import section_arrays, tie_arrays, tie_columns, tie_rows
+from extrados.analyses.dem.ties import section_arrays, tie_arrays, tie_columns
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
 from extrados.analyses.dem.words import motion_answer
@@ -44,9 +44,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         found = replace(found, time=found.time + trial.starts, stop_time=found.stop_time + trial.starts)
     ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
     seen = Seen.of(model, found, options.floor is not None)
-    result = Result("dem", status="interrupted" if found.interrupted else "ok")
-    again = "; --resume continues from here" if context.checkpoint is not None and len(found.time) else ""
-    result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
+    result = begun_result(context, found)
 
     def outcome_of(one: dem.Run) -> str:
         return Seen.of(model, one, options.floor is not None).fate(trial.collapse).outcome
@@ -65,21 +63,18 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         result,
         f"{name}-perturbed",
     )
-    numbers = _numbers(options, trial, seen, ground) | chaos | {"animation": options.animation}
+    numbers = _numbers(options, trial, seen, ground) | chaos
     _store(options, seen, ground, result)
     if seen.slides:
         result.warnings.append(f"joints slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if who := numbers["off_footing"]:
         result.warnings.append(
-            f"{', '.join(who[:6])} slides off its footing: in `dem`, floor = {measures.ground_level(model):.4g} names a floor to slide on"
+            f"{', '.join(who[:6])} slides off its footing. To let detached blocks slide on a floor, give `dem` the key floor "
+            f"= {measures.ground_level(model):.4g}"
         )
-    if found.residual > 0.01:
-        result.warnings.append(f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged")
-    result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
-    if numbers["still_moving"]:
-        result.warnings.append("the structure still moves at the end of the run: a longer end_time may give another outcome")
+    result.warnings += doubts_of_run(found, chaos["violated"], numbers["still_moving"])
     if trial.idle:
-        result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
+        result.warnings.append("no motion acts on the structure: add [motion], [[initial.movements]] or [initial] rotation_ratio")
     if result.status == "ok":
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)
@@ -92,42 +87,10 @@ def _numbers(options: Dem, trial: Trial, seen: Seen, ground: np.ndarray) -> dict
     """The results of the run itself; ground: its acceleration (time) [m/s^2]."""
     model, found, names = seen.model, seen.run, seen.model.assembly.block_names
     peak = np.abs(seen.rotation).argmax(axis=0)
-    mobile = slice(0, model.rigid.count)
-    fate = seen.fate(trial.collapse)
-    return {
-        "outcome": fate.outcome,
-        "collapse_criterion": fate.criterion,
-        "collapse_time_s": fate.time,
-        "governing_block": model.rigid.names[fate.block],
-        "stopped": found.reason,
-        "stopped_by": [model.rigid.names[k] for k in found.blamed],
-        "stop_time_s": found.stop_time,
-        "still_moving": found.reason == "end" and measures.moving(found, model),
+    return numbers_of(options, seen, trial.collapse) | {
         "peak_rotation_rad": {names[i]: float(seen.rotation[peak[i], i]) for i in measures.tracked(model, options, found)},
-        "collapse_displacement_m": trial.collapse.displacement,
-        "peak_displacement_m": measures.peak_displacement(found, seen.farthest, trial.collapse.displacement),
-        "peak_slip_m": seen.sliding.peak,
-        "residual_slip_m": seen.sliding.residual,
-        "slip_ratio": seen.sliding.ratio,
-        "slip_limit_ratio": out.SLIP_LIMIT,
-        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if seen.slides else None,
-        "off_footing": [names[i] for i in seen.off_footing],
-        "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
-        "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
-        "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
-        "energy_residual_ratio": found.residual,
-        "restitution_measured": measures.restitution(found, seen.state, ground) if model.rigid.count == 1 else None,
+        "restitution_measured": measures.restitution(found, seen.state, ground) if model.count == 1 else None,
         "restitution_housner": float(BlockModel(model.assembly).housner[0]) if isinstance(model.assembly, BlockAssembly) else None,
-        "bounces": int(found.bounces[mobile].sum()),
-        "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
-        **tie_rows(model.ties, found),
-        "solver": options.solver,
-        "convergence": measures.convergence(found.effort) if options.rigid else None,
-        **measures.springs(options, model.values, found),
-        "steps": found.steps,
-        "settling_steps": found.settling_steps,
-        "time_step_s": found.step,
-        "contact_searches": found.searches,
     }
 
 
@@ -157,9 +120,11 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             measures.block_places(model, found.place), ("time", "block", "component"), "m, m, rad", "centroid and rotation of the blocks"
         ),
         "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
-        "rotation": Array(seen.rotation, ("time", "block"), "rad", "from the settled state, positive to +x"),
+        "rotation": Array(
+            seen.rotation, ("time", "block"), "rad", "displacements from the position at rest under self-weight; positive towards +x"
+        ),
         "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
-        "hinge": Array(seen.state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
+        "hinge": Array(seen.state, ("time", "joint"), "", "0 closed, -1 hinge at the first end, 1 hinge at the second end, 2 open"),
         "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints"),
         "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends"),
         "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
@@ -180,7 +145,7 @@ def _further(context: Context, options: Dem, trial: Trial, result: Result, numbe
             numbers["friction_threshold"] = friction_threshold(context, trial, options.slip)
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
-        result.reason = f"the variations or the friction search stopped: {error}. The main run is complete"
+        result.reason = f"the variations, or the search of the least friction, stopped: {error}. The main run is complete"
     except Refused as error:
         numbers["friction_threshold"] = None
         result.warnings.append(f"the least friction was not found: {error}")

@@ -24,6 +24,29 @@ class Impact:
         return {"corner": self.corner, "edge": self.edge, "rotation": self.rotation}[name]
 
 
+@dataclass(frozen=True)
+class ContactValues:
+    """Properties of all joints of a section, or of all contacts of solids (joints,), SI, the damping constant beta [s] and the
+    frequencies of impact."""
+
+    stiffness: np.ndarray
+    shear_stiffness: np.ndarray
+    friction: np.ndarray
+    cohesion: np.ndarray
+    tension: np.ndarray
+    beta: float
+    impact: Impact
+
+    @property
+    def settle_damping(self) -> float:
+        """beta that is critical at edge impact, by which joints are damped until all rests under its own weight [s]."""
+        return damping_constant(float(self.impact.edge.max()), 1.0)
+
+    def ratios(self) -> dict[str, float]:
+        """Least fraction of critical damping over the joints at each impact frequency."""
+        return {name: float(damping_ratio(self.beta, self.impact.of(name)).min()) for name in ("rotation", "corner", "edge")}
+
+
 def damping_constant(frequency: float, ratio: float = 1.0) -> float:
     """beta [s] that gives the fraction `ratio` of critical damping at a frequency [rad/s] (Eq. 7.17)."""
     return 2.0 * ratio / frequency

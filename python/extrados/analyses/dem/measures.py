@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.solid_model import SolidValues
+from extrados.analyses.dem.impact_rules import ContactValues
+from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
 from extrados.core import dem, dem3, dem_run
 from extrados.model.geometry.assembly import GROUND
@@ -108,7 +109,7 @@ def convergence(effort: dem_run.Effort) -> Convergence:
     )
 
 
-def springs(options: Dem, values: JointValues | SolidValues, found: dem_run.FoundRun) -> dict[str, float | None]:
+def springs(options: Dem, values: ContactValues, found: dem_run.FoundRun) -> dict[str, float | None]:
     """Stiffness, damping and the stable step of joints with springs; None of rigid contacts."""
     told: dict[str, float | None] = {
         "joint_stiffness_min_Pa_per_m": float(values.stiffness.min()),
@@ -169,9 +170,10 @@ class Collapse:
     drop: float
 
     @classmethod
-    def of(cls, displacement: float, size: float) -> "Collapse":
-        """Of a structure of a size [m]: half the rotation that moves a block so far at the end of a lever as long as the
-        structure, and a quarter of that displacement."""
+    def of(cls, displacement: float | None, size: float) -> "Collapse":
+        """Of a structure of a size [m], by default a fifth of it: half the rotation that moves a block so far at the end of a lever
+        as long as the structure, and a quarter of that displacement."""
+        displacement = displacement or 0.2 * size
         return cls(displacement, 0.5 * displacement / size, 0.25 * displacement)
 
     @property
@@ -196,7 +198,7 @@ class Fate:
 
 
 def fate(
-    run: dem.Run | dem3.Run,
+    run: dem_run.FoundRun,
     collapse: Collapse,
     away: np.ndarray,
     turn: np.ndarray,
@@ -232,16 +234,16 @@ def fate(
     return Fate("collapse", criterion, when, block)
 
 
-def peak_displacement(run: dem.Run | dem3.Run, farthest: float, limit: float) -> float:
+def peak_displacement(run: dem_run.FoundRun, farthest: float, limit: float) -> float:
     """Greatest displacement of any block [m]: `farthest` of the output times; a run that was stopped since a block had passed
     the limit [m] was stopped between two of them."""
     return max(farthest, limit) if run.reason == "collapse" else farthest
 
 
-def moving(run: dem.Run, model: Model) -> bool:
+def moving(run: dem_run.FoundRun, model: Model | SolidModel) -> bool:
     """Is there motion worth the name at the end: beside the most there was, and beside the weight times the size?"""
     kinetic = run.energy["kinetic"]
-    noise = 1e-6 * float(model.rigid.mass.sum()) * GRAVITY * model.size
+    noise = 1e-6 * float(model.mass.sum()) * GRAVITY * model.size
     return bool(len(kinetic) and kinetic[-1] > max(1e-3 * kinetic.max(), noise))
 
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
-from extrados.analyses.dem.solid_model import SolidModel, SolidValues
+from extrados.analyses.dem.impact_rules import ContactValues
+from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import DemTable
 from extrados.analyses.dem.ties import NO_TIES, ElementTies
 from extrados.core import dem, dem_run
@@ -22,16 +23,9 @@ Found = TypeVar("Found", bound=dem_run.FoundRun)
 
 
 @dataclass(frozen=True)
-class JointValues:
-    """Properties of all joints of an assembly (joints,), SI, and the damping constant beta [s]."""
+class JointValues(ContactValues):
+    """Properties of all joints of an assembly, and their lengths (joints,) [m]."""
 
-    stiffness: np.ndarray
-    shear_stiffness: np.ndarray
-    friction: np.ndarray
-    cohesion: np.ndarray
-    tension: np.ndarray
-    beta: float
-    impact: impact_rules.Impact
     length: np.ndarray
 
     def scaled(self, stiffness: float = 1.0, damping: float = 1.0, friction: float | None = None) -> "JointValues":
@@ -47,15 +41,6 @@ class JointValues:
             friction=self.friction if friction is None else np.full_like(self.friction, friction),
         )
 
-    @property
-    def settle_damping(self) -> float:
-        """beta that is critical at edge impact, by which joints are damped until all rests under its own weight [s]."""
-        return impact_rules.damping_constant(float(self.impact.edge.max()), 1.0)
-
-    def ratios(self) -> dict[str, float]:
-        """Least fraction of critical damping over the joints at each impact frequency."""
-        return {name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min()) for name in ("rotation", "corner", "edge")}
-
 
 @dataclass(frozen=True)
 class Model:
@@ -65,6 +50,16 @@ class Model:
     rigid: RigidBodies
     values: JointValues
     ties: ElementTies = NO_TIES
+
+    @property
+    def count(self) -> int:
+        """Mobile bodies."""
+        return self.rigid.count
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Masses of the bodies [kg]."""
+        return self.rigid.mass
 
     @property
     def body_names(self) -> list[str]:
@@ -123,13 +118,17 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
     )
     raise {"unsettled": Falls, "restless": Restless}.get(run.reason, Refused)(
         {
-            "step": f"the time step is above the critical one, {run.critical_step:.3g} s",
+            "step": f"the time step exceeds the critical time step, {run.critical_step:.3g} s",
             "overlap": f"{' and '.join(names)} overlap at the start",
             "unsettled": f"the structure does not stand under its own weight: {first} falls",
-            "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps, {first} least of "
-            f"all: elements do not show whether it stands{wedged}",
-            "blow-up": f"the energy balance does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
-            f"{first}; a smaller step may help",
+            "restless": (
+                f"the structure does not come to rest under its own weight in {run.settling_steps} steps ({first} moves most), so "
+                f"discrete elements do not show whether it stands{wedged}"
+            ),
+            "blow-up": (
+                f"the error of the energy balance is too large: the run was stopped at step {run.steps} ({run.stop_time:.4g} s), "
+                f"and {first} is the fastest block. Try a smaller time step"
+            ),
         }.get(run.reason, f"stopped: {run.reason} ({first})")
     )
 
@@ -142,7 +141,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
         return found
     found += doubts_of_springs(values or model.values)
     if options.mass_damping > 0.0:
-        found.append("mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe")
+        found.append("mass-proportional damping acts like air on a rigid block that rocks. This has no physical meaning here and is unsafe")
     return found
 
 
@@ -151,26 +150,28 @@ def adjusted(model: Model) -> list[str]:
     rigid, tolerance, found = model.rigid, model.assembly.tolerance, []
     if rigid.moved > 1e-6 * model.size:
         found.append(
-            f"the calculation moved faces of blocks by up to {1e3 * rigid.moved:.2g} mm onto their joints "
-            f"(contact_tolerance {1e3 * tolerance:g} mm)"
+            f"the program moved faces of blocks by up to {1e3 * rigid.moved:.2g} mm onto their joints (contact_tolerance "
+            f"{1e3 * tolerance:g} mm)"
         )
     if rigid.cut > 0.0:
         why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"
-        found.append(f"overlaps of blocks of up to {1e3 * rigid.cut:.2g} mm are cut back ({why})")
+        found.append(f"the program cut back overlaps of blocks of up to {1e3 * rigid.cut:.2g} mm ({why})")
     return found
 
 
-def doubts_of_springs(values: JointValues | SolidValues) -> list[str]:
+def doubts_of_springs(values: ContactValues) -> list[str]:
     """Warnings that impacts are damped too little, and that mortar bears more in bending than an elastic joint."""
     ratio, found = values.ratios(), []
     if np.nanmax(values.tension, initial=0.0) > 0.0:
         found.append(
-            "the tensile strength of mortar acts at the ends or corners of a joint: in bending the joint carries up to three times the moment of an elastic one"
+            "the tensile strength of mortar acts at the ends or corners of a joint, so in bending the joint carries up to "
+            "three times the moment of an elastic joint"
         )
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
-            f"under-damped: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} % at edge "
-            f"impact, advised are at least 10 % and 25 %; blocks may bounce and walk"
+            f"under-damped: the damping is {100 * ratio['rotation']:.3g} % of critical at rotational impact and "
+            f"{100 * ratio['edge']:.3g} % at edge impact. At least 10 % and 25 % are advised; with less, blocks may bounce "
+            "and walk"
         )
     return found
 
@@ -180,8 +181,11 @@ def unconverged(effort: dem_run.Effort) -> list[str]:
     if not effort.open_steps:
         return []
     return [
-        f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps: at the worst, at {effort.worst:.4g} s, "
-        f"they are off by {effort.residual:.2g} of the velocity that gravity gives in a step; a smaller time_step may help"
+        (
+            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest error, at "
+            f"{effort.worst:.4g} s, is {effort.residual:.2g} of the velocity that gravity adds in a step. Try a smaller "
+            "time_step"
+        )
     ]
 
 

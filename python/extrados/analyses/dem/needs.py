@@ -7,7 +7,7 @@ from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
-from extrados.analyses.dem.ties import refuse_rigid_ties
+from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
@@ -15,6 +15,7 @@ from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.structures.arch import ArchAssembly
 from extrados.model.structures.block import BlockAssembly
 from extrados.views.building import Building
+from extrados.views.solids.strands import damper_strands
 
 #: Numbers that a history holds of a block and of a joint at each time, its copies for tables included
 VALUES_OF_BLOCK, VALUES_OF_JOINT = 20, 12
@@ -37,7 +38,7 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     if _rigid(options):
         yield lambda: _refuse_springs(building)
     yield lambda: refuse_rigid_ties(building)
-    yield building.anchored
+    yield lambda: section_strands(building)
     if building.joints.damping == "restitution" and building.joints.beta is None:
         yield lambda: _refuse_restitution(building)
     if building.initial.movements:
@@ -58,8 +59,10 @@ def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
     most = SHARE * room.total() / (8.0 * values)
     if options.end_time / options.output_step > most:
         raise Refused(
-            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store; "
-            f"the least output_step that fits is {options.end_time / most:.2g} s",
+            (
+                f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: give an "
+                f"output_step of at least {options.end_time / most:.2g} s"
+            ),
             ("analysis", "output_step"),
         )
 
@@ -72,9 +75,9 @@ def _rigid(options: tables.DemTable) -> bool:
 def _refuse_bars(building: Building) -> None:
     key = ("analysis", "merge")
     if not isinstance(building.blocks(), ArchAssembly):
-        raise Refused('merge = "three-bars" needs an arch', key)
+        raise Refused('merge = "three-bars" requires an arch', key)
     if building.initial.rotation_ratio:
-        raise Refused('[initial] rotation_ratio: glued voussoirs do not start rotated; merge = "none" does', key)
+        raise Refused('voussoirs that are merged cannot start with a rotation: with [initial] rotation_ratio, give merge = "none"', key)
 
 
 def _refuse_springs(building: Building) -> None:
@@ -86,7 +89,7 @@ def _refuse_springs(building: Building) -> None:
 
 def _refuse_restitution(building: Building) -> None:
     if not isinstance(building.blocks(), BlockAssembly):
-        raise Refused('"restitution" is of a single block; say damping = "edge" and vary it', ("joints", "damping"))
+        raise Refused('"restitution" applies only to a single block: give damping = "edge", and vary it', ("joints", "damping"))
 
 
 def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: SolidAssembly) -> Iterator[Need]:
@@ -100,6 +103,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     yield lambda: refuse_stones(building, stones, _rigid(options))
     yield lambda: refuse_rigid_ties(building)
     yield building.strands
+    yield lambda: damper_strands(building)
     if not isinstance(options, tables.Dem):
         return
     yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))
@@ -113,4 +117,4 @@ def refuse_untracked(names: list[str], options: tables.Dem) -> None:
     """Refused where a block that is to be followed is not there."""
     for k, name in enumerate(options.track):
         if name not in names:
-            raise Refused(f"names no block '{name}'; there are {', '.join(names[:8])}", ("analysis", "track", k))
+            raise Refused(f"no block has the name '{name}'; the first names are {', '.join(names[:8])}", ("analysis", "track", k))

@@ -22,7 +22,11 @@ def chaos_of(other: str, grown: float, turns: float) -> dict[str, Any]:
     """Results on chaos, by the outcome under the motion times FACTOR, the growth of the perturbation and the least one that turns
     the outcome, 0 where none does (see analyses.chaos)."""
     violated = violated_by_chaos(
-        grown, turns, "the displacement of a block", "the one that counts as collapse", "repeat it under other factors on the motion"
+        grown,
+        turns,
+        "the displacement of a block",
+        "the displacement that counts as collapse",
+        "repeat the run with other scale factors of the motion",
     )
     return {"decided_by_last_digits": bool(violated), "perturbation_growth": grown, "perturbed_outcome": other, "violated": violated}
 
@@ -63,6 +67,6 @@ def probe_chaos(
             turns = turning(outcome, [ends[factor] for factor in perturbed()])
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
-        result.reason = f"under the perturbed motion: {error}; the run before it is complete"
+        result.reason = f"the run under the perturbed motion failed: {error}; the run before it is complete"
         return unknown
     return chaos_of(ends[FACTOR], most, turns)

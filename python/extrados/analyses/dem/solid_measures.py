@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, SLIDES, Collapse, Fate, Slip, blocks_off, fate, off_footing
+from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, Slip, off_footing
+from extrados.analyses.dem.seen import BlocksSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.core import dem3
 from extrados.model.geometry.solids.contacts import GROUND
@@ -13,13 +14,11 @@ from extrados.results.dem import APART, CLOSED, ROCKS
 
 
 @dataclass(frozen=True)
-class SolidsSeen:
-    """What is read off a run.
+class SolidsSeen(BlocksSeen):
+    """What is read off a run in space, too; its state is CLOSED, ROCKS where some corner of a contact is open, APART where all are.
 
     turn (time, block, 3): rotation vectors from the settled attitude [rad]; opening (time, contact): of the corner that
-    gapes most [m]; slip (time, contact): along the contact at its most closed corner [m]; state (time, contact): CLOSED,
-    ROCKS where some corner is open, APART where all are; off (time, contact): the block has slid off its footing; drop (time,
-    block): losses of height [m]; away: displacements [m].
+    gapes most [m]; slip (time, contact): along the contact at its most closed corner [m].
     """
 
     model: SolidModel
@@ -27,41 +26,30 @@ class SolidsSeen:
     turn: np.ndarray
     opening: np.ndarray
     slip: np.ndarray
-    state: np.ndarray
-    off: np.ndarray
-    away: np.ndarray
-    drop: np.ndarray
-    sliding: Slip
-
-    @property
-    def slides(self) -> bool:
-        """Whether some contact slid."""
-        return self.sliding.ratio > SLIDES
-
-    @property
-    def off_footing(self) -> list[int]:
-        """Numbers of the blocks that slid off their footings."""
-        return blocks_off(self.model.assembly.a, self.model.assembly.b, self.off)
-
-    def fate(self, collapse: Collapse) -> Fate:
-        """How the run ends. A block that tips over the end of its footing has slid, and does not rock on its contact."""
-        rocks = bool(((self.state != CLOSED) & ~self.off).any())
-        return fate(self.run, collapse, self.away, self.angle, self.drop, set(self.off_footing), rocks, self.slides)
 
     @property
     def angle(self) -> np.ndarray:
         """How far each block has turned (time, block) [rad]."""
-        return np.linalg.norm(self.turn, axis=2)
+        return self.moved[1]
 
 
 def look(model: SolidModel, run: dem3.Run, floor: bool) -> SolidsSeen:
     """Everything that is read off a run; floor: blocks slide on a level floor, not off their footings."""
     turn = turns(model, run)
     opening, slip, state = contacts(model, run)
-    away, drop = displacements(model, run), run.settled[: model.count, 2] - run.place[:, : model.count, 2]
+    drop = run.settled[: model.count, 2] - run.place[:, : model.count, 2]
     one, width = model.assembly, widths(model)
-    off = np.zeros(state.shape, dtype=bool) if floor else off_footing(one.a, one.b, state, slip, width)
-    return SolidsSeen(model, run, turn, opening, slip, state, off, away, drop, Slip.of(state, slip, width))
+    return SolidsSeen(
+        model=model,
+        run=run,
+        state=state,
+        off=np.zeros(state.shape, dtype=bool) if floor else off_footing(one.a, one.b, state, slip, width),
+        moved=(displacements(model, run), np.linalg.norm(turn, axis=2), drop),
+        sliding=Slip.of(state, slip, width),
+        turn=turn,
+        opening=opening,
+        slip=slip,
+    )
 
 
 def followed(seen: SolidsSeen, names: list[str]) -> list[int]:

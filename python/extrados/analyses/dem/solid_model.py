@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
+from extrados.analyses.dem.impact_rules import ContactValues
 from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
 from extrados.analyses.dem.ties import NO_TIES, ElementTies, element_ties
 from extrados.core import dem3
@@ -14,6 +15,7 @@ from extrados.model.errors import Key
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.views.building import Building
+from extrados.views.solids.strands import damper_strands
 from extrados.views.solids.supports import Supports, supports_of
 
 #: What is refused of them, in words
@@ -22,40 +24,23 @@ FACING = -0.3  # cosine between faces of a stone that look away from each other
 
 
 @dataclass(frozen=True)
-class SolidValues:
-    """Properties of all contacts of an assembly (nj), SI, the damping constant beta [s] and the frequencies of impact."""
-
-    stiffness: np.ndarray
-    shear_stiffness: np.ndarray
-    friction: np.ndarray
-    cohesion: np.ndarray
-    tension: np.ndarray
-    beta: float
-    impact: impact_rules.Impact
-
-    @property
-    def settle_damping(self) -> float:
-        """beta that is critical at edge impact, by which contacts are damped until all rests under its own weight [s]."""
-        return impact_rules.damping_constant(float(self.impact.edge.max()), 1.0)
-
-    def ratios(self) -> dict[str, float]:
-        """Least fraction of critical damping over the contacts at each frequency of impact."""
-        return {name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min()) for name in ("rotation", "corner", "edge")}
-
-
-@dataclass(frozen=True)
 class SolidModel:
     """Blocks in space with what they stand on. Bodies 0..count-1 are the blocks, the rest supports."""
 
     assembly: SolidAssembly
     supports: Supports
-    values: SolidValues
+    values: ContactValues
     ties: ElementTies = NO_TIES
 
     @property
     def count(self) -> int:
         """Mobile bodies."""
         return len(self.assembly.mass)
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Masses of the mobile bodies [kg]."""
+        return self.assembly.mass
 
     @property
     def size(self) -> float:
@@ -119,7 +104,7 @@ class SolidModel:
         return dem3.Dowels(stands, one.keys.point, axis, np.array(stiffness), one.keys.strength, one.keys.reach, v.beta)
 
 
-def _law(values: SolidValues, stiffness: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
+def _law(values: ContactValues, stiffness: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
     stiffness, shear, friction, cohesion, tension = (float(f"{x:.12g}") for x in (stiffness, shear, friction, cohesion, tension))
     return Law(stiffness, shear, friction, cohesion=cohesion, tension=tension, damping=values.beta)
 
@@ -127,7 +112,7 @@ def _law(values: SolidValues, stiffness: float, shear: float, friction: float, c
 def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     """The model of a building's blocks in space."""
     assembly = building.solids()
-    ties = element_ties(building, building.strands(), np.arange(len(assembly.mass)))
+    ties = element_ties(building, (*building.strands(), *damper_strands(building)), np.arange(len(assembly.mass)))
     return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties)
 
 
@@ -152,10 +137,10 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
     if not options.rigid or (isinstance(options, DemDomain) and options.cross_check):  # something asks how springs are
         asked += [
-            ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
+            ('stiffness_rule = "thesis" belongs to plane sections', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
         ]
-    return [(f"dem of solids cannot take {what} into account: leave it out", key) for what, there, key in asked if there]
+    return [(f"dem of solids cannot include {what}: remove it", key) for what, there, key in asked if there]
 
 
 def refuse_mortar(building: Building, assembly: SolidAssembly | None = None) -> None:
@@ -170,8 +155,10 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
     for part, owner in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         if (most := max(map(len, part.faces))) > dem3.MOST_CORNERS:
             raise Refused(
-                f"{assembly.block_names[owner]} has a face of {most} corners: dem of solids takes up to {dem3.MOST_CORNERS}; cut it, or "
-                "draw it with fewer",
+                (
+                    f"{assembly.block_names[owner]} has a face with {most} corners, and dem of solids allows up to "
+                    f"{dem3.MOST_CORNERS}: divide the face, or draw it with fewer corners"
+                ),
                 ("structure",),
             )
     if rigid:
@@ -179,10 +166,10 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
         if assembly.keys is not None:
             raise Refused(f"{RIGID} have no dowels", ("structure", "dowels"))
     if len(assembly.fill):
-        raise Refused("fill: `dem` of solids does not consider weights that rest on the blocks; remove the fill", ("structure", "fill"))
+        raise Refused("fill: `dem` of solids does not include weights that rest on the blocks; remove the fill", ("structure", "fill"))
 
 
-def solid_values(building: Building, assembly: SolidAssembly) -> SolidValues:
+def solid_values(building: Building, assembly: SolidAssembly) -> ContactValues:
     """Properties of all contacts by the rules and exceptions of [joints]."""
     joints = building.joints
     given = building.joint_property("normal_stiffness", assembly)
@@ -194,7 +181,7 @@ def solid_values(building: Building, assembly: SolidAssembly) -> SolidValues:
         beta = impact_rules.damping_constant(float(impact.of(joints.damping).max()), joints.damping_ratio)
     shear = np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
     friction, cohesion, tension = (building.joint_property(name, assembly) for name in ("friction", "cohesion", "tension"))
-    return SolidValues(stiffness, shear, friction, np.nan_to_num(cohesion), np.nan_to_num(tension), beta, impact)
+    return ContactValues(stiffness, shear, friction, np.nan_to_num(cohesion), np.nan_to_num(tension), beta, impact)
 
 
 def _sides(assembly: SolidAssembly) -> list[tuple[np.ndarray, np.ndarray]]:

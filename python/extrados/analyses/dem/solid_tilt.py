@@ -8,45 +8,31 @@ from extrados.analyses.context import Context
 from extrados.analyses.dem import measures, solid_measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.job import SolidRuns, SolidTask
-from extrados.analyses.dem.solid_history import core_options, run_arrays
+from extrados.analyses.dem.solid_history import contact_arrays, core_options, run_arrays
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.ties import tie_rows
-from extrados.analyses.dem.tilt import GOES, RAMP, capacities, pushed, slides, unused
+from extrados.analyses.dem.tilt import GOES, capacities, held, numbers_of_tilt, pushed, slides, unused
 from extrados.analyses.dem.words import solid_tilt_answer
 from extrados.core import dem3
 from extrados.results import dem as out
-from extrados.results.model import Array, Result
+from extrados.results.model import Result
 
 
 def run(context: Context, options: Dem, model: SolidModel) -> Result:
     """Brought in slowly, held, bisected, in both senses."""
     if without := unused(context, options):
-        context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
-    base = replace(
-        core_options(context, options, model),
-        end_time=RAMP + dem_model.settle_time(model),
-        stop_at_rest=False,
-        output_step=0.05,
-        collapse=options.collapse_displacement or 0.05 * model.size,
-        collapse_turn=0.0,
-        collapse_drop=0.0,  # under a constant push a block that slides slides on
-    )
+        context.warnings.append(f"these have no effect in a tilt test: {', '.join(without)}")
+    base = replace(core_options(context, options, model), **held(options, model))
     bodies = model.bodies()
-    (collapse, last), (back, back_run) = capacities(
+    found = capacities(
         context,
         options,
         lambda asked: SolidRuns(bodies, [SolidTask(base, pushed(a, base.end_time)) for a in asked]),
         lambda run: dem_model.checked(run, model),
     )
-    effort = last.effort.with_(back_run.effort)
+    last, back_run = (run for _, run in found)
     r = out.SolidDemTilt(
-        test="tilt",
-        outcome="collapse",
-        collapse_acceleration_g=collapse,
-        collapse_acceleration_opposite_g=back,
-        tilt_angle_deg=float(np.degrees(np.arctan(collapse))),
-        tilt_angle_opposite_deg=float(np.degrees(np.arctan(back))),
+        **numbers_of_tilt(options, model, found),
         load_direction_deg=options.direction or 0.0,
         blocks=model.count,
         contacts=len(model.assembly.a),
@@ -54,24 +40,12 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         opening_contacts_opposite=_openings(model, back_run),
         interval=len(model.assembly.a) > model.count
         and any(slides(solid_measures.contacts(model, one)[1][_begun(model, one)], model.size) for one in (last, back_run)),
-        energy_residual_ratio=max(last.residual, back_run.residual),
-        time_step_s=last.step,
-        steps=last.steps,
-        **tie_rows(model.ties, last),
-        solver=options.solver,
-        convergence=measures.convergence(effort) if options.rigid else None,
-        beta_s=None if options.rigid else model.values.beta,
     )
     result = Result("dem")
-    result.warnings += dem_model.unconverged(effort)
+    result.warnings += dem_model.unconverged(last.effort.with_(back_run.effort))
     result.results = r
     opening, slip, state = solid_measures.contacts(model, last)
-    result.arrays = {
-        **run_arrays(model, last, last.time[[_begun(model, last), -1]]),
-        "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 apart"),
-        "opening": Array(opening, ("time", "contact"), "m", "gap at the corner of each contact that gapes most"),
-        "slip": Array(slip, ("time", "contact"), "m", "slip at its most closed corner"),
-    }
+    result.arrays = {**run_arrays(model, last, last.time[[_begun(model, last), -1]]), **contact_arrays(opening, slip, state)}
     result.answer = solid_tilt_answer(r)
     return result
 

@@ -21,10 +21,12 @@ from extrados.model.errors import WHOLE
 from extrados.results.model import Result
 from extrados.views.building import Building
 
-WEDGED = "limit analysis does not prove collapse: friction may hold a wedged block by forces that elements do not start with"
+WEDGED = (
+    "limit analysis does not prove collapse: friction may hold a wedged block by forces that do not exist at the start of discrete elements"
+)
 JAMMED = (
-    "on rigid contacts it is in equilibrium by forces that self-weight does not cause, as friction holds a wedged block; "
-    "on springs, which start without such forces,"
+    "with rigid contacts the structure is in equilibrium by forces that self-weight does not cause, for instance at "
+    "a block wedged by friction. With springs, which start without such forces,"
 )
 #: Steps of springs in which cases/solid/dem-cross-vault comes to rest, 14 times over
 SETTLING = 20_000
@@ -71,7 +73,7 @@ def _contradiction(building: Building, proof_of: Callable[[Building], CannotStan
         return ""
     if proof is None:
         return ""
-    return f"elements stand {_held(building, proof_of)}, but limit analysis finds collapse under self-weight: {proof}"
+    return f"discrete elements stand {_held(building, proof_of)}, but limit analysis finds collapse under self-weight: {proof}"
 
 
 def left_out(model: Model | SolidModel) -> str:
@@ -82,7 +84,7 @@ def left_out(model: Model | SolidModel) -> str:
         count, most, what = model.count, MOST_SOLIDS, "solids"
     if count <= most:
         return ""
-    return f"no other method checked whether it stands: it has {count} {what}, and the check covers up to {most}"
+    return f"no other method checked whether the structure stands: it has {count} {what}, and the check is limited to {most}"
 
 
 def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
@@ -104,9 +106,12 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     try:
         checked(found, model)
     except Restless:
-        return ("", f"on springs it does not come to rest in {SETTLING} steps: equilibrium by jamming alone is not excluded")
+        return (
+            "",
+            (f"with springs the structure does not come to rest in {SETTLING} steps, so equilibrium only by jammed blocks is not excluded"),
+        )
     except Falls:
-        answer = "Its initial equilibrium may be by jamming alone: settled on springs it collapses."
+        answer = "The initial equilibrium may depend on jammed blocks: with springs the structure collapses as it settles."
         return answer, f"{JAMMED} {model.body_names[found.blamed[0]]} falls"
     return "", ""
 
@@ -129,8 +134,8 @@ def proof_of_solids(building: Building) -> CannotStand | None:
         return None
     name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
     return CannotStand(
-        f"{name} cannot be in equilibrium; certificate: a collapse motion, fastest at {name}, that no contact hinders and in which the "
-        "weights do work"
+        f"{name} cannot be in equilibrium; certificate: a mechanism, fastest at {name}, that no contact resists and in "
+        "which the weights do positive work"
     )
 
 
@@ -139,5 +144,5 @@ def _held(building: Building, proof_of: Callable[[Building], CannotStand | None]
     assembly = building.solids() if proof_of is proof_of_solids else None
     for name in ("cohesion", "tension"):
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
-            return "by the cohesion and tension of its joints, which limit analysis neglects"
+            return "because of the cohesion and tension of the joints, which limit analysis neglects"
     return "for no known reason"

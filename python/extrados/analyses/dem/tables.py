@@ -51,7 +51,7 @@ def of_springs(building: "Building") -> set[str]:
 class DemTable(BuildingAnalysis):
     """What all analyses with discrete elements ask."""
 
-    bears: ClassVar = ("[[ties]]",)
+    bears: ClassVar = ("[[ties]]", "[[dampers]]")
 
     uses: ClassVar = (
         "material.density",
@@ -77,25 +77,38 @@ class DemTable(BuildingAnalysis):
     )
     solver: Literal["compliant", "nonsmooth"] = key(
         "compliant",
-        "springs and dashpots at the joints, or rigid contacts that neither overlap nor pull (Moreau 1988, "
-        "Jean 1999): no stiffness, no damping, large time steps; each checks the other",
+        (
+            "model of the joints: springs and dashpots, or rigid contacts without overlap or tension (Moreau 1988, Jean "
+            "1999). Rigid contacts need no stiffness and no damping, and allow large time steps. Each solver can check the "
+            "other"
+        ),
     )
     rebound: float = key(
-        0.0, "nonsmooth: Newton's coefficient of restitution at each contact point; 0 is the loss of Housner's block", ge=0, le=1
+        0.0,
+        (
+            'for solver = "nonsmooth": Newton\'s coefficient of restitution at each contact point; 0 gives the energy loss of '
+            "Housner's block"
+        ),
+        ge=0,
+        le=1,
     )
-    mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking", ge=0, le=1e4)
-    merge: Literal["none", "three-bars"] = key("none", "glue the voussoirs of an arch into the three links of its four-hinge mechanism")
-    fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
+    mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
+    merge: Literal["none", "three-bars"] = key("none", "join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism")
+    fraction: float = key(0.3, "ratio of the time step to the critical time step", gt=0, le=0.9)
     time_step: Time | None = key(
         None,
-        "instead of the fraction of the critical step, or nonsmooth of a 500th of the time of a free fall by the size "
-        "of the smallest block",
+        (
+            "time step. Default: the given fraction of the critical time step; for nonsmooth, 1/500 of the time of a free "
+            "fall over the size of the smallest block"
+        ),
         gt=0,
     )
     floor: Length | None = key(
         None,
-        "height of a level floor on which detached blocks land and slide; default none, but a footing a "
-        "quarter wider on both sides under each joint to the ground",
+        (
+            "height of a level floor on which detached blocks land and slide. Default: no floor, but a footing under each "
+            "joint to the ground, a quarter wider than the joint on both sides"
+        ),
     )
 
     @property
@@ -118,7 +131,7 @@ class DemTable(BuildingAnalysis):
         """What only the other solver knows is refused."""
         given = self.model_fields_set
         if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness"})):
-            raise ValueError(f'{wrong[0]} is of solver = "compliant": rigid contacts have no stiffness and no damping')
+            raise ValueError(f'{wrong[0]} belongs to solver = "compliant": rigid contacts have no stiffness and no damping')
         if not self.rigid and (wrong := sorted(given & {"rebound", "quasi_static"})):
             raise ValueError(f'{wrong[0]} needs solver = "nonsmooth"')
         return self
@@ -130,8 +143,10 @@ class SpatialDem(DemTable):
     solid: ClassVar = True
     direction: Angle | None = key(
         None,
-        "direction in plan of the horizontal motion or load, from +x to +y; with it, and for structures without a plane "
-        "section, the blocks are solids",
+        (
+            "direction of the horizontal motion or load in plan: angle from +x towards +y. With this key, and for structures "
+            "without a plane section, the blocks are solids"
+        ),
         ge=-360,
         le=360,
     )
@@ -149,37 +164,54 @@ class Dem(SpatialDem, Animated):
     starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
     quasi_static: bool = key(
-        False, "nonsmooth: without inertia, so that moving supports are followed through large displacements until collapse"
+        False,
+        ('for solver = "nonsmooth": neglect inertia, so that moving supports are followed through large displacements up to collapse'),
     )
-    test: Literal["motion", "tilt"] = key("motion", "follow the motion, or find the constant acceleration of collapse")
+    test: Literal["motion", "tilt"] = key(
+        "motion", "type of the test: apply the motion, or find the constant acceleration that causes collapse"
+    )
     end_time: Time | None = key(
-        None, "end of the run; default the end of the motion, and the time to come to rest or to collapse; a run at rest ends earlier", gt=0
-    )
-    output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
-    base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
-    collapse_displacement: Length | None = key(
         None,
-        "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, also if it "
-        "slides; default a fifth of the structure's size, in a tilt test a twentieth",
+        (
+            "end of the run. Default: the end of the motion plus the time to come to rest or to collapse; the run ends "
+            "earlier if all blocks are at rest"
+        ),
         gt=0,
     )
-    domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
-    stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
+    output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
+    base: Literal["body-force", "moving"] = key("body-force", "representation of the ground motion; both options give the same result")
+    collapse_displacement: Length | None = key(
+        None,
+        (
+            "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, "
+            "also if it slides. Default: 1/5 of the size of the structure; in a tilt test 1/20"
+        ),
+        gt=0,
+    )
+    domain: float = key(
+        10.0,
+        ("greatest distance of a block from the structure, in multiples of the size of the structure; the run ends beyond it"),
+        gt=1,
+        le=1000,
+    )
+    stop_at_collapse: bool = key(True, "end the run when a block has moved by the collapse displacement")
     perturbed: bool = key(
         True,
-        "also follow the motion times 1 + 1e-6, to find whether the response is chaotic; takes as long as the run itself, ten times as "
-        "long where the perturbation grows a thousandfold",
+        (
+            "also run the motion times 1 + 1e-6, to find whether the response is chaotic. This doubles the time of the run; "
+            "if the perturbation grows a thousandfold, the time is ten times as long"
+        ),
     )
-    track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
-    snapshot_times: list[Time] = key([], "draw the structure at these times; default six characteristic ones", max_length=24)
+    track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
+    snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
     vtk: bool = key(False, "write VTU files and a PVD collection")
-    vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
-    vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)
+    vary_damping: list[Positive] = key([], "also run with beta multiplied by each of these factors", max_length=50)
+    vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses multiplied by each of these factors", max_length=50)
     vary_friction: list[Positive] = key(
-        [], "also run with these coefficients of friction at all joints, those of [[joints.types]] too", max_length=50
+        [], "also run with each of these coefficients of friction at all joints, including those of [[joints.types]]", max_length=50
     )
-    find_friction: bool = key(False, "also find the least friction, the same at all joints, at which no joint slides")
-    slip: Length = key(1e-4, "slip that counts as sliding in that search", gt=0)
+    find_friction: bool = key(False, "also find the least coefficient of friction, equal at all joints, at which no joint slides")
+    slip: Length = key(1e-4, "slip that counts as sliding in the search of the least friction", gt=0)
     tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
     tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
 
@@ -190,38 +222,50 @@ class DemDomain(SpatialDem):
     kind: Literal["dem-domain"]
     starter_structure: ClassVar = "block"
     starter: ClassVar = {"amplitudes": '["0.5 g", "0.7 g"]', "durations": "[0.2, 0.4, 0.8]", "accuracy": "0.02"}
-    pulse: Literal["step", "sine"] = key("step", "step pulse of duration t_p, or one sine of period T_p")
-    amplitudes: list[Acceleration] = key(about="amplitudes at which the shortest failing duration is sought", min_length=1, max_length=200)
-    durations: list[Time] = key(about="durations that are tried first, ascending", min_length=2, max_length=500)
+    pulse: Literal["step", "sine"] = key("step", "shape: step pulse of duration t_p, or a single sine of period T_p")
+    amplitudes: list[Acceleration] = key(
+        about="amplitudes at which the shortest duration that causes collapse is searched", min_length=1, max_length=200
+    )
+    durations: list[Time] = key(about="durations that are tried first, in increasing order", min_length=2, max_length=500)
     accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
-    settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
+    settle: Time | None = key(None, "time after the pulse in which the structure must come to rest or collapse", gt=0)
     collapse_displacement: Length | None = key(
         None,
-        "displacement of a block that counts as collapse, if the block also rotates or loses height; default a fifth of the "
-        "structure's size",
+        (
+            "displacement of a block that counts as collapse, if the block also rotates or loses height; default: 1/5 of the "
+            "size of the structure"
+        ),
         gt=0,
     )
     mode_II: bool = key(
         False,
-        "also the shortest pulses that cause collapse in the first swing, before any impact; with merge = "
-        '"three-bars" beside the four-hinge curve of that name',
+        (
+            "also calculate the shortest pulses that cause collapse in the first swing, before any impact. With merge = "
+            '"three-bars" the four-hinge curve of the same name is given for comparison'
+        ),
         source="thesis Fig. 7-11",
     )
     cross_check: bool = key(
         False,
-        "also by the other solver: its curve, and the share of the cells of all amplitudes and durations in which both "
-        "have the same outcome",
+        (
+            "also calculate with the other solver: its failure curve, and the share of the cells of all amplitudes and "
+            "durations in which both solvers give the same outcome"
+        ),
     )
-    vary_damping: list[Positive] = key([], "further curves with beta times these factors", max_length=20)
-    vary_stiffness: list[Positive] = key([], "further curves with joint stiffnesses times these factors", max_length=20)
+    vary_damping: list[Positive] = key([], "further failure curves with beta multiplied by each of these factors", max_length=20)
+    vary_stiffness: list[Positive] = key(
+        [], "further failure curves with joint stiffnesses multiplied by each of these factors", max_length=20
+    )
     vary_friction: list[Positive] = key(
-        [], "further curves with these coefficients of friction at all joints, those of [[joints.types]] too", max_length=20
+        [],
+        ("further failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]"),
+        max_length=20,
     )
 
     @model_validator(mode="after")
     def _ascending(self) -> "DemDomain":
         if any(b <= a for a, b in itertools.pairwise(self.durations)) or self.durations[0] <= 0.0:
-            raise ValueError("durations must ascend from above zero")
+            raise ValueError("durations must be above zero and increase")
         if min(self.amplitudes) <= 0.0:
             raise ValueError("amplitudes must be above zero")
         return self

@@ -1,4 +1,4 @@
-"""Ties, chains and hoops of a building as the discrete elements take them."""
+"""Ties, chains, hoops and dampers of a building as the discrete elements take them."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -7,6 +7,10 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.core.dem_run import FoundRun, Ties
+from extrados.model.devices import Damper
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.anchors import stone_at
+from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.strands import Strand
 from extrados.results.dem import TieRun
 from extrados.results.model import Array
@@ -16,11 +20,12 @@ from extrados.views.solids.strands import strand_names
 
 @dataclass(frozen=True)
 class ElementTies:
-    """The ties of a model, by their names: of a bonded chain each segment; core None without any."""
+    """The ties and dampers of a model, by their names: of a bonded chain each segment; core None without any."""
 
     names: tuple[str, ...] = ()
     core: Ties | None = None
     strands: tuple[Strand, ...] = ()
+    viscous: tuple[bool, ...] = ()
 
 
 #: Of a model without any
@@ -32,17 +37,26 @@ def refuse_rigid_ties(building: Building) -> None:
     for k, tie in enumerate(building.ties):
         if tie.stiffness is None:
             raise Refused(
-                f"{tie.name}: discrete elements need the stiffness EA/L of a tie (force per change of length)", ("ties", k, "stiffness")
+                f"{tie.name}: discrete elements require the stiffness EA/L of a tie (force per change of length)", ("ties", k, "stiffness")
             )
 
 
 def section_strands(building: Building) -> tuple[Strand, ...]:
-    """The ties of a plane section as lines of two points [x, y, 0]."""
-    anchored = building.anchored()
-    return tuple(
-        Strand(k, np.column_stack([point, np.zeros(2)]), ((int(block[0]),), (int(block[1]),)), False, tie.least, tie.most)
-        for k, (tie, block, point) in enumerate(zip(building.ties, anchored.block, anchored.point, strict=True))
-    )
+    """The ties and dampers of a plane section as lines of two points [x, y, 0]."""
+    anchored, found = building.anchored(), []
+    for k, (tie, block, point) in enumerate(zip(building.ties, anchored.block, anchored.point, strict=True)):
+        flat = np.column_stack([point, np.zeros(2)])
+        found.append(Strand(k, flat, ((int(block[0]),), (int(block[1]),)), False, tie.least, tie.most))
+    assembly = building.blocks()
+    for k, damper in enumerate(building.dampers):
+        what, key, points = damper.name or "", ("dampers", k), np.array(damper.flat())
+        first = stone_at(assembly, points[0], damper.start_stone, f"{what}, start", key, "start")
+        last = GROUND if damper.end is None else stone_at(assembly, points[1], damper.end_stone, f"{what}, end", key, "end")
+        if first == last:
+            raise BadGeometry(f"{what}: both of its ends are in the block '{assembly.block_names[first]}'", key)
+        flat = np.column_stack([points, np.zeros(2)])
+        found.append(Strand(len(building.ties) + k, flat, ((first,), (last,)), False, -damper.most, damper.most))
+    return tuple(found)
 
 
 def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block: np.ndarray) -> ElementTies:
@@ -54,7 +68,8 @@ def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block:
         return NO_TIES
     refuse_rigid_ties(building)
     whole = np.bincount([s.tie for s in strands], [s.length for s in strands])
-    tables = [building.ties[s.tie] for s in strands]
+    tables = [(*building.ties, *building.dampers)[s.tie] for s in strands]
+    dashpots = [t if isinstance(t, Damper) and t.damping is not None else None for t in tables]
     anchors = [
         (point, -1 if block < 0 else int(body_of_block[block]), place)
         for point, (place, blocks) in enumerate((p, b) for s in strands for p, b in zip(s.point, s.blocks, strict=True))
@@ -63,7 +78,7 @@ def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block:
     point, body, place = zip(*anchors, strict=True)
     core = Ties(
         stiffness=np.array([(t.stiffness or 0.0) * whole[s.tie] / s.length for t, s in zip(tables, strands, strict=True)]),
-        prestress=np.array([t.prestress for t in tables]),
+        prestress=np.array([0.0 if isinstance(t, Damper) else t.prestress for t in tables]),
         least=np.array([s.low for s in strands]),
         most=np.array([s.high for s in strands]),
         first=np.cumsum([0, *(len(s.point) for s in strands)])[:-1],
@@ -71,8 +86,10 @@ def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block:
         body=np.array(body),
         point=np.array(point),
         place=np.array(place),
+        damping=np.array([0.0 if d is None else d.damping for d in dashpots]),
+        power=np.array([1.0 if d is None else d.power for d in dashpots]),
     )
-    return ElementTies(strand_names(building, strands), core, strands)
+    return ElementTies(strand_names(building, strands), core, strands, tuple(d is not None for d in dashpots))
 
 
 def tie_rows(ties: ElementTies, run: FoundRun) -> dict[str, list[TieRun]]:
@@ -83,7 +100,9 @@ def tie_rows(ties: ElementTies, run: FoundRun) -> dict[str, list[TieRun]]:
     for k, name in enumerate(ties.names):
         lowest, highest, plastic = run.extreme[k].tolist()
         peak = highest if highest >= -lowest else lowest
-        state: Literal["slack", "elastic", "yielded"] = "yielded" if plastic else "elastic" if peak else "slack"
+        state: Literal["slack", "elastic", "yielded", "viscous"] = "yielded" if plastic else "elastic" if peak else "slack"
+        if ties.viscous[k]:
+            state = "viscous"
         found.append(TieRun(name=name, peak_force_N=peak, end_force_N=float(run.tension[-1, k]), plastic_elongation_m=plastic, state=state))
     return {"ties": found}
 
@@ -107,6 +126,6 @@ def section_arrays(ties: ElementTies) -> dict[str, Array]:
     block = np.array([[blocks[0] for blocks in strand.blocks] for strand in ties.strands])
     point = np.array([strand.point[:, :2] for strand in ties.strands])
     return {
-        "tie_block": Array(block, ("tie", "tie_end"), "", "blocks at both ends, -1 the ground"),
+        "tie_block": Array(block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends; -1 is the ground"),
         "tie_point": Array(point, ("tie", "tie_end", "axis"), "m", "both ends as drawn"),
     }

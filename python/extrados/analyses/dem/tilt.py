@@ -12,6 +12,7 @@ from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.job import Runs, Task, answered
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.settlement import farthest_settlement
+from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.ties import section_arrays, tie_rows
 from extrados.analyses.dem.trial import core_options
@@ -51,24 +52,17 @@ NOT_IN_TILT = (
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The constant acceleration that brings the structure down: brought in slowly, held, bisected, in both senses."""
     if without := unused(context, options):
-        context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
-    base = replace(
-        core_options(context, options, model),
-        end_time=RAMP + dem_model.settle_time(model),
-        stop_at_rest=False,
-        settlement=farthest_settlement(model, rigid=options.rigid),
-        output_step=0.05,
-        collapse=options.collapse_displacement or 0.05 * model.size,
-        collapse_turn=0.0,
-        collapse_drop=0.0,  # under a constant push a block that slides slides on
-    )
+        context.warnings.append(f"these have no effect in a tilt test: {', '.join(without)}")
+    settlement = farthest_settlement(model, rigid=options.rigid)
+    base = replace(core_options(context, options, model), **held(options, model), settlement=settlement)
     bodies = [model.bodies()]
-    (collapse, last), (back, back_run) = capacities(
+    found = capacities(
         context,
         options,
         lambda asked: Runs(bodies, [Task(0, base, pushed(a, base.end_time)) for a in asked]),
         lambda run: dem_model.checked(run, model),
     )
+    last, back_run = (run for _, run in found)
     state, slip, at, found_hinges = _hinged(model, last)
     _, slip_back, at_back, back_hinges = _hinged(model, back_run)
     body = model.rigid.body_of_block
@@ -76,12 +70,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     peak = np.abs(rotation).argmax(axis=0)
     result = Result("dem")
     result.results = out.DemTilt(
-        test="tilt",
-        outcome="collapse",
-        collapse_acceleration_g=collapse,
-        collapse_acceleration_opposite_g=back,
-        tilt_angle_deg=float(np.degrees(np.arctan(collapse))),
-        tilt_angle_opposite_deg=float(np.degrees(np.arctan(back))),
+        **numbers_of_tilt(options, model, found),
         load_direction="+x",
         hinges=found_hinges,
         hinges_opposite=back_hinges,
@@ -89,13 +78,6 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         peak_slip_m=float(np.nanmax(np.abs(slip[at]), initial=0.0)),
         interval=sum(pair is not None for pair in model.rigid.joints) > model.rigid.count
         and (slides(slip[at], model.size) or slides(slip_back[at_back], model.size)),
-        energy_residual_ratio=max(last.residual, back_run.residual),
-        time_step_s=last.step,
-        steps=last.steps,
-        **tie_rows(model.ties, last),
-        solver=options.solver,
-        beta_s=None if options.rigid else model.values.beta,
-        convergence=measures.convergence(last.effort.with_(back_run.effort)) if options.rigid else None,
     )
     result.warnings += dem_model.unconverged(last.effort.with_(back_run.effort))
     result.arrays = {
@@ -103,13 +85,45 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         "time": Array(last.time, ("time",), "s"),
         "place": Array(measures.block_places(model, last.place), ("time", "block", "component"), "m, m, rad"),
         "rate": Array(measures.block_rates(model, last), ("time", "block", "component"), "m/s, m/s, rad/s"),
-        "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
+        "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinge at the first end, 1 hinge at the second end, 2 open"),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
         **section_arrays(model.ties),
         **measures.support_arrays(model),
     }
     result.answer = tilt_answer(result.results)
     return result
+
+
+def held(options: Dem, model: Model | SolidModel) -> dict[str, Any]:
+    """Options of the core under a push that is brought in and held."""
+    return {
+        "end_time": RAMP + dem_model.settle_time(model),
+        "stop_at_rest": False,
+        "output_step": 0.05,
+        "collapse": options.collapse_displacement or 0.05 * model.size,
+        "collapse_turn": 0.0,
+        "collapse_drop": 0.0,  # under a constant push a block that slides slides on
+    }
+
+
+def numbers_of_tilt(options: Dem, model: Model | SolidModel, found: list[tuple[float, Any]]) -> dict[str, Any]:
+    """The results of a tilt test by their keys, but for what sections and solids have of their own; found: see `capacities`."""
+    (collapse, last), (back, back_run) = found
+    return {
+        "test": "tilt",
+        "outcome": "collapse",
+        "collapse_acceleration_g": collapse,
+        "collapse_acceleration_opposite_g": back,
+        "tilt_angle_deg": float(np.degrees(np.arctan(collapse))),
+        "tilt_angle_opposite_deg": float(np.degrees(np.arctan(back))),
+        "energy_residual_ratio": max(last.residual, back_run.residual),
+        "time_step_s": last.step,
+        "steps": last.steps,
+        **tie_rows(model.ties, last),
+        "solver": options.solver,
+        "beta_s": None if options.rigid else model.values.beta,
+        "convergence": measures.convergence(last.effort.with_(back_run.effort)) if options.rigid else None,
+    }
 
 
 def slides(slip: np.ndarray, size: float) -> bool:
@@ -158,7 +172,10 @@ def capacities(context: Context, options: Dem, job: Callable[[list[float]], Any]
     for sense, run in zip(SENSES, last, strict=True):
         if run is None:
             raise Refused(
-                f"is stable at {options.tilt_limit / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit",
+                (
+                    f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {'+x' if sense > 0 else '-x'}: increase "
+                    "tilt_limit"
+                ),
                 ("analysis", "tilt_limit"),
             )
     while True:

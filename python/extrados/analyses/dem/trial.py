@@ -20,11 +20,6 @@ from extrados.model.structures.block import BlockAssembly
 from extrados.views.rockers.mechanism import MechanismModel
 
 
-def collapse_of(options: Dem, model: Model) -> Collapse:
-    """When a block has collapsed."""
-    return Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
-
-
 @dataclass(frozen=True)
 class Begin:
     """A run that does not begin at rest: its time [s] by the clock of the motion; state: displacements and velocities (bodies, 3)
@@ -59,7 +54,7 @@ def core_options(context: Context, options: Dem, model: Model, begin: float = 0.
         rigid=options.rigid,
         rebound=options.rebound,
         quasi_static=options.quasi_static,
-        **(collapse_of(options, model).options if options.stop_at_collapse else {}),
+        **(Collapse.of(options.collapse_displacement, model.size).options if options.stop_at_collapse else {}),
     )
 
 
@@ -91,7 +86,7 @@ def start(context: Context, model: Model) -> np.ndarray | None:
         mechanism = MechanismModel(block)
         pose = mechanism.pose([ratio * mechanism.critical[side]])[0]
     except NoView as error:
-        raise Refused(f"it needs a collapse mechanism: {error}", ("initial", "rotation_ratio")) from None
+        raise Refused(f"this requires a collapse mechanism: {error}", ("initial", "rotation_ratio")) from None
     shift = np.zeros((len(model.rigid.mass), 3))  # the supports stay
     shift[: len(pose)] = pose
     shift[: len(pose), :2] -= block.centroid
@@ -118,7 +113,7 @@ class Trial:
         self.begin = begin
         self.starts = begin.time if begin else 0.0
         self.options = core_options(context, options, model, self.starts)
-        self.collapse = collapse_of(options, model)
+        self.collapse = Collapse.of(options.collapse_displacement, model.size)
         self.ground: Ground | None = context.motion.ground.seen_from(self.starts) if context.deck.motion else None
         self.moves = () if begin else _moves(context, model)  # a rocking structure feels them as motion of its ground
         self.shift = None if begin else start(context, model)

@@ -7,14 +7,14 @@ def solved(c: Convergence) -> str:
     """How far rigid contacts converged."""
     where = "all" if not c.open_steps else f"{c.steps - c.open_steps} of"
     return (
-        f"rigid contacts converged in {where} {c.steps} steps (at most {c.most_rounds} rounds, off by "
-        f"{c.worst_violation_ratio:.1g} of gravity's velocity in a step)"
+        f"rigid contacts converged in {where} {c.steps} steps (at most {c.most_rounds} iterations; greatest error "
+        f"{c.worst_violation_ratio:.1g} of the velocity that gravity adds in a step)"
     )
 
 
 def _audit(r: DemRun | SolidDemRun) -> str:
     """Ledger, and how impacts are damped or contacts solved."""
-    audit = f"energy balance closed to {100 * r.energy_residual_ratio:.2g} %"
+    audit = f"error of the energy balance {100 * r.energy_residual_ratio:.2g} %"
     if r.convergence is not None:
         return f"{audit}, {solved(r.convergence)}"
     assert r.damping_ratio_rotation is not None and r.damping_ratio_edge is not None  # joints with springs
@@ -30,8 +30,8 @@ def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
         return f"{r.governing_block} collapses first ({r.collapse_criterion}), at {r.collapse_time_s:.2f} s"
     if r.outcome == "slid":
         return (
-            f"Blocks slide by up to {1e3 * r.peak_slip_m:.3g} mm ({100 * r.slip_ratio:.3g} % of the {joint} {r.slipped_joint}), "
-            f"{1e3 * r.residual_slip_m:.3g} mm at the end; no {joint} opens"
+            f"Blocks slide by up to {1e3 * r.peak_slip_m:.3g} mm ({100 * r.slip_ratio:.3g} % of the {joint} "
+            f"{r.slipped_joint}). The slip at the end is {1e3 * r.residual_slip_m:.3g} mm; no {joint} opens"
         )
     if r.outcome == "at-rest":
         return f"No {joint} opens or slides"
@@ -56,13 +56,12 @@ def _tied(ties: list[TieRun] | None) -> str:
 def motion_answer(r: DemRun, idle: bool) -> str:
     """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
-        return "It stands under its own weight; nothing moves it."
+        return "The structure stands under its own weight. No motion acts on it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
     return (
-        f"{first}; {turn[0]} rotates by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, "
-        f"{r.bounces} bounces; {audit}."
-        f"{_tied(r.ties)}"
+        f"{first}; {turn[0]} rotates by {1e3 * abs(turn[1]):.3g} mrad at most, the greatest slip is "
+        f"{1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; {audit}.{_tied(r.ties)}"
     )
 
 
@@ -72,28 +71,30 @@ def tilt_answer(r: DemTilt) -> str:
     where = ", ".join(f"{h.name} ({h.side})" for h in r.hinges[:6]) or "none"
     least, sense = min((collapse, "+x"), (back, "-x"))
     return (
-        f"Collapse under a constant horizontal acceleration of {collapse:.4f} g pushed to +x (a tilt of "
-        f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
-        f"Hinges as it goes to +x: {where}."
-        f"{_tied(r.ties)}" + (f" {ONE_PATH}" if r.interval else "") + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
+        (
+            f"Collapse under a constant horizontal acceleration of {collapse:.4f} g towards +x (a tilt of "
+            f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g towards -x; the least is {least:.4f} g, towards {sense}. Hinges "
+            f"at collapse towards +x: {where}.{_tied(r.ties)}"
+        )
+        + (f" {ONE_PATH}" if r.interval else "")
+        + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )
 
 
 def solid_answer(r: SolidDemRun, idle: bool) -> str:
     """The answer of a run in space; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
-        return "It stands under its own weight; nothing moves it."
+        return "The structure stands under its own weight. No motion acts on it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
     first, audit = _fate(r, "contact"), _audit(r)
     if r.outcome == "rocked":
-        first += f", {1e3 * r.final_displacement_m:.3g} mm of it left at the end"
+        first += f", of which {1e3 * r.final_displacement_m:.3g} mm remain at the end"
     if r.dowels:
-        gave = f"moved by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
+        gave = f"slipped by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
     return (
-        f"{first}; {turn[0]} rotates by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; "
-        f"{r.blocks} stones, {r.contacts} contacts; {audit}."
-        f"{_tied(r.ties)}"
+        f"{first}; {turn[0]} rotates by {1e3 * turn[1]:.3g} mrad at most, the greatest slip is {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} "
+        f"bounces; {r.blocks} blocks, {r.contacts} contacts; {audit}.{_tied(r.ties)}"
     )
 
 
@@ -102,8 +103,12 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
     where = ", ".join(r.opening_contacts[:6]) or "none"
     least = min(r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
     return (
-        f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
-        f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at {r.collapse_acceleration_opposite_g:.4f} g the opposite way; "
-        f"the least is {least:.4f} g. Contacts that gape or slide as it goes: {where}."
-        f"{_tied(r.ties)}" + (f" {ONE_PATH}" if r.interval else "") + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
+        (
+            f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g along "
+            f"{r.load_direction_deg:g} degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at "
+            f"{r.collapse_acceleration_opposite_g:.4f} g in the opposite direction; the least is {least:.4f} g. Contacts that "
+            f"open or slide at collapse: {where}.{_tied(r.ties)}"
+        )
+        + (f" {ONE_PATH}" if r.interval else "")
+        + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )

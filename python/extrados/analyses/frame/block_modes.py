@@ -67,7 +67,7 @@ def run(context: Context, options: Modes) -> Result:
     count = min(options.modes, len(mass))
     values, shapes = eigh(stiffness, mass, subset_by_index=[0, count - 1])
     if not values[0] > 1e-9 * np.trace(stiffness) / np.trace(mass):
-        raise Refused("the blocks are not held: a mode has no frequency", ("structure",))
+        raise Refused("the blocks are not restrained, so a mode has no frequency", ("structure",))
     unit = np.tile(np.eye(3)[:, :2], (len(blocks.mass), 1))
     moving = unit.T @ mass @ unit
     shares = (unit.T @ mass @ shapes) ** 2 / np.diag(moving)[:, None]
@@ -81,7 +81,8 @@ def run(context: Context, options: Modes) -> Result:
     result.arrays["shape"] = Array(moved[:, :, :2], ("mode", "block", "direction"), "", "displacements of the blocks along x and y")
     first = rows[0]
     result.answer = (
-        f"First natural frequency {first['frequency_Hz']:.3g} Hz (period {first['period_s']:.3g} s), all joints closed; it moves "
-        f"{100 * first['mass_ratio_x']:.3g} % of the mass along x and {100 * first['mass_ratio_y']:.3g} % vertically."
+        f"First natural frequency {first['frequency_Hz']:.3g} Hz (period {first['period_s']:.3g} s), with all joints "
+        f"closed. The participating mass of this mode is {100 * first['mass_ratio_x']:.3g} % along x and "
+        f"{100 * first['mass_ratio_y']:.3g} % vertically."
     )
     return result

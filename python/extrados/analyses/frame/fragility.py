@@ -42,7 +42,7 @@ STATES: tuple[out.FrameLimitState, ...] = ("strength", "first-limit", "collapse"
 PERCENTILES = (16, 50, 84)
 #: Motions without a count of their own; points of a curve
 MOTIONS, GRID = 100, 200
-UNSTABLE = "the frame has no equilibrium under its weight"
+UNSTABLE = "the frame has no equilibrium under its own weight"
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class Curves:
             for i, (curve, oscillator) in enumerate(pushed(frame, self.options)):
                 more["shear"][i] = curve.force.max(initial=0.0)
                 if oscillator is None:
-                    more["reason"] = np.array(f"push {i + 1} of {count} has no rising branch")
+                    more["reason"] = np.array(f"pushover {i + 1} of {count} has no rising branch")
                     continue
                 law = oscillator.law
                 row["oscillator"][i] = (
@@ -196,7 +196,10 @@ def run(context: Context, options: FrameFragility) -> Result:
     """Curves of all limit states; see the deck reference."""
     if options.uncertain and options.frame.confidence_factor != 1.0:
         raise Refused(
-            "uncertain strengths scatter about their mean values, which a confidence factor must not reduce: leave it out of the frame",
+            (
+                "uncertain strengths scatter about their mean values, which a confidence factor must not reduce: remove "
+                "confidence_factor from the frame"
+            ),
             ("analysis", "frame", "confidence_factor"),
         )
     context.warnings += context.building.frame(options.frame).remarks
@@ -226,7 +229,7 @@ def _tell_lost(reasons: np.ndarray, what: str, result: Result) -> None:
     """Why members have no result."""
     lost = reasons[reasons != ""]
     if len(lost):
-        result.warnings.append(f"{len(lost)} of {len(reasons)} {what} have no result; the first: {lost[0]}")
+        result.warnings.append(f"{len(lost)} of {len(reasons)} {what} have no result. First reason: {lost[0]}")
 
 
 def _tell_unstable(unstable: np.ndarray, what: str, result: Result) -> None:
@@ -235,7 +238,7 @@ def _tell_unstable(unstable: np.ndarray, what: str, result: Result) -> None:
         raise Refused(UNSTABLE, ("structure", "walls"))
     if unstable.any():
         result.warnings.append(
-            f"{int(unstable.sum())} of {len(unstable)} {what} have no equilibrium under the weight: they count as collapsed."
+            f"{int(unstable.sum())} of {len(unstable)} {what} have no equilibrium under their own weight: they count as collapsed."
         )
 
 
@@ -252,7 +255,7 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
     _tell_unstable(rows["unstable"].astype(bool), "histories", result)
     good = rows["reason"] == ""
     if not good.any():
-        raise Refused(f"no history has a result; the first: {rows['reason'][0]}", ("motion",))
+        raise Refused(f"no time history has a result. First reason: {rows['reason'][0]}", ("motion",))
     x, hit, drift = rows["intensity"][good], rows["exceeded"][good].astype(bool), rows["drift"][good]
     states = []
     for k, state in enumerate(STATES):
@@ -282,7 +285,7 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
     )
     result.arrays |= {
         "intensity": Array(x, ("run",), "g", "intensity of each history"),
-        "drift": Array(drift, ("run",), "", "greatest chord rotation of a pier"),
+        "drift": Array(drift, ("run",), "", "greatest drift (chord rotation) of a pier"),
         "exceeded": Array(hit.astype(np.int8), ("run", "limit_state"), "", "1: the limit state is exceeded"),
     }
 
@@ -354,7 +357,7 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
     if _stopped(swept, result):
         return
     if not swept.complete:
-        result.answer = f"{swept.finished} of {buildings} buildings are pushed. The curves are made of all of them."
+        result.answer = f"{swept.finished} of {buildings} buildings have a pushover. The fragility curves require all buildings."
         return
     rows = swept.arrays
     _tell_lost(rows["reason"], "buildings", result)
@@ -368,7 +371,8 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
         raise Refused("fewer than two motions have a building with a capacity curve", ("motion",))
     if not good.all():
         result.warnings.append(
-            f"{int((~good).sum())} of {len(good)} pairs of motion and building are not considered: not all pushes have a capacity curve."
+            f"{int((~good).sum())} of {len(good)} pairs of motion and building are not considered, because a pushover has no "
+            "capacity curve."
         )
     carried = carried[good]
     half = norm.ppf(0.5 + 0.5 * options.confidence) / np.sqrt(len(carried))
@@ -386,7 +390,9 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
         states.append(_state(state, hits, len(carried), fit, interval, options))
     more = _knowledge(context, options, sample, rows, [g for _, g in found], result) if options.uncertain else {}
     _describe(options, states, motions, carried.ravel(), result, buildings=buildings, **more)
-    result.arrays["carried"] = Array(carried, ("run", "limit_state"), "g", "intensity of each motion at which N2 reaches a limit state")
+    result.arrays["carried"] = Array(
+        carried, ("run", "limit_state"), "g", "intensity of each motion at which the building reaches a limit state by N2"
+    )
     result.tables["carried"] = TableData(
         {"motion": np.array([k + 1 for k, _ in found])[good], **{s.replace("-", "_"): carried[:, k] for k, s in enumerate(STATES)}},
         {s.replace("-", "_"): "g" for s in STATES},
@@ -425,8 +431,8 @@ def _knowledge(
     each = [_carried(g, options, design, 0)[2] for g in grounds]
     if not np.isfinite(each).all():
         result.warnings.append(
-            f"No comparison with strengths divided by the confidence factor {factor:.3g}: that building has no capacity curve "
-            f"({design['reason'][0]})."
+            f"There is no comparison with the building whose strengths are divided by the confidence factor {factor:.3g}: "
+            f"this building has no capacity curve ({design['reason'][0]})."
         )
         return {}
     middle = grounds[int(np.argsort(each)[len(each) // 2])]
@@ -434,8 +440,8 @@ def _knowledge(
     drawn = np.array([_carried(middle, options, rows, k)[2] for k in range(len(sample.draws))])
     share = float((drawn[np.isfinite(drawn)] < reached).mean())
     result.warnings.append(
-        f"With strengths divided by the confidence factor {factor:.3g} the building carries {reached:.3g} g at collapse under the middle "
-        f"motion; {100 * share:.3g} % of the sampled buildings carry less."
+        f"If all strengths are divided by the confidence factor {factor:.3g}, the building carries {reached:.3g} g at "
+        f"collapse under the median motion; {100 * share:.3g} % of the sampled buildings carry less."
     )
     return {"confidence_factor": factor, "design_intensity_g": reached, "weaker_share": share}
 
@@ -461,7 +467,7 @@ def _describe(options: FrameFragility, states: list[out.FrameLimitCurve], motion
         result.arrays[f"curve_{state.replace('-', '_')}"] = Array(values, ("grid",), "", f"fitted probability of {state}", "frame_curve")
     for one in states:
         if one.median_g is None:
-            result.warnings.append(f"No curve of {one.limit_state}: the runs determine none.")
+            result.warnings.append(f"No fragility curve of {one.limit_state} is given, because the runs do not determine it.")
     said = [
         f"{one.limit_state}: median {one.median_g:.3g} g, dispersion {one.dispersion:.2f}"
         if one.median_g is not None

@@ -53,7 +53,7 @@ def run(context: Context, options: FrameHistory) -> Result:
         mode, damping = damped(frame, core, options)
         path = core.move(frame.unit(way), ground, options.time_step, damping)
     if path.stop == "no equilibrium under the weight":
-        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+        raise Refused("the frame has no equilibrium under its own weight", ("structure", "walls"))
     count = len(path.displacement)
     time = time[:count]
     moved = control_of(frame, path, way)
@@ -84,14 +84,16 @@ def run(context: Context, options: FrameHistory) -> Result:
         **first,
     )
     result.arrays["time"] = Array(time, ("time",), "s", "time")
-    result.arrays["displacement"] = Array(moved, ("time",), "m", "control displacement along the motion, relative to the ground")
-    result.arrays["base_shear"] = Array(path.shear, ("time",), "N", "internal base shear along the motion")
+    result.arrays["displacement"] = Array(
+        moved, ("time",), "m", "control displacement along the direction of the motion, relative to the ground"
+    )
+    result.arrays["base_shear"] = Array(path.shear, ("time",), "N", "internal base shear along the direction of the motion")
     result.tables["frame_history"] = TableData(
         {"time": time, "ground_acceleration": ground[:count], "displacement": moved, "base_shear": path.shear},
         {"time": "s", "ground_acceleration": "m/s^2", "displacement": "m", "base_shear": "N"},
     )
     if path.stop == "interrupted":
-        result.status, result.reason = "interrupted", "interrupted; the motion up to then is kept"
+        result.status, result.reason = "interrupted", "interrupted; the results up to then are saved"
     r = result.results
     result.answer = (
         f"Greatest displacement {1e3 * r.peak_displacement_m:.3g} mm, greatest base shear {r.peak_base_shear_N / 1e3:.3g} kN, greatest drift "

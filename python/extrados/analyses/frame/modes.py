@@ -44,7 +44,7 @@ def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
         return core.at_rest()
     except CoreError as error:
         raise NoEquilibrium(
-            f"the frame has no equilibrium under its weight ({error}): a pier without load, or a wall that nothing joins with others",
+            (f"the frame has no equilibrium under its own weight ({error}): a pier carries no load, or a wall is not connected to others"),
             ("structure", "walls"),
         ) from None
 
@@ -97,7 +97,8 @@ def run(context: Context, options: FrameModes) -> Result:
     result.arrays["shape"] = Array(shapes, ("mode", "mass", "direction"), "", "displacements of the masses along x and y")
     first = rows[0]
     result.answer = (
-        f"First period {first['period_s']:.3g} s; it moves {100 * first['mass_ratio_x']:.3g} % of the mass along x and "
-        f"{100 * first['mass_ratio_y']:.3g} % along y. Stiffness of masonry: {options.frame.stiffness:.3g} of its elastic value."
+        f"First period {first['period_s']:.3g} s. The participating mass of this mode is "
+        f"{100 * first['mass_ratio_x']:.3g} % along x and {100 * first['mass_ratio_y']:.3g} % along y. The stiffness of "
+        f"the masonry is {options.frame.stiffness:.3g} of its elastic value."
     )
     return result

@@ -35,7 +35,8 @@ def _control(context: Context, options: FramePushover) -> None:
     levels = {one.level for one in context.building.frame(options.frame).masses}
     if options.control_level not in levels:
         raise Refused(
-            f"control_level is {options.control_level}; masses are on {', '.join(map(str, sorted(levels)))}", ("analysis", "control_level")
+            f"control_level is {options.control_level}; expected a level with masses: {', '.join(map(str, sorted(levels)))}",
+            ("analysis", "control_level"),
         )
 
 
@@ -43,7 +44,7 @@ def _enough(context: Context, options: FrameFragility) -> None:
     """Refused where one motion is to give a fragility, or more are asked for than the deck has and no building differs."""
     there = how_many(context)
     if there == 1 and not options.uncertain:
-        raise Refused("one motion of one building gives no fragility: use a suite, or uncertain values", ("motion",))
+        raise Refused("one motion of one building gives no fragility: give a set of motions, or uncertain values", ("motion",))
     if there is not None and options.count is not None and options.count > there and not options.uncertain:
         raise Refused(f"{options.count}, but the deck has {there} motions: expected at most {there}", ("analysis", "count"))
 
@@ -51,4 +52,4 @@ def _enough(context: Context, options: FrameFragility) -> None:
 def _few(context: Context) -> None:
     count = len(context.building.blocks().mass)
     if count > MOST_BLOCKS:
-        raise Refused(f"{count} blocks: modes are calculated of at most {MOST_BLOCKS}", ("structure",))
+        raise Refused(f"the structure has {count} blocks; modes can be calculated for at most {MOST_BLOCKS}", ("structure",))

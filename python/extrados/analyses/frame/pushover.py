@@ -100,7 +100,7 @@ def run(context: Context, options: FramePushover) -> Result:
         with ThreadPoolExecutor(max(1, context.threads)) as pool:
             paths = list(pool.map(one, pushes))
     if any(path.stop == "no equilibrium under the weight" for path in paths):
-        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+        raise Refused("the frame has no equilibrium under its own weight", ("structure", "walls"))
     runs = [row_of(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
@@ -126,7 +126,7 @@ def run(context: Context, options: FramePushover) -> Result:
     _arrays(result, frame, paths)
     interrupted = any(path.stop == "interrupted" for path in paths)
     if interrupted:
-        result.status, result.reason = "interrupted", "interrupted; the curves up to then are kept"
+        result.status, result.reason = "interrupted", "interrupted; the curves up to then are saved"
     result.answer = _answer(result.results)
     if verified is not None and verified.decides:
         walls = result.results.out_of_plane
@@ -152,11 +152,13 @@ def push_once(frame: EquivalentFrame, options: FramePushover, direction: float) 
 def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -> None:
     loose = [s.name for s, f in zip(frame.strips, force, strict=True) if s.kind == "pier" and f[0] <= 0.0]
     if loose:
-        context.warnings.append(f"{len(loose)} piers carry no vertical load at rest, first {loose[0]}: they resist no horizontal force.")
+        context.warnings.append(
+            f"{len(loose)} piers carry no vertical load at rest and resist no horizontal force; the first is {loose[0]}."
+        )
     for strip, element, f in zip(frame.strips, frame.elements, force, strict=True):
         limit = element.strength * element.depth * element.thickness
         if strip.kind == "pier" and f[0] > 0.6 * limit:
-            context.warnings.append(f"Pier '{strip.name}' carries {f[0] / limit:.0%} of its compressive strength at rest.")
+            context.warnings.append(f"The stress in pier '{strip.name}' at rest is {f[0] / limit:.0%} of its compressive strength.")
 
 
 def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
@@ -276,15 +278,19 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
 def _answer(r: out.FramePushover) -> str:
     worst = next(row for row in r.runs if row.name == r.governing)
     text = (
-        f"Least base shear of {len(r.runs)} pushovers {r.base_shear_N / 1e3:.3g} kN ({r.base_shear_N / r.weight_N:.3g} of the weight), "
-        f"{worst.name}, at a displacement of {1e3 * worst.displacement_at_peak_m:.3g} mm."
+        f"The least base shear of {len(r.runs)} pushovers is {r.base_shear_N / 1e3:.3g} kN "
+        f"({r.base_shear_N / r.weight_N:.3g} of the weight), by {worst.name}, at a displacement of "
+        f"{1e3 * worst.displacement_at_peak_m:.3g} mm."
     )
     if worst.ultimate_displacement_m is not None:
-        text += f" Ultimate displacement of this run {1e3 * worst.ultimate_displacement_m:.3g} mm."
+        text += f" The ultimate displacement of this run is {1e3 * worst.ultimate_displacement_m:.3g} mm."
     if worst.failed:
         first = worst.failed[0]
-        text += f" First beyond its drift limit: {first.element}, in {first.mode}, at {1e3 * first.control_displacement_m:.3g} mm."
+        text += (
+            f" The first element beyond its drift limit is {first.element}, in {first.mode}, at "
+            f"{1e3 * first.control_displacement_m:.3g} mm."
+        )
     lost = [row.name for row in r.runs if row.stop.startswith("no equilibrium")]
     if lost:
-        text += f" Without equilibrium at the least step ended: {', '.join(lost)}."
+        text += f" These runs ended without equilibrium at the least step: {', '.join(lost)}."
     return text

@@ -94,5 +94,5 @@ def refuse_unknown(building: Building, options: FrameOptions, names: list[str]) 
     lacking["strength"] = all(lacking[name] for name in STRENGTHS)
     for name in names:
         if lacking.get(name, False):
-            why = "no floor is flexible or of joists" if name == "floor_stiffness" else "the deck gives it no value"
+            why = "no floor is flexible or made of joists" if name == "floor_stiffness" else "the deck gives no value for it"
             raise Refused(f"{name} cannot be uncertain: {why}", ("analysis", "uncertain", name))

@@ -74,20 +74,22 @@ class FramePushover(FrameAnalysis):
 
     kind: Literal["frame-pushover"]
     directions: list[Annotated[Angle, Field(ge=-360, le=360)]] = key(
-        [0.0, 90.0], "directions on the plan, counter-clockwise from x", min_length=1, max_length=8
+        [0.0, 90.0], "directions of the load in plan, counter-clockwise from x", min_length=1, max_length=8
     )
     senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of each direction", min_length=1, max_length=2)
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
-        "forces in proportion to the masses, to the masses times their height, or to the masses times the mode of greatest "
-        "participating mass",
+        (
+            "horizontal forces in proportion to the masses, to the masses times their height, or to the masses times the "
+            "mode of greatest participating mass"
+        ),
         min_length=1,
         max_length=3,
         source="NTC 2018, 7.3.4.2",
     )
     eccentricities: list[Annotated[float, Field(ge=-0.5, le=0.5)]] = key(
         [0.0, 0.05, -0.05],
-        "accidental eccentricities of the forces, over the length of the building across the direction",
+        "accidental eccentricities of the forces, divided by the length of the building across the direction",
         min_length=1,
         max_length=9,
         source="EN 1998-1, 4.3.2",
@@ -95,22 +97,31 @@ class FramePushover(FrameAnalysis):
     verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
     out_of_plane: bool = key(
         True,
-        "with a seismic action, check every wall above the foot of each storey out of its plane by `local-mechanism`, with the "
-        "period of the frame for the floor spectrum",
+        (
+            "with a seismic action: check every wall, above the foot of each storey, for out-of-plane failure by "
+            "`local-mechanism`. The floor spectrum uses the period of the frame"
+        ),
     )
     control_level: int | None = key(
-        None, "storey whose mean displacement, weighted by the masses on its top, is followed; default the highest with masses", ge=1
+        None,
+        (
+            "number of the control storey: the control displacement is the mean, weighted by the masses, on its top; "
+            "default: the highest storey with masses"
+        ),
+        ge=1,
     )
-    target_drift: float = key(0.02, "greatest control displacement, over the height of the control level", gt=0, le=0.2)
-    steps: int = key(200, "steps to the target; steps are cut where needed", ge=10, le=10_000)
-    drop: float = key(0.5, "ends where the base shear is below this part of its greatest; 0.8 is the 20 % drop of codes", ge=0, le=0.95)
+    target_drift: float = key(0.02, "greatest control displacement, divided by the height of the control level", gt=0, le=0.2)
+    steps: int = key(200, "number of steps up to the target; a step is divided if necessary", ge=10, le=10_000)
+    drop: float = key(
+        0.5, "end of the run: base shear below this share of its greatest value; 0.8 means the 20 % decrease of codes", ge=0, le=0.95
+    )
 
     @model_validator(mode="after")
     def _once(self) -> "FramePushover":
         for name in ("directions", "senses", "patterns", "eccentricities"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
-                raise ValueError(f"{name}: each may stand once, not {values}")
+                raise ValueError(f"{name}: each value may occur only once, found {values}")
         return self
 
 
@@ -118,12 +129,12 @@ class FrameMotion(FrameAnalysis):
     """Base of the analyses of frames in motion."""
 
     needs_motion: ClassVar = True
-    direction: Angle = key(0.0, "of the ground motion on the plan, counter-clockwise from x", ge=-360, le=360)
-    time_step: Time = key(0.005, "of the integration; steps are cut where needed", gt=0, le=0.1)
-    damping_ratio: float = key(0.03, "Rayleigh damping at the two frequencies", ge=0, le=0.5)
+    direction: Angle = key(0.0, "direction of the ground motion in plan, counter-clockwise from x", ge=-360, le=360)
+    time_step: Time = key(0.005, "time step of the integration; a step is divided if necessary", gt=0, le=0.1)
+    damping_ratio: float = key(0.03, "damping ratio of the Rayleigh damping at its two frequencies", ge=0, le=0.5)
     damping_frequencies: list[Annotated[float, Field(gt=0)]] | None = key(
         None,
-        "two frequencies in Hz that have this ratio; default the first of the direction, and three times that",
+        ("two frequencies in Hz with this damping ratio; default: the first frequency of the direction, and three times this value"),
         min_length=2,
         max_length=2,
     )
@@ -134,7 +145,7 @@ class FrameHistory(FrameMotion):
 
     kind: Literal["frame-history"]
     starter_motion: ClassVar = "sine-pulse"
-    end_time: Time | None = key(None, "end of the calculation; default that of the motion, and two seconds more", gt=0)
+    end_time: Time | None = key(None, "end of the calculation; default: the end of the motion plus two seconds", gt=0)
 
 
 class FrameFragility(FrameMotion):
@@ -144,24 +155,30 @@ class FrameFragility(FrameMotion):
     starter_motion: ClassVar = "generated"
     by: Literal["history", "pushover"] = key(
         "history",
-        "history: the motion of the frame under every record; pushover: N2 with the spectrum of every record on the capacity "
-        "curves of both senses",
+        (
+            "method. history: the motion of the frame under every record; pushover: N2 with the spectrum of every record, "
+            "for the capacity curves of both senses"
+        ),
         source="Fajfar 2000",
     )
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
-        "of pushovers: patterns of the horizontal forces, the same words as in frame-pushover",
+        'for by = "pushover": patterns of the horizontal forces, with the same words as in frame-pushover',
         min_length=1,
         max_length=3,
     )
-    target_drift: float = key(0.02, "of pushovers: greatest control displacement, over the height of the highest level", gt=0, le=0.2)
-    count: int | None = key(None, "number of motions; default 100, or the whole suite", ge=2, le=1_000_000)
-    seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
-    intensity: Literal["pga", "sa"] = key("pga", "measure of the motions: PGA [g], or SA(sa_period) [g]")
+    target_drift: float = key(
+        0.02, 'for by = "pushover": greatest control displacement, divided by the height of the highest level', gt=0, le=0.2
+    )
+    count: int | None = key(None, "number of motions; default 100, or the whole set", ge=2, le=1_000_000)
+    seed: int | None = key(
+        None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
+    )
+    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions: PGA [g], or SA(sa_period) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     levels: list[Annotated[float, Field(gt=0, le=100)]] | None = key(
         None,
-        "of histories: intensities [g] to which every motion is scaled; default: the motions as they are",
+        'for by = "history": intensities [g] to which every motion is scaled; default: the motions are not scaled',
         min_length=1,
         max_length=200,
     )
@@ -171,14 +188,14 @@ class FrameFragility(FrameMotion):
         "for the whole building, drawn by a Sobol sequence; `strength` multiplies all strengths of the masonry",
     )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
-    bootstrap: int = key(500, "draws for the intervals of the curves", ge=0, le=100_000)
+    bootstrap: int = key(500, "number of bootstrap samples for the intervals of the curves", ge=0, le=100_000)
 
     @model_validator(mode="after")
     def _sensible(self) -> "FrameFragility":
         if (self.intensity == "sa") != (self.sa_period is not None):
-            raise ValueError('intensity = "sa" and sa_period go together')
+            raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
         if self.by == "pushover" and self.levels is not None:
-            raise ValueError("levels: N2 gives the intensity that each motion needs; levels belong to histories")
+            raise ValueError('levels belong to by = "history". N2 calculates the intensity that each motion needs to reach a limit state')
         for name, value in self.uncertain.items():
             if name not in UNCERTAIN:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(UNCERTAIN)}")

@@ -17,7 +17,7 @@ def chain_of(assembly: Assembly, name: str | None) -> str | None:
     """The chain of a name, the first where none is given, None where the assembly has no chain."""
     if name is not None and name not in assembly.chains:
         known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no blocks form one here"
-        raise Refused(f"chain: there is no '{name}'; {known}", ("analysis", "chain"))
+        raise Refused(f"chain: '{name}' does not exist; {known}", ("analysis", "chain"))
     return name or next(iter(assembly.chains), None)
 
 
@@ -35,7 +35,7 @@ def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
     if best < 0:
         low = min(float(o[:, 0].min()) for o in assembly.outlines)
         high = max(float(o[:, 0].max()) for o in assembly.outlines)
-        raise Refused(f"a load at x = {x:.4g} m lies beside the structure, which extends from {low:.4g} to {high:.4g} m", WHOLE)
+        raise Refused(f"the load at x = {x:.4g} m lies outside the structure, which extends from {low:.4g} to {high:.4g} m", WHOLE)
     return best, height
 
 
@@ -43,7 +43,7 @@ def _block_at(assembly: Assembly, x: float, y: float) -> int:
     """The block that holds a point, or has it on its face."""
     if found := stones_at(assembly, np.array([x, y])):
         return found[0]
-    raise Refused(f"a load at x = {x:.4g}, y = {y:.4g} m acts on no block", WHOLE)
+    raise Refused(f"the load at x = {x:.4g}, y = {y:.4g} m acts on no block", WHOLE)
 
 
 def pieces(assembly: Assembly, load: AppliedLoad, number: int) -> list[tuple[int, np.ndarray, float]]:
@@ -78,13 +78,16 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
     """Block and point (3) [m] of a load: at its height, or on the highest surface below."""
     key = ("analysis", "load", number)
     if load.x_end is not None or load.y is None:
-        raise Refused("a load on blocks in space acts at a point: give x, y in plan and, if it does not act on top, z", key)
+        raise Refused(
+            ("a load on blocks in space acts at a point: give x and y in plan. If the load does not act on the top, also give z"), key
+        )
     if load.z is not None:
         point = np.array([load.x, load.y, load.z])
         try:
             return solid_at(assembly, point, None, f"load {number + 1}", key, "z"), point
         except BadGeometry as error:
-            raise Refused(str(error).replace("; name it by z_stone", "; move it"), key) from None
+            of_a_tie = "If the tie is anchored outside its block, give the name of the block by z_stone"
+            raise Refused(str(error).replace(of_a_tie, "Move the load"), key) from None
     best, top = -1, -np.inf
     for part, block in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         first = part.vertices[[face[0] for face in part.faces]]
@@ -97,5 +100,5 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
         if high >= low and high > top:
             best, top = block, float(high)
     if best < 0:
-        raise Refused(f"a load at x = {load.x:.4g}, y = {load.y:.4g} m acts beside the blocks", key)
+        raise Refused(f"the load at x = {load.x:.4g}, y = {load.y:.4g} m acts outside the blocks", key)
     return best, np.array([load.x, load.y, top])

@@ -51,8 +51,8 @@ def warning_of(rows: list[out.BlockSize]) -> str | None:
     if most is None or abs(most.relative_change or 0.0) <= LARGE:
         return None
     return (
-        f"The capacity depends on the blocks: with {most.change} it changes by {100.0 * (most.relative_change or 0.0):+.2g} %. Use the size "
-        "and bond of the real blocks, or take the least value"
+        f"The capacity depends on the blocks: with {most.change} it changes by "
+        f"{100.0 * (most.relative_change or 0.0):+.2g} %. Use the size and bond of the real blocks, or use the least value"
     )
 
 
@@ -66,4 +66,4 @@ def in_words(rows: list[out.BlockSize] | None) -> str:
         else f"{row.change}: no value ({row.reason})"
         for row in rows
     ]
-    return f" Upper bound with other blocks: {'; '.join(told)}."
+    return f" Upper bounds with other blocks: {'; '.join(told)}."

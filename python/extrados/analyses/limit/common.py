@@ -95,14 +95,14 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
     except NoEquilibrium as error:
         raise Refused(str(error), WHOLE) from None
     if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):
-        raise NoAnswer(f"the bounds from equilibrium and from the mechanism differ by {answer.gap:.2e} g")
+        raise NoAnswer(f"the lower bound (equilibrium) and the upper bound (mechanism) differ by {answer.gap:.2e} g")
     return answer
 
 
 def collapse_beside(without_dilatancy: LimitAnalysis, direction: int) -> tuple[State, Mechanism]:
     """The least state without dilatancy, to be given beside an upper bound by associated friction; NoAnswer of large structures."""
     if len(without_dilatancy.assembly.a) > MOST_BESIDE:
-        raise NoAnswer(f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"')
+        raise NoAnswer(f'the structure has more than {MOST_BESIDE} joints. To calculate this state, give friction_rule = "non-associated"')
     return without_dilatancy.collapse(direction)
 
 
@@ -129,9 +129,9 @@ def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: floa
     try:
         closed_g = limit_of(building.apart().having(structure=mended), options).collapse(1)[0].gamma
     except (BadGeometry, Refused, NoEquilibrium, NoAnswer, Immovable) as error:
-        return f"{told} there is no capacity: {error}"
+        return f"{told} the structure has no capacity: {error}"
     text = f"{told} the collapse acceleration to +x is {closed_g:.4f} g"
-    return f"{text}, {closed_g / gamma:.2f} times the {gamma:.4f} g given here" if gamma > 0.0 else text
+    return f"{text}, {closed_g / gamma:.2f} times the {gamma:.4f} g of the given survey" if gamma > 0.0 else text
 
 
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
@@ -141,9 +141,13 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
         "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first ends of the joints (intrados)"),
         "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second ends of the joints (extrados)"),
         "outline": Array(np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"),
-        "outline_start": Array(np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"),
+        "outline_start": Array(
+            np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "index of the first vertex of each block; the last value is the end"
+        ),
         "centroid": Array(assembly.centroid, ("block", "axis"), "m", "centroids of the blocks"),
-        "joint_block": Array(np.column_stack([assembly.a, assembly.b]), ("joint", "joint_side"), "", "blocks on both sides, -1 the ground"),
+        "joint_block": Array(
+            np.column_stack([assembly.a, assembly.b]), ("joint", "joint_side"), "", "numbers of the blocks on both sides; -1 is the ground"
+        ),
         **named_places("joint", assembly.joint_names, 0.5 * (assembly.p + assembly.q), "middles of the joints"),
         **named_places("block", assembly.block_names, assembly.centroid, "centroids of the blocks"),
     }
@@ -187,13 +191,15 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
     if not point:
         return {}
     return {
-        "load_point": Array(np.array(point), ("load_piece", "axis"), "m", "points of loads at rest, spread ones in pieces"),
-        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "their forces, to +x and upward"),
-        "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, from 0"),
+        "load_point": Array(
+            np.array(point), ("load_piece", "axis"), "m", "points of the constant loads; a spread load is divided into pieces"
+        ),
+        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "forces at these points, to +x and upward"),
+        "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, counted from 0"),
     }
 
 
-def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Array]:
+def push_arrays(assembly: Assembly, state: State) -> dict[str, Array]:
     """The passive pressures that a state mobilises: where they act and how much; nothing where none counts."""
     earth = assembly.earth
     push = None if earth is None else passive_pressure(earth, assembly.depth, assembly.centroid)
@@ -201,9 +207,9 @@ def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Arr
         return {}
     most = push.wrench[:, 0]
     return {
-        "push_point": Array(push.point, ("push", "axis"), "m", "points of the passive pressure of the fill"),
+        "push_point": Array(push.point, ("push", "axis"), "m", "points at which the passive pressure of the fill acts"),
         "push_force": Array(state.mobilised[: push.count] * most, ("push",), "N", "its horizontal push, to +x"),
-        "push_most": Array(most, ("push",), "N", "the most it can push, to +x"),
+        "push_most": Array(most, ("push",), "N", "greatest passive force at each point, to +x"),
     }
 
 
@@ -231,7 +237,7 @@ def tie_arrays(building: Building, loads: Loads, states: dict[str, State]) -> di
     anchored = building.anchored()
     return {
         "tie_point": Array(anchored.point, ("tie", "tie_end", "axis"), "m", "both ends of the ties"),
-        "tie_block": Array(anchored.block, ("tie", "tie_end"), "", "blocks at both ends, -1 the ground"),
+        "tie_block": Array(anchored.block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends; -1 is the ground"),
         **forces,
     }
 
@@ -262,7 +268,10 @@ def zone_arrays(assembly: Assembly, state: State, strength: float | None) -> dic
     along = assembly.q - assembly.p
     return {
         f"zone_{name}": Array(
-            assembly.p + (state.position + sign * half)[:, None] * along, ("joint", "axis"), "m", f"{about} end of the zone of thrust"
+            assembly.p + (state.position + sign * half)[:, None] * along,
+            ("joint", "axis"),
+            "m",
+            f"{about} end of the thrust zone in each joint",
         )
         for name, sign, about in (("inner", -1.0, "intrados"), ("outer", 1.0, "extrados"))
     }
@@ -284,7 +293,9 @@ def packed(name: str, paths: dict[str, np.ndarray], unit: str, about: str) -> di
     start = np.cumsum([0, *map(len, paths.values())])
     return {
         name: Array(points, (f"{name}_vertex", "axis"), unit, about),
-        f"{name}_start": Array(start, (f"{name}_edge",), "", f"first vertex of each path of {name}, and the end"),
+        f"{name}_start": Array(
+            start, (f"{name}_edge",), "", f"index of the first vertex of each path of {name}; the last value is the end"
+        ),
         f"{name}_of": Array(np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"),
     }
 
@@ -299,10 +310,10 @@ def line_arrays(name: str, found: list[ThrustPath], about: str) -> dict[str, Arr
             np.cumsum([0, *(len(path.points) for path in found)]),
             (f"{title}_edge",),
             "",
-            f"first vertex of each path of {title}, and the end",
+            f"index of the first vertex of each path of {title}; the last value is the end",
         ),
         f"{title}_of": Array(
-            np.array([path.name for path in found], dtype=object), (f"{title}_path",), "", f"the chain or stone of each path of {title}"
+            np.array([path.name for path in found], dtype=object), (f"{title}_path",), "", f"arch, stack or block of each path of {title}"
         ),
         f"{title}_force": Array(
             np.array([path.force for path in found]), (f"{title}_path",), "N", f"greatest force along each path of {title}"

@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.batches import Job, stacked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import deviation_of
 from extrados.analyses.limit.common import answer_of, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import Imperfections
+from extrados.analyses.needs import in_space
 from extrados.limit.answer import cannot_stand
+from extrados.limit.errors import CannotStand
 from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium
 from extrados.model.errors import WHOLE
 from extrados.model.geometry.assembly import Assembly
@@ -65,20 +67,43 @@ class Surveys:
         return {"gamma": gamma, "answered": np.array(answered), "dilates": np.array(dilates)}
 
 
+def _of_section(building: Building, options: Imperfections, deviation: float) -> tuple[Job, float, dict[str, Array]]:
+    """The job of a plane section, the lesser capacity of the section as given [g], and the arrays of its picture."""
+    assembly = building.blocks()
+    nominal = answer_of(building, options)
+    job = Surveys(assembly, building.friction(), building.material.compressive_strength, options, deviation, building)
+    return job, min(nominal.gamma, -nominal.back_state.gamma), geometry_arrays(assembly)
+
+
+def _of_solids(building: Building, options: Imperfections, deviation: float) -> tuple[Job, float, dict[str, Array]]:
+    """The same of solids; CannotStand where no programme of the given ones has a capacity."""
+    from extrados.analyses.limit import solid_variation, solids  # with a solver that takes a while to load
+
+    assembly = building.solids()
+    nominal = solid_variation.capacities(building, options, assembly)
+    if not nominal["answered"]:
+        raise Refused("no capacity is found for the blocks as given: `tilt` gives the reason", WHOLE)
+    given = float(nominal["gamma"].min())
+    if not np.isfinite(given):
+        raise CannotStand("certificate: a motion that no contact hinders and by which the weights do work; `tilt` shows it")
+    return solid_variation.SolidSurveys(building, options, deviation), given, solids.scene_arrays(assembly)
+
+
 def run(context: Context, options: Imperfections) -> Result:
     """Capacities of all surveys, their median and the band that holds nine tenths."""
     building = context.building
-    assembly, deviation = building.blocks(), deviation_of(building, options)
-    nominal = answer_of(building, options)
-    job = Surveys(assembly, building.friction(), building.material.compressive_strength, options, deviation, building)
+    deviation = deviation_of(building, options)
+    job, given, pictured = (
+        _of_solids(building, options, deviation) if in_space(building, options) else _of_section(building, options, deviation)
+    )
     swept = sweep(context, "imperfections", job, options.count, "random surveys", slow=True).whole()
     gamma = swept["gamma"]
-    lesser, given = gamma.min(axis=1), min(nominal.gamma, -nominal.back_state.gamma)
+    lesser = gamma.min(axis=1)
     answered = swept["answered"].astype(bool)
     stand = np.isfinite(lesser)
     fallen = int((answered & ~stand).sum())
     if not answered.any():
-        raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm has a result", WHOLE)
+        raise Refused(f"none of the {options.count} surveys within {1e3 * deviation:.3g} mm has a result", WHOLE)
     # A survey that cannot stand carries nothing: it belongs to the lower end of the band.
     borne = np.where(stand, lesser, 0.0)[answered]
     low, median, high = np.percentile(borne, [BAND[0], 50.0, BAND[1]]).tolist()
@@ -98,8 +123,10 @@ def run(context: Context, options: Imperfections) -> Result:
     )
     result.results = r
     result.arrays = {
-        **geometry_arrays(assembly),
-        "gamma": Array(gamma, ("survey", "sense"), "g", "capacity to +x and to -x; NaN where a survey cannot stand"),
+        **pictured,
+        "gamma": Array(
+            gamma, ("survey", "sense"), "g", "capacity towards +x, or along the direction, and opposite; NaN if a survey cannot stand"
+        ),
     }
     result.tables = {
         "imperfections": TableData(
@@ -108,13 +135,19 @@ def run(context: Context, options: Imperfections) -> Result:
         )
     }
     result.answer = (
-        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the given one, nine in ten have {low:.4f} to "
-        f"{high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g); the given one has {given:.4f} g."
+        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the given survey, 90 % have a capacity of "
+        f"{low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The given survey has {given:.4f} "
+        "g."
     )
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
-        result.answer += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
+        result.answer += f" In {r.upper_bounds} surveys joints slide: {out.DILATANT}."
+    if given < low:
+        result.warnings.append(
+            f"The capacity of the given geometry, {given:.4f} g, is below the range of the surveys. Blocks in bond hinge on the outermost of "
+            "several corners, so that random corners raise the capacity. The verdict uses the capacity of the given geometry"
+        )
     if r.without_answer:
-        result.warnings.append(f"{r.without_answer} surveys are not counted: their programmes gave no result")
+        result.warnings.append(f"{r.without_answer} surveys are not counted, because their linear programmes gave no result")
     return result

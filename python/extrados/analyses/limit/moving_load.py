@@ -43,7 +43,9 @@ from extrados.views.building import Building
 
 PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
 #: What makes the model of a bridge whole
-MODEL = "The ring alone is no model of a bridge. Add fill to the structure, and backing: as blocks, or by a structure of kind bridge."
+MODEL = (
+    'The ring alone does not represent a bridge. Add fill to the structure, and backing: as blocks, or with the structure of kind "bridge".'
+)
 FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
 
 
@@ -87,22 +89,24 @@ class Places:
         """Collapse under the train; None where it brings nothing down.
 
         Even loads that stand only where they are adverse, and the mechanism that they belong to, are found in turn,
-        from the axles alone and from the whole train, or without axles from each half too: each step lessens the factor.
+        from the axles alone, from the whole train and from each half of it: each step lessens the factor of its start, and the least of all
+        counts.
         """
         axles, (force, x, block) = self._axles(k), self._even(k)
         every = np.ones(len(force), dtype=bool)
         starts = [every]
         if self.adverse and len(force):
             half = x <= 0.5 * (x.min() + x.max())
-            starts += [~every] if axles.any() else [half, ~half]
-        best = None
+            starts += [half, ~half] + ([~every] if axles.any() else [])
+        best: Collapse | None = None
         for standing in starts:
+            own: Collapse | None = None
             for _ in range(PATTERNS):
                 live = axles + pressed(np.where(standing, force, 0.0), x, block, len(axles))
                 found = self.under(live, standing)
-                if found is None or (best is not None and found.factor >= best.factor * (1.0 - 1e-9)):
+                if found is None or (own is not None and found.factor >= own.factor * (1.0 - 1e-9)):
                     break
-                best = found
+                own = found
                 if not self.adverse or not len(force):
                     break
                 v = found.mechanism.velocity[block]
@@ -110,6 +114,8 @@ class Places:
                 if not (downward != standing).any():
                     break
                 standing = downward
+            if own is not None and (best is None or own.factor < best.factor):
+                best = own
         return best
 
     def under(self, live: np.ndarray, standing: np.ndarray) -> Collapse | None:
@@ -264,10 +270,10 @@ def run(context: Context, options: MovingLoad) -> Result:
         capacity = factor * options.force * factors.live * factors.dynamic
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
-        raise Refused(f"no load of this kind causes collapse of the {structure.word}: such a load only compresses the joints", WHOLE)
+        raise Refused(f"no load of this kind causes collapse of the {structure.word}, because such loads only compress the joints", WHOLE)
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
-        raise NoAnswer(f"the load at {places[k]:.4g} m caused collapse in the sweep, and not when computed again")
+        raise NoAnswer(f"the load at {places[k]:.4g} m causes collapse in the sweep, but not in the second calculation at this position")
     state, mechanism = worst.state, worst.mechanism
     result = Result("moving-load")
     asked: Keys = {}
@@ -300,22 +306,24 @@ def run(context: Context, options: MovingLoad) -> Result:
     result.results = r
     result.warnings += [f"{one} {MODEL}" for one in r.violated]
     if source := unverified(options.train):
-        result.warnings.append(f"The axles of {train.name} were not read in the standard: compare them with {source}.")
+        result.warnings.append(f"The axles of {train.name} were not verified in the standard: compare them with {source}.")
     finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),
-        **push_arrays(assembly, dead, state),
+        **push_arrays(assembly, state),
         **load_arrays(assembly, options.load),
         **tie_arrays(building, dead, {"collapse": state}),
         **zone_arrays(assembly, state, job.strength),
         **_worst_arrays(assembly, job, k, worst, replace(assembly, mass=factors.masonry * assembly.mass)),
         "capacity": Array(finite, ("place",), "N", "collapse load; NaN if no load causes collapse"),
-        "envelope_point": Array(swept["line"], ("place", "joint", "axis"), "m", "thrust lines at collapse, all places"),
+        "envelope_point": Array(swept["line"], ("place", "joint", "axis"), "m", "thrust lines at collapse, for all positions of the load"),
         "envelope_normal": Array(swept["normal"], ("place", "joint"), "N", "compression at collapse, all places"),
     }
     adequacy = np.where(np.isinf(factor), np.nan, factor)
     if train.known:
-        result.arrays["adequacy"] = Array(adequacy, ("place",), "", "multiple of the factored train that causes collapse")
+        result.arrays["adequacy"] = Array(
+            adequacy, ("place",), "", "multiple of the factored train that causes collapse, for each position"
+        )
     columns = {"place": places, **({"way": ways, "adequacy": adequacy} if train.known else {}), "collapse_load": finite}
     result.tables = {"moving_load": TableData({**columns, "mechanism": mechanisms}, {"place": "m", "collapse_load": "N"})}
     result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
@@ -337,19 +345,21 @@ def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heav
     chains = list(assembly.chains.values())
     return {
         "place": Array(job.places, ("place",), "m", "x of the first axle"),
-        "way": Array(job.ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
+        "way": Array(job.ways, ("place",), "", "direction of the train: 1 towards +x, -1 towards -x"),
         "axle": Array(job.at(k), ("axle",), "m", "axles at the worst place"),
-        "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "even loads at the worst place"),
-        "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, worst place"),
+        "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "uniform loads at the governing position"),
+        "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, at the governing position"),
         **line_arrays("collapse", thrust_paths(heavier, worst.loads, state, sway=0.0), "at collapse, worst place"),
         "mechanism_pose": Array(finite_motion(assembly, worst.mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
         "chain_joint": Array(
             np.concatenate([np.array(j, dtype=int) for j in chains] or [np.empty(0, dtype=int)]),
             ("link",),
             "",
-            "joints of the chains, one chain after the other",
+            "joints of the chains, listed chain by chain",
         ),
-        "chain_start": Array(np.cumsum([0, *map(len, chains)]), ("chain_edge",), "", "first of each chain, and the end"),
+        "chain_start": Array(
+            np.cumsum([0, *map(len, chains)]), ("chain_edge",), "", "index of the first joint of each chain; the last value is the end"
+        ),
     }
 
 
@@ -439,7 +449,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
             f"at {place}."
         )
     if options.force is not None:
-        text += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {r.safety_factor:.2f}."
+        text += f" The safety factor of the given load of {options.force / 1e3:.4g} kN is {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
     if r.permissible_factor is not None:
@@ -458,9 +468,11 @@ def _violated(train: Train, assembly: Assembly, structure: Structure) -> list[st
     """What a load that crosses a bridge supposes of the structure, where it has none: earth that spreads the load."""
     if assembly.earth is not None:
         return []
-    weight = "" if assembly.fill is None else "; its fill acts by weight alone"
+    weight = "" if assembly.fill is None else "; the fill acts only by its weight"
     load = f"The {train.name}" if train.name in ("load", "train") else train.name
     return [
-        f"{load} acts on the blocks of the {structure.word} themselves{weight}: no fill spreads it, and no passive pressure or backing "
-        f"restrains the {structure.word}."
+        (
+            f"{load} acts on the blocks of the {structure.word} directly{weight}: fill does not spread the load, and neither "
+            f"passive pressure nor backing restrains the {structure.word}."
+        )
     ]

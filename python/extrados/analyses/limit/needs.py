@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit import tables
-from extrados.analyses.limit.asked import deviation_of, refuse_still, refuse_unruled, sections_of, values_of
+from extrados.analyses.limit.asked import cuts_of, deviation_of, refuse_still, refuse_unruled, sections_of, values_of
 from extrados.analyses.needs import Need, stones_of
 from extrados.analyses.table import BuildingAnalysis
 from extrados.model.errors import BadGeometry, Key
@@ -23,6 +23,9 @@ def needs(context: Context, options: BuildingAnalysis) -> Iterator[Need]:
                 yield functools.partial(refuse_unruled, building)
             for k, load in enumerate(getattr(options, "load", [])):
                 yield functools.partial(_place, building, load, k)
+            yield from _needs_of_many(context, options)
+            if isinstance(options, tables.Thrust):
+                yield functools.partial(cuts_of, building, options)
             return  # solids have no chains and trains
     except BadGeometry:
         return  # told already
@@ -38,19 +41,31 @@ def needs(context: Context, options: BuildingAnalysis) -> Iterator[Need]:
         from extrados.analyses.limit.applied import chain_of
 
         yield lambda: chain_of(building.blocks(), chain)
+    yield from _needs_of_many(context, options)
     match options:
-        case tables.Sweep():
-            yield lambda: values_of(building, options)
-        case tables.Survey():
-            yield lambda: sections_of(context, options)
-        case tables.Imperfections():
-            yield lambda: deviation_of(building, options)
+        case tables.Thrust() if options.section:
+            yield _refuse_sections
         case tables.MovingLoad():
             from extrados.analyses.limit.trains import fitting_train
 
             yield lambda: fitting_train(building, options)
         case tables.MovingSupports():
             yield lambda: refuse_still(building, options)
+
+
+def _needs_of_many(context: Context, options: BuildingAnalysis) -> Iterator[Need]:
+    """What sweeps, surveys and random surveys need, in the plane and in space."""
+    match options:
+        case tables.Sweep():
+            yield lambda: values_of(context.building, options)
+        case tables.Survey():
+            yield lambda: sections_of(context, options)
+        case tables.Imperfections():
+            yield lambda: deviation_of(context.building, options)
+
+
+def _refuse_sections() -> None:
+    raise Refused("section: belongs to blocks in space; give a direction, or a chain of the plane section", ("analysis", "section"))
 
 
 def _placed(building: Building, load: tables.AppliedLoad, number: int) -> None:
@@ -62,14 +77,13 @@ def _placed(building: Building, load: tables.AppliedLoad, number: int) -> None:
 
 def _refuse_of_sections(building: Building, options: BuildingAnalysis) -> None:
     """Refused where a deck asks of solids what is known in a plane section alone."""
-    assert isinstance(options, tables.Tilt)  # the others take sections alone
     asked: dict[str, tuple[bool, Key]] = {
-        "fracture": (options.fracture, ("analysis", "fracture")),
+        **{name: (bool(getattr(options, name, None)), ("analysis", name)) for name in ("fracture", "buttress_alone", "chain")},
         "crushing": (building.material.compressive_strength is not None, ("material", "compressive_strength")),
     }
     for what, (there, key) in asked.items():
         if there:
-            raise Refused(f"tilt of solids cannot take {what} into account: remove it, or analyse a plane section", key)
+            raise Refused(f"{options.kind} of solids cannot include {what}: remove it, or analyse a plane section", key)
 
 
 def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
@@ -79,12 +93,12 @@ def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
 
 
 def _refuse_height(number: int) -> None:
-    raise Refused("z: belongs to blocks in space; y is the height in a plane section", ("analysis", "load", number, "z"))
+    raise Refused("z belongs to blocks in space; in a plane section the height is y", ("analysis", "load", number, "z"))
 
 
 def _refuse_alone(building: Building) -> None:
     if not building.blocks().buttresses:
-        raise Refused("needs a buttress on the ground: a vault or an aisled vault", ("analysis", "buttress_alone"))
+        raise Refused("this requires a buttress on the ground: a vault or an aisled vault", ("analysis", "buttress_alone"))
 
 
 def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> None:
@@ -92,13 +106,15 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
     key = ("analysis", "fracture")
     assembly = building.blocks()
     if not assembly.buttresses:
-        raise Refused("fracture needs a buttress on the ground: a vault or an aisled vault", key)
+        raise Refused("fracture requires a buttress on the ground: a vault or an aisled vault", key)
     if building.material.compressive_strength is not None or options.friction_rule != "associated":
-        raise Refused("fracture is computed without crushing and with associated friction", key)
+        raise Refused("fracture is calculated without crushing and with associated friction", key)
     leeward = assembly.buttresses[-1]
     if building.ties and (building.anchored().block == leeward).any():
         raise Refused(
-            f"a tie is anchored in {assembly.block_names[leeward]}, and the analysis does not decide whether the crack separates "
-            "the anchor from the rest of this buttress; remove fracture or anchor the tie elsewhere",
+            (
+                f"a tie is anchored in {assembly.block_names[leeward]}. The analysis does not decide whether the crack separates "
+                "the anchor from the rest of this buttress. Remove fracture, or anchor the tie at another block"
+            ),
             key,
         )

@@ -17,7 +17,7 @@ def follow_paths(follow: Callable[[float, int], tuple[float, Certificate]], *, p
     for ratio in RATIOS:
         try:
             if not patient and rows and rows[-1].collapse_acceleration_g is None:
-                raise NoAnswer("not followed: the path before was given up")
+                raise NoAnswer("not calculated, because the previous load path stopped without a result")
             gamma, proof = follow(ratio, PATIENT if patient else QUICK)
         except NoAnswer as error:
             rows.append(
@@ -52,7 +52,7 @@ def doubt(paths: list[LoadPath], way: str) -> str | None:
     wrong = [f"{p.shear_stiffness_ratio:g}" for p in paths if not p.certified]
     if not wrong:
         return None
-    text = f"The load path {way} is not certified for a ratio of joint stiffness of {' and '.join(wrong)}"
+    text = f"The load path {way} is not certified for the stiffness ratio of the joints {' and '.join(wrong)}"
     if len(wrong) == len(paths):
-        return f"{text}: no design value is given, and the upper bound alone holds"
-    return f"{text}: the design value is the least of the others"
+        return f"{text}. No design value is given, and only the upper bound is available"
+    return f"{text}. The design value is the least of the other load paths"

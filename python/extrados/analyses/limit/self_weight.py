@@ -28,7 +28,10 @@ def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Resu
     if proof.motion is not None:
         result.arrays = geometry_arrays(building.blocks()) | {
             "collapse_velocity": Array(
-                proof.motion, ("block", "component"), "", "collapse motion of the certificate: x, y [m], rotation; its scale is arbitrary"
+                proof.motion,
+                ("block", "component"),
+                "",
+                "collapse mechanism of the certificate: x, y [m] and rotation, at an arbitrary scale",
             )
         }
     return result

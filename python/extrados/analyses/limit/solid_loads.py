@@ -7,8 +7,9 @@ import numpy as np
 
 from extrados.analyses.limit.applied import place_of
 from extrados.analyses.limit.common import SLACK
-from extrados.analyses.limit.tables import Tilt
+from extrados.analyses.limit.tables import SpatialLimit
 from extrados.limit.solids import SolidLimit
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results.limit import TieForce
 from extrados.results.model import Array
 from extrados.schema.constants import GRAVITY
@@ -16,10 +17,13 @@ from extrados.views.building import Building
 from extrados.views.solids.strands import strand_names
 
 
-def solid_limit(building: Building, options: Tilt, beams: np.ndarray | None = None) -> SolidLimit:
+def solid_limit(
+    building: Building, options: SpatialLimit, beams: np.ndarray | None = None, assembly: SolidAssembly | None = None
+) -> SolidLimit:
     """The programmes of a building's blocks with its ties and the loads of an analysis; loads that sway rest on the blocks
-    as fill does, and so do `beams` (n, 5): block, mass [kg] and place [m] of parts of ring beams."""
-    assembly = building.solids()
+    as fill does, and so do `beams` (n, 5): block, mass [kg] and place [m] of parts of ring beams. assembly: the blocks, by
+    default those of the building."""
+    assembly = building.solids() if assembly is None else assembly
     fill, resting = [assembly.fill, np.empty((0, 5)) if beams is None else beams], np.zeros((len(assembly.mass), 6))
     for k, load in enumerate(options.load):
         block, point = place_of(assembly, load, k)
@@ -50,6 +54,6 @@ def strand_arrays(limit: SolidLimit, tension: np.ndarray) -> dict[str, Array]:
     ends = [s.point[[k, n]] for s in limit.strands for k, n in s.segments]
     of = [i for i, s in enumerate(limit.strands) for _ in s.segments]
     return {
-        "strand_segment": Array(np.array(ends), ("segment", "tie_end", "axis3"), "m", "both ends of the segments of ties and chains"),
+        "strand_segment": Array(np.array(ends), ("segment", "tie_end", "axis3"), "m", "both ends of each segment of ties and chains"),
         "strand_tension": Array(tension[of], ("segment",), "N", "tension in them at collapse"),
     }

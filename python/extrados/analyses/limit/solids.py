@@ -47,10 +47,10 @@ def run(context: Context, options: Tilt) -> Result:
     asked = np.unique(np.round(np.concatenate([[first, opposite], angles]), 9))
     pushed = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
     found_at = dict(zip(asked.tolist(), pushed, strict=True))
-    there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, opposite))
-    _refuse_falling(there, back, first)
+    there, back = (standing(found_at[round(d, 9)], assembly) for d in (first, opposite))
+    refuse_falling(there, back, first)
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
-    capacity = np.array([np.inf if one is None else _stands(one, assembly).gamma for one in rose])
+    capacity = np.array([np.inf if one is None else standing(one, assembly).gamma for one in rose])
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
     slides = max(dilating_contacts(limit, one) for one in (there, back, rose[least] if rose else there) if isinstance(one, Programme))
@@ -113,13 +113,13 @@ def run(context: Context, options: Tilt) -> Result:
     return result
 
 
-def _refuse_falling(there: Programme, back: Programme, first: float) -> None:
+def refuse_falling(there: Programme, back: Programme, first: float) -> None:
     """CannotStand if the structure requires a horizontal load; first: direction [deg]."""
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
-            f"the structure stands only under a horizontal load along {first:g} degrees by {low:.4f} to "
-            f"{high:.4f} g; certificate: the mechanism of the smaller load, in which the weights do work"
+            f"the structure can stand only under a horizontal load along {first:g} degrees between {low:.4f} and {high:.4f} "
+            "g; certificate: the mechanism of the smaller load, in which the weights do positive work"
         )
 
 
@@ -129,14 +129,18 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
     return scene_arrays(assembly) | {
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
-        "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, into their first stone"),
+        "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, pointing into the first block"),
         "collapse_force": Array(
-            there.force, ("contact_corner", "component"), "N", "compression and both shears at the corners at collapse"
+            there.force, ("contact_corner", "component"), "N", "compression and both shear forces at the corners at collapse"
         ),
-        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first stone of each contact at collapse"),
-        "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application: centre of the compression"),
-        "velocity": Array(there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, spin"),
-        "mechanism_pose": Array(pose, ("block", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on: shift, rotation vector"),
+        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first block of each contact at collapse"),
+        "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application of the force: centre of the compression"),
+        "velocity": Array(
+            there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, and angular velocity"
+        ),
+        "mechanism_pose": Array(
+            pose, ("block", "pose"), "m, m, m, rad, rad, rad", "mechanism at a finite displacement: translation and rotation vector"
+        ),
     }
 
 
@@ -152,7 +156,7 @@ def _without_dilatancy(
     directions [deg]."""
     contacts = len(limit.assembly.a)
     if options.friction_rule == "associated" and contacts > MOST_BESIDE:
-        why = f'of more than {MOST_BESIDE} contacts it is sought on request alone, by friction_rule = "non-associated"'
+        why = f'the structure has more than {MOST_BESIDE} contacts. To calculate this state, give friction_rule = "non-associated"'
         return {"non_associated_reason": why}, {}
     rows, states = [], {}
     sought = list(dict.fromkeys(directions))
@@ -194,9 +198,9 @@ def _by_faces(limit: SolidLimit, corners: Sequence[Programme | Falls | None], di
         spread = max(spread, found.spread)
         if found.gamma < (1.0 - TWISTS) * one.gamma:
             result.warnings.append(
-                f"Faces twist along {direction:g} degrees: the upper bound is {one.gamma:.4f} g if their pressure concentrates at corners "
-                f"(default), and {found.gamma:.3f} g under an even pressure (face law, a fixed point that varies by {found.spread:.3f} g). Do not rely on the "
-                "difference"
+                f"In the mechanism along {direction:g} degrees contact faces twist. The upper bound is {one.gamma:.4f} g if the "
+                f"pressure concentrates at corners (default), and {found.gamma:.3f} g under uniform pressure (face law, whose "
+                f"iteration varies by {found.spread:.3f} g). Do not rely on the difference"
             )
     return told | {"face_law_spread_g": spread}
 
@@ -214,20 +218,23 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
     owner = np.repeat(assembly.owner, [len(p.faces) for p in assembly.parts])
     return {
         "solid_vertex": Array(np.concatenate([p.vertices for p in assembly.parts]), ("vertex", "axis3"), "m", "vertices of the solids"),
-        "solid_face": Array(np.concatenate(faces), ("face_vertex",), "", "vertices of each face, counter-clockwise from outside"),
-        "solid_face_start": Array(np.cumsum([0, *map(len, faces)]), ("face_edge",), "", "first vertex of each face, and the end"),
+        "solid_face": Array(np.concatenate(faces), ("face_vertex",), "", "vertices of each face, counter-clockwise as seen from outside"),
+        "solid_face_start": Array(
+            np.cumsum([0, *map(len, faces)]), ("face_edge",), "", "index of the first vertex of each face; the last value is the end"
+        ),
         "solid_face_block": Array(owner, ("face",), "", "stone of each face"),
         "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the blocks"),
         **named_places("block", assembly.block_names, assembly.centroid, "centroids of the blocks"),
     }
 
 
-def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
+def standing(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
+    """The programme of blocks that stand; CannotStand with the certificate, Immovable where no load causes collapse."""
     if found is None:
-        raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks from all sides")
+        raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks on all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
-        raise CannotStand(f"certificate: a motion, fastest at {name}, that no contact hinders and by which the weights do work")
+        raise CannotStand(f"certificate: a mechanism, fastest at {name}, that no contact resists and in which the weights do positive work")
     return found
 
 
@@ -346,31 +353,35 @@ def _told(r: out.SolidTilt) -> str:
         least = "none" if row.least_g is None else f"{row.least_g:.4f} g"
         most = "none" if row.associated_g is None else f"{row.associated_g:.4f} g"
         text += (
-            f"Without dilatancy along {row.direction_deg % 360.0:g} degrees: design value {design}, the least of {len(row.load_paths)} "
-            f"load paths of elastic joints; least state found {least}; upper bound {most}. "
+            f"Without dilatancy along {row.direction_deg % 360.0:g} degrees, the design value is {design} (the least of "
+            f"{len(row.load_paths)} load paths of elastic joints), the least state found {least} and the upper bound {most}. "
         )
     if r.non_associated_reason:
-        text += f"A state without dilatancy is not given: {r.non_associated_reason}. "
+        text += f"No state without dilatancy is given: {r.non_associated_reason}. "
     return text
 
 
 def _words(word: str, r: out.SolidTilt, count: int) -> str:
     along = f"along {r.load_direction_deg:g} degrees in plan"
     text = (
-        f"The {word} becomes a mechanism at a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g {along}, or when "
-        f"its base is tilted by {r.tilt_angle_deg:.2f} degrees; opposite {r.collapse_acceleration_opposite_g:.4f} g. "
+        f"The {word} becomes a mechanism at a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g "
+        f"{along}, or when its base is tilted by {r.tilt_angle_deg:.2f} degrees. In the opposite direction the collapse acceleration is "
+        f"{r.collapse_acceleration_opposite_g:.4f} g. "
     )
     moving = "all of its blocks move" if r.moving_blocks == r.blocks else f"{r.moving_blocks} of its {r.blocks} blocks move"
     names = [c.name for c in r.opening_contacts[:MOST_NAMED]]
     opens = f"; most open: {', '.join(names)}" if names else ""
-    text += f"In the mechanism {moving}, {r.fastest_block} fastest{opens}. "
+    text += f"In the mechanism {moving}, and {r.fastest_block} moves fastest{opens}. "
     if count:
-        text += f"Of {count} directions the least is along {r.least_direction_deg % 360.0:g} degrees: {r.least_acceleration_g:.4f} g. "
+        text += (
+            f"Among {count} directions the least collapse acceleration is {r.least_acceleration_g:.4f} g, along "
+            f"{r.least_direction_deg % 360.0:g} degrees. "
+        )
     if r.dilating_contacts:
         text += f"Contacts slide: {DILATANT}. " + _told(r)
-    text += f"The bounds from equilibrium and from the mechanism differ by {r.duality_gap:.1e} g."
+    text += f"The lower bound (equilibrium) and the upper bound (mechanism) differ by {r.duality_gap:.1e} g."
     text += in_words(r.block_sizes) + spoken_ties(r.ties)
     if r.pyramids is not None:
         low, high = ("none" if g is None else f"{g:.4f} g" for g in (r.pyramids.lower_g, r.pyramids.upper_g))
-        text += f" Friction pyramids of {r.pyramids.sides} sides bound it by {low} and {high}."
+        text += f" Friction pyramids with {r.pyramids.sides} sides give a lower bound of {low} and an upper bound of {high}."
     return text

@@ -90,10 +90,11 @@ def run(context: Context, options: MovingSupports) -> Result:
     }
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
-        f"The right support {way}: the arch follows on three hinges ({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) "
-        f"and collapses at {movement[-1]:.4g} m, {100 * movement[-1] / span:.2f} % of the span, after "
-        f"{len(stages) - 1} change{'s' if len(stages) != 2 else ''} of hinges; meanwhile the thrust changes from "
-        f"{force[0, 0] / 1e3:.4g} to {force[-1, 0] / 1e3:.4g} kN."
+        f"The right support {way}: the arch follows on three hinges "
+        f"({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) and collapses at {movement[-1]:.4g} "
+        f"m({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
+        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {force[0, 0] / 1e3:.4g} "
+        f"to {force[-1, 0] / 1e3:.4g} kN."
     )
     return result
 
@@ -114,7 +115,7 @@ def _way_arrays(options: MovingSupports, states: list[SupportState]) -> dict[str
     arrays = {
         "movement": Array(movement, ("movement",), "m", "movement of the right support"),
         "force": Array(np.array([s.force for s in states]), ("movement", "axis"), "N", "force of the arch on the right support"),
-        "energy": Array(np.array([s.energy for s in states]), ("movement",), "J", "potential energy over that at rest"),
+        "energy": Array(np.array([s.energy for s in states]), ("movement",), "J", "increase of the potential energy from rest"),
         "hinge": Array(np.array([[h[0] for h in s.hinges] for s in states]), ("movement", "hinge_number"), "", "joints that hinge"),
         "shown_movement": Array(movement[shown], ("shown",), "m", "movements drawn"),
         "shown_pose": poses(shown, "shown"),
@@ -141,7 +142,10 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            "the structure has one support, which moves all of it. State by [[initial.movements]] which joints on the ground move",
+            (
+                "the structure has only one support, whose movement moves all of it. Give [[initial.movements]] for the joints "
+                "on the ground that move"
+            ),
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -198,7 +202,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
         **tie_arrays(building, loads, {"settled": found.state}),
         **state_arrays(assembly, "settled", found.state, "under moving supports"),
         "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
-        "settled_opening": Array(motion, ("joint", "component"), "m", "opening at the first and second end, slip"),
+        "settled_opening": Array(motion, ("joint", "component"), "m", "opening at the first and second end of each joint, and slip"),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }
     result.tables = {
@@ -215,13 +219,13 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     rotation = float(np.abs(found.pose[:, 2]).max())
     if rotation > LARGE:
         result.warnings.append(
-            f"blocks rotate by up to {np.degrees(rotation):.1f} degrees: the motion is of first order, smaller movements are meant"
+            f"blocks rotate by up to {np.degrees(rotation):.1f} degrees, but the analysis assumes small movements: give smaller movements"
         )
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
-            "dilatant friction: joints that slide open by their friction times the slip too, and states in which less is "
-            'carried without dilatancy are not sought; `friction = "no-sliding"` considers joints that only open'
+            "dilatant friction: a joint that slides also opens by its friction times the slip. States without dilatancy, "
+            'which may carry less, are not calculated. To consider joints that only open, give `friction = "no-sliding"`'
         )
     result.answer = _opened_in_words(building.require_structure().word, movement, opened, len(slid), found.work) + spoken_ties(
         result.of(out.MovingSupports).ties
@@ -241,7 +245,7 @@ def _opened_in_words(word: str, movement: np.ndarray, opened: list[out.JointOpen
         + (f": {shown}" if shown else "")
         + (f" and {len(wide_open) - 6} more" if len(wide_open) > 6 else "")
         + (f"; {_counted(slid, 'joint')} {'slides' if slid == 1 else 'slide'}" if slid else "")
-        + f". Its weight does {work:.4g} J of work."
+        + f". The weight does a work of {work:.4g} J."
     )
 
 

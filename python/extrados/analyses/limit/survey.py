@@ -107,21 +107,23 @@ def run(context: Context, options: Survey) -> Result:
     )
     result.results = r
     result.arrays = {
-        "gamma": Array(gamma, ("section",), "g", "collapse acceleration to +x; 0 for a section that cannot stand, NaN without a result"),
+        "gamma": Array(
+            gamma, ("section",), "g", "collapse acceleration towards +x; 0 for a section that cannot stand, NaN without a result"
+        ),
         "section_name": Array(np.array(names, dtype=object), ("section",), "", "names of the sections"),
     }
     units = {"collapse_acceleration": "g", "fractured_collapse_acceleration": "g", "tilt_angle": "deg"}
     result.tables = {"survey": TableData(columns, units)}
     text = f"{int(stand.sum())} of {len(rows)} sections stand"
     if fallen:
-        text += f", {len(fallen)} cannot stand (capacity 0)"
+        text += f"; {len(fallen)} cannot stand (capacity 0)"
     if stand.any():
         text += (
-            f"; the weakest is {r.weakest} with {r.weakest_collapse_acceleration_g:.4f} g, "
-            f"the median of those that stand {r.median_collapse_acceleration_g:.4f} g"
+            f". The weakest is {r.weakest} with {r.weakest_collapse_acceleration_g:.4f} g; the median of the sections that "
+            f"stand is {r.median_collapse_acceleration_g:.4f} g"
         )
     text += f". {len(without)} have no result." if without else "."
     if r.upper_bounds:
-        text += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
+        text += f" In {r.upper_bounds} sections joints slide: {out.DILATANT}."
     result.answer = text + (" survey.csv gives the reasons." if fallen or without else "")
     return result

@@ -2,7 +2,7 @@
 
 import itertools
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,13 @@ from extrados.analyses.limit.asked import values_of
 from extrados.analyses.limit.common import packed
 from extrados.analyses.limit.tables import Sweep
 from extrados.analyses.limit.variation import LOCKED, Outcome, Signature, evaluate, outcomes_of, spoken
+from extrados.analyses.needs import in_space
 from extrados.limit.errors import CannotStand
 from extrados.limit.finite_motion import finite_motion
+from extrados.limit.programme import Mechanism
 from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 from extrados.views.building import Building
@@ -26,6 +30,7 @@ LEVEL = 1e-6
 # Of the range: how closely changes of mechanism and the optimum are found.
 CLOSE = 1e-7
 MOST_CHANGES = 40
+MOST_PICTURED = 4  # mechanisms of solids that are stored
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
@@ -44,6 +49,8 @@ class Range:
     def at(self, value: float, *, beside: bool = False, explain: bool = False) -> Outcome:
         """The outcome at a value of the key, in SI; beside: also what stands beside the capacity; explain: with the
         reason of a refusal."""
+        if self.table == "analysis":  # the direction of the load
+            return evaluate(self.building, self.options.model_copy(update={self.path: float(value)}))
         data = changed(self.data, self.path, round(value) if self.whole else float(value))
         try:
             own = getattr(self.building, self.table)
@@ -76,6 +83,8 @@ class Values:
 def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
     table, path, unit, whole, values = values_of(context.building, options)
+    spatial = in_space(context.building, options)
+    locate = not whole and (options.locate if options.locate is not None else not spatial)
     data = context.deck.data.get(table, {})
     if isinstance(data, dict):
         data = {**data, **(options.model_dump(exclude_none=True).get(table) or {})}
@@ -84,9 +93,9 @@ def run(context: Context, options: Sweep) -> Result:
     outcomes = outcomes_of(swept.whole())
     if not any(o.gamma for o in outcomes):
         if all(o.status == "cannot-stand" for o in outcomes):
-            raise CannotStand(f"no value of {options.vary} gives a structure that stands; at the last {outcomes[-1].reason}")
-        raise Refused(f"no value of {options.vary} gives a structure with a capacity: {outcomes[-1].reason}", ("analysis", "vary"))
-    changes = _changes(context, ask, values, outcomes) if options.locate and not whole else []
+            raise CannotStand(f"the structure cannot stand at any value of {options.vary}. Reason at the last value: {outcomes[-1].reason}")
+        raise Refused(f"the structure has no capacity at any value of {options.vary}. Reason: {outcomes[-1].reason}", ("analysis", "vary"))
+    changes = _changes(context, ask, values, outcomes) if locate else []
     numbers: dict[Signature, int] = {}
     for _, signature in sorted(
         [(v, o.signature) for v, o in zip(values, outcomes, strict=True)] + [(c["value"], c["after"]) for c in changes],
@@ -94,7 +103,7 @@ def run(context: Context, options: Sweep) -> Result:
     ):
         if signature and signature != LOCKED:
             numbers.setdefault(signature, len(numbers) + 1)
-    best, best_gamma = _optimum(context, ask, values, outcomes, options.locate and not whole)
+    best, best_gamma = _optimum(context, ask, values, outcomes, locate)
     result = Result("sweep")
     stable = [c for c in changes if not c["before"] or not c["after"]]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
@@ -127,7 +136,7 @@ def run(context: Context, options: Sweep) -> Result:
     )
     result.results = r
     _store(options, r, values, outcomes, numbers, result)
-    result.arrays.update(_examples(ask, values, outcomes, numbers))
+    result.arrays.update((_solid_examples if spatial else _examples)(ask, values, outcomes, numbers))
     result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
     result.answer = _words(options, r)
     return result
@@ -149,9 +158,11 @@ def _store(
     }
     result.arrays = {
         "value": Array(values, ("value",), "", f"values of {options.vary}"),
-        "gamma": Array(gamma, ("value",), "g", "collapse acceleration to +x; 0 for a structure that cannot stand, NaN without a result"),
-        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0: none"),
-        "change": Array(np.array([c.value for c in r.changes]), ("change",), "", "values at which the mechanism changes"),
+        "gamma": Array(
+            gamma, ("value",), "g", "collapse acceleration towards +x; 0 for a structure that cannot stand, NaN without a result"
+        ),
+        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 without a mechanism"),
+        "change": Array(np.array([c.value for c in r.changes]), ("change",), "", "values of the key at which the mechanism changes"),
     }
     if options.fracture:
         result.arrays["fractured"] = Array(fractured, ("value",), "g", "with the leeward buttress cracked")
@@ -284,7 +295,7 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
         if not same:
             continue
         one = ask.at(same[len(same) // 2])
-        assert one.assembly is not None and one.mechanism is not None  # sections of one mechanism have one
+        assert isinstance(one.assembly, Assembly) and isinstance(one.mechanism, Mechanism)  # sections of one mechanism have one
         pose = finite_motion(one.assembly, one.mechanism)
         blocks[number] = len(pose)
         for i, (outline, c, p) in enumerate(zip(one.assembly.outlines, one.assembly.centroid, pose, strict=True)):
@@ -293,10 +304,33 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
             moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
     of = [number for number, count in blocks.items() for _ in range(count)]
     return {
-        "example_mechanism": Array(np.array(of, dtype=int), ("example_path",), "", "number of the mechanism of each block"),
-        **packed("example", outlines, "m", "blocks of one section of each mechanism (number/block)"),
+        "example_mechanism": Array(np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each block illustrates"),
+        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number/block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
+
+
+def _solid_examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[str, Array]:
+    """The same of solids, of the first mechanisms: solids and poses by the numbers of the mechanisms."""
+    from extrados.analyses.limit.solids import pose_of, scene_arrays  # with a solver that takes a while to load
+
+    found: dict[str, Array] = {}
+    shown = []
+    for signature, number in list(numbers.items())[:MOST_PICTURED]:
+        same = [v for v, o in zip(values, outcomes, strict=True) if o.signature == signature]
+        if not same:
+            continue
+        one = ask.at(same[len(same) // 2])
+        assert isinstance(one.assembly, SolidAssembly) and one.mechanism is not None and not isinstance(one.mechanism, Mechanism)
+        shown.append(number)
+        found |= {
+            f"{name}_{number}": replace(array, dims=(f"{array.dims[0]}_{number}", *array.dims[1:]))
+            for name, array in scene_arrays(one.assembly).items()
+            if name.startswith("solid_")
+        }
+        pose = pose_of(one.assembly, one.mechanism.motion)
+        found[f"solid_pose_{number}"] = Array(pose, (f"block_{number}", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on")
+    return found | {"example_mechanism": Array(np.array(shown, dtype=int), ("example",), "", "numbers of the mechanisms that are drawn")}
 
 
 def _words(options: Sweep, r: out.Sweep) -> str:
@@ -310,24 +344,24 @@ def _words(options: Sweep, r: out.Sweep) -> str:
     elif len(level) > 1:
         where = f"greatest from {level[0]:.4g} to {level[-1]:.4g}{unit}"
     else:
-        where = f"an optimum at {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
+        where = f"greatest at an optimum of {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: {where}, with "
-        f"{most:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
-        f"{len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, "
+        f"{most:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} "
+        f"mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if locked:
-        text += f" At {locked} it locks: beyond that no load of this kind causes collapse."
+        text += f" At {locked} the structure locks: beyond this value no load of this kind causes collapse."
     if r.stable_limits:
-        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
+        text += f" The range in which the structure stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
     counts = {status: sum(gap.status == status for gap in r.gaps) for status in ("cannot-stand", "no-answer")}
     if counts["cannot-stand"]:
         text += f" At {counts['cannot-stand']} of {len(r.values)} values the structure cannot stand (capacity 0)."
     if counts["no-answer"]:
-        text += f" At {counts['no-answer']} of {len(r.values)} values have no result."
+        text += f" {counts['no-answer']} of {len(r.values)} values have no result."
     if r.upper_bound_values:
         text += f" At {len(r.upper_bound_values)} of {len(r.values)} values joints slide: {out.DILATANT}."
     return text

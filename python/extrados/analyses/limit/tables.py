@@ -16,24 +16,26 @@ class AppliedLoad(Table):
     """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
     x: Length = key(
-        about="place; the load acts on the highest block below, or on the block at y; without y its weight spreads "
-        "through the fill of a bridge"
+        about=(
+            "x of the load. The load acts on the highest block below, or on the block at y. In the fill of a bridge, a load "
+            "without y spreads its weight"
+        )
     )
-    force: Force = key(0.0, "its weight, downward; of a spread load all of it")
-    horizontal: Force = key(0.0, "its part to +x; of a spread load all of it")
-    x_end: Length | None = key(None, "end of a spread load, even per length of plan, which starts at x")
-    y: Length | None = key(None, "height at which it acts; default the surface below; in space the other coordinate of the place in plan")
-    z: Length | None = key(None, "in space: height at which it acts; default the surface below")
-    sways: bool = key(False, "whether its weight is accelerated with the ground, as a floor's or a roof's is")
+    force: Force = key(0.0, "vertical force, downward; for a distributed load, its total")
+    horizontal: Force = key(0.0, "horizontal force, towards +x; for a distributed load, its total")
+    x_end: Length | None = key(None, "end of a load that starts at x and is uniform per length of plan")
+    y: Length | None = key(None, "height at which the load acts; default: the surface below. In space: the second coordinate in plan")
+    z: Length | None = key(None, "in space: height at which the load acts; default: the surface below")
+    sways: bool = key(False, "whether the weight is accelerated with the ground, as that of a floor or a roof")
 
     @model_validator(mode="after")
     def _acts(self) -> "AppliedLoad":
         if self.force == 0.0 and self.horizontal == 0.0:
             raise ValueError("give force, horizontal, or both")
         if self.x_end is not None and self.x_end <= self.x:
-            raise ValueError("x_end must lie to the right of x")
+            raise ValueError("x_end must be greater than x")
         if self.sways and self.force <= 0.0:
-            raise ValueError("the weight sways: give a force above 0")
+            raise ValueError("sways = true requires a weight: give a force above 0")
         return self
 
 
@@ -44,91 +46,163 @@ class LimitAnalysisTable(BuildingAnalysis):
     bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
-        "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
+        (
+            'rule for sliding joints. "associated": sliding dilates, and the result is an upper bound; "non-associated": '
+            "sliding does not dilate, and of many possible states the least is searched"
+        ),
         source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
-    starts: int = key(6, "non-associated: starts from which states are sought, the least of them counts", ge=1, le=1000)
-    load: list[AppliedLoad] = key([], "loads at rest beside weight and fill, of which some may sway", max_length=1000)
+    starts: int = key(
+        6, 'for "non-associated": number of starting points of the search; the least state found is the result', ge=1, le=1000
+    )
+    load: list[AppliedLoad] = key(
+        [], "constant loads in addition to self-weight and fill; their weight can be accelerated with the ground (sways)", max_length=1000
+    )
 
 
-class Tilt(LimitAnalysisTable, Animated):
-    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+class SpatialLimit(LimitAnalysisTable):
+    """Questions of limit analysis that are also asked of blocks in space."""
 
-    kind: Literal["tilt"]
     solid: ClassVar = True
-    fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
+    fracture: bool = key(
+        False, "also consider a crack in the leeward buttress, and show the monolithic and the fractured structure side by side"
+    )
     direction: Angle | None = key(
         None,
-        "direction in plan of the horizontal load, from +x to +y, which is across a section; with it, and for structures "
-        "without a plane section, the blocks are analysed as solids",
+        (
+            "direction of the horizontal load in plan: angle from +x towards +y, which is across a section. With this key, "
+            "and for structures without a plane section, the blocks are analysed as solids"
+        ),
         ge=-360,
         le=360,
     )
+
+
+class Tilt(SpatialLimit, Animated):
+    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+
+    kind: Literal["tilt"]
+    fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     rose: int | None = key(
         None,
-        "of solids: directions all around at which the capacity is sought; default 16 up to 300 blocks, beyond the direction alone",
+        (
+            "for solids: number of directions all around in which the capacity is searched; default 16 up to 300 blocks; "
+            "above that, only the given direction"
+        ),
         ge=4,
         le=720,
     )
     face_law: bool | None = key(
         None,
-        "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 80 contacts slide",
+        (
+            "for solids: also calculate the capacity with uniform pressure on contact faces, which gives less resistance to "
+            "torsion; default: if up to 80 contacts slide"
+        ),
         source="after Orduna and Lourenco 2005",
     )
-    block_size: bool | None = key(None, "of solids: also the capacity with blocks half as long in each direction, and with the other bond")
+    block_size: bool | None = key(
+        None, ("for solids: also calculate the capacity with blocks of half the length in each direction, and with the other bond")
+    )
     pyramids: int | None = key(
-        None, "of solids: also bound the capacity by pyramids of so many sides, within and around the cones of friction", ge=3, le=64
+        None,
+        (
+            "for solids: also bound the capacity by friction pyramids with this number of sides, inscribed in and "
+            "circumscribed about the friction cones"
+        ),
+        ge=3,
+        le=64,
     )
 
 
-class Thrust(LimitAnalysisTable):
+class Section(Table):
+    """A section of blocks in space whose thrust is sought: a plane cut, or named contacts."""
+
+    name: str = key(about="its name", max_length=80)
+    x: Length | None = key(None, "cut across x: contacts between blocks whose centroids lie on both sides")
+    y: Length | None = key(None, "cut across y")
+    z: Length | None = key(None, "level cut at this height")
+    joints: list[str] | None = key(
+        None, 'names of contacts in place of a cut, or of a group of them; "ground" means all supports', min_length=1, max_length=10000
+    )
+    toward: Angle | None = key(
+        None,
+        "direction in plan of the thrust, from +x to +y, on the blocks at greater x or y, or on the blocks or ground below; default across "
+        "a vertical cut, else outward from the middle of the structure",
+        ge=-360,
+        le=360,
+    )
+
+    @model_validator(mode="after")
+    def _one_cut(self) -> "Section":
+        if sum(one is not None for one in (self.x, self.y, self.z, self.joints)) != 1:
+            raise ValueError("expected one of x, y, z and joints")
+        return self
+
+
+class Thrust(SpatialLimit):
     """Thrust lines at a given horizontal acceleration: least, greatest and most central thrust, safety, reactions."""
 
     kind: Literal["thrust"]
-    gamma: Gravities = key(0.0, "horizontal acceleration to +x at which the lines are drawn", ge=-5, le=5)
-    chain: str | None = key(None, "whose thrust is least and greatest; default the first: arch, vault or nave")
+    gamma: Gravities = key(
+        0.0, "horizontal acceleration towards +x, or along the direction, for which the thrust lines are drawn", ge=-5, le=5
+    )
+    chain: str | None = key(None, "arch or stack whose least and greatest thrust are calculated; default: the first arch, vault or nave")
+    section: list[Section] = key(
+        [],
+        "of solids: sections whose least and greatest thrust are calculated, [[analysis.section]]; default: cuts across x and y through "
+        "the middle, and the ground",
+        max_length=50,
+    )
 
 
-class Sweep(LimitAnalysisTable):
+class Sweep(SpatialLimit):
     """One deck key of the structure varied: capacity, mechanism and its changes, the optimum (Figs 3-4, 3-6a, 3-7b)."""
 
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
-        about="key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise, or of another table, for "
-        "instance joints.friction, material.compressive_strength or ties.0.yield_force"
+        about=(
+            "key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise; of another "
+            "table, for instance joints.friction, material.compressive_strength or ties.0.yield_force; or `direction`, that "
+            "of the load on solids"
+        )
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
     stop: float | str | None = key(None, "last value")
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
-    values: list[float | str] | None = key(None, "the values, in place of start and stop", min_length=2, max_length=2000)
-    fracture: bool = key(False, "also with the leeward buttress cracked")
-    buttress_alone: bool = key(False, "also the leeward buttress by itself", source="thesis Fig. 3-4b")
-    locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
+    values: list[float | str] | None = key(None, "list of values, instead of start and stop", min_length=2, max_length=2000)
+    fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
+    buttress_alone: bool = key(False, "also calculate the leeward buttress alone", source="thesis Fig. 3-4b")
+    locate: bool | None = key(
+        None,
+        "also locate the changes of mechanism, the optimum and the ends of the stable range precisely; default: true in a plane section",
+    )
 
     @model_validator(mode="after")
     def _range(self) -> "Sweep":
         if (self.values is None) == (self.start is None or self.stop is None):
-            raise ValueError("expected either values, or start and stop")
+            raise ValueError("give either values, or start and stop")
         return self
 
 
-class Survey(LimitAnalysisTable):
+class Survey(SpatialLimit):
     """Many sections from a CSV table, one line of results each."""
 
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
-    file: str = key(about="CSV beside the deck; a header of [structure] keys (lengths in m), one section a row")
-    fracture: bool = key(False, "also with the leeward buttress cracked")
+    file: str = key(
+        about="CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or one file of solids"
+    )
+    fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
 
 
-class Imperfections(LimitAnalysisTable):
+class Imperfections(SpatialLimit):
     """Random surveys of the same stones, each point within the deviation of the survey: a band on the capacity."""
 
     kind: Literal["imperfections"]
     starter: ClassVar = {"deviation": '"5 mm"'}
     deviation: Length | None = key(
-        None, "how far a measured point may lie from its true place; default the contact_tolerance of `blocks`", gt=0, le=1
+        None, "greatest distance of a measured point from its true position; default: the contact_tolerance of `blocks`", gt=0, le=1
     )
     count: int = key(200, "number of random surveys", ge=10, le=100000)
     seed: int = key(1, "seed of the random numbers", ge=0)
@@ -143,12 +217,12 @@ class MovingSupports(BuildingAnalysis, Animated):
     kind: Literal["supports"]
     beside: ClassVar = ("material.density", "joints.friction", "initial.movements")
     bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
-    spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
-    settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
+    spread: float = key(1.0, "outward component of the movement of the right support; only its ratio to settle matters", ge=-10, le=10)
+    settle: float = key(0.0, "downward component of the movement of the right support; only its ratio to spread matters", ge=-10, le=10)
     movement: Length | None = key(
-        None, "movement of the right support, for structures not followed to collapse; default 1/1000 of the width", gt=0
+        None, "movement of the right support, for structures that are not followed to collapse; default: 1/1000 of the width", gt=0
     )
-    steps: int = key(200, "of an arch: steps from rest to collapse", ge=10, le=5000)
+    steps: int = key(200, "for an arch: number of steps from rest to collapse", ge=10, le=5000)
 
     def reckons_with(self, building: "Building") -> set[str]:
         """Through its three-hinge states an arch opens alone, and does not slide."""
@@ -190,8 +264,8 @@ TrainName = Literal[
 class UniformLoad(Table):
     """A load spread evenly along a train, over all of the width that carries it."""
 
-    start: Length | None = key(None, "start, behind the first axle; default: unlimited")
-    stop: Length | None = key(None, "end, behind the first axle; default: unlimited")
+    start: Length | None = key(None, "start of the load, as a distance behind the first axle; default: unlimited")
+    stop: Length | None = key(None, "end of the load, as a distance behind the first axle; default: unlimited")
     load: LineForce = key(about="load per length of bridge", gt=0)
 
 
@@ -202,74 +276,82 @@ class PartialFactors(Table):
     fill: float = key(1.0, "partial factor on the weight of the fill", gt=0, le=10)
     surfacing: float = key(1.0, "partial factor on the weight of the surfacing", gt=0, le=10)
     live: float = key(1.0, "partial factor on the moving load", gt=0, le=10)
-    dynamic: float = key(1.0, "dynamic factor of the moving load, besides `live`", gt=0, le=10)
-    strength: float = key(1.0, "partial factor that divides the compressive strength", gt=0, le=10)
-    friction: float = key(1.0, "partial factor that divides the coefficients of friction", gt=0, le=10)
+    dynamic: float = key(1.0, "dynamic factor of the moving load, in addition to `live`", gt=0, le=10)
+    strength: float = key(1.0, "partial factor by which the compressive strength is divided", gt=0, le=10)
+    friction: float = key(1.0, "partial factor by which the coefficients of friction are divided", gt=0, le=10)
 
 
 class Serviceability(Table):
     """A permissible limit state beside the collapse load: repeated traffic does not damage the structure progressively."""
 
     strength_share: float = key(
-        0.5, "permissible compressive stress over the compressive strength; the default is a choice of this program", gt=0, le=1
+        0.5, "ratio of the permissible compressive stress to the compressive strength; the default is a choice of this program", gt=0, le=1
     )
-    passive_share: float = key(0.0, "share of `fill.passive` that acts under service loads, whose movements are small", ge=0, le=1)
-    live: float = key(1.0, "factor on the moving load, besides `factors.dynamic`", gt=0, le=10)
+    passive_share: float = key(0.0, "share of `fill.passive` that acts under service loads, because their movements are small", ge=0, le=1)
+    live: float = key(1.0, "factor on the moving load, in addition to `factors.dynamic`", gt=0, le=10)
 
 
 class MovingLoad(LimitAnalysisTable):
     """A load, axles or a train that crosses: what of it brings the structure down, at every place."""
 
     kind: Literal["moving-load"]
-    chain: str | None = key(None, "the arch it crosses; default the first: arch, vault or nave; a bridge is crossed along its whole top")
+    chain: str | None = key(
+        None, "arch that the load crosses; default: the first arch, vault or nave. A bridge is crossed along its whole top"
+    )
     train: TrainName | None = key(
         None,
-        "load model of EN 1991-2, a special vehicle of its UK annex, an axle or bogie of CS 454, or a tracked vehicle of a military "
-        "class, in place of axles and loads",
+        (
+            "load model that replaces axles and loads: EN 1991-2, a special vehicle of its UK annex, an axle or bogie of CS "
+            "454, or a tracked vehicle of a military class"
+        ),
         source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause); CS 454 7.3.1; STANAG 2021 (verify)",
     )
     gap: Length | None = key(None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0)
-    axles: list[Length] = key([0.0], "places of the axles behind the first", max_length=200)
-    shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=200)
-    force: Force | None = key(None, "the load; adds the safety factor", gt=0)
-    axle_loads: list[Force] | None = key(None, "load of each axle, in place of shares and force", max_length=200)
-    uniform: list[UniformLoad] = key([], "even loads along the train; they need axle_loads, or axles = []", max_length=50)
-    adverse: bool = key(True, "distributed loads act only over lengths that drive the mechanism; false: over all of their length")
+    axles: list[Length] = key([0.0], "positions of the axles behind the first axle", max_length=200)
+    shares: list[float] | None = key(None, "share of the load on each axle; default: equal shares", max_length=200)
+    force: Force | None = key(None, "total load of the axles; adds the safety factor", gt=0)
+    axle_loads: list[Force] | None = key(None, "load of each axle; replaces shares and force", max_length=200)
+    uniform: list[UniformLoad] = key([], "uniform loads along the train; these require axle_loads, or axles = []", max_length=50)
+    adverse: bool = key(
+        True, ("true: distributed loads act only over adverse lengths, on which they drive the mechanism; false: over their whole length")
+    )
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
-    lanes: int | None = key(None, "notional lanes that LM1 loads; default all that the width holds", ge=1, le=20)
-    width: Length | None = key(None, "transverse width that carries the load, at most the depth", gt=0)
-    contact_length: Length = key(0.3, "length of an axle's contact along a bridge with fill", gt=0)
+    lanes: int | None = key(None, "number of notional lanes that LM1 loads; default: all that fit into the width", ge=1, le=20)
+    width: Length | None = key(None, "transverse width that carries the load; not greater than the depth", gt=0)
+    contact_length: Length = key(0.3, "contact length of an axle along a bridge with fill", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     serviceability: Serviceability | None = key(
         None,
-        "permissible limit state: the multiple of the train under which a thrust line exists with stresses below a share of the "
-        "compressive strength; it requires compressive_strength",
+        (
+            "permissible limit state: multiple of the train up to which a thrust line exists with stresses below a share of "
+            "the compressive strength; requires compressive_strength"
+        ),
     )
-    both_ways: bool = key(False, "the train also crosses to the left, its first axle ahead")
-    count: int = key(81, "number of places along the span", ge=3, le=2000)
-    places: list[Length] | None = key(None, "places of the first axle, in place of count", min_length=1, max_length=2000)
+    both_ways: bool = key(False, "whether the train also crosses towards the left, with its first axle in front")
+    count: int = key(81, "number of positions along the span", ge=3, le=2000)
+    places: list[Length] | None = key(None, "positions of the first axle; replaces count", min_length=1, max_length=2000)
 
     @model_validator(mode="after")
     def _axles(self) -> "MovingLoad":
         given = self.model_fields_set
         if self.shares is not None and (len(self.shares) != len(self.axles) or min(self.shares) <= 0.0):
-            raise ValueError("shares: expected one number above 0 for each of axles")
+            raise ValueError("shares: expected one number above 0 for each of the axles")
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
-            raise ValueError("axle_loads: expected one load above 0 for each of axles")
+            raise ValueError("axle_loads: expected one load above 0 for each of the axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
-            raise ValueError("train replaces axles, shares, force, axle_loads and uniform: give the one or the others")
+            raise ValueError("train replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
         if self.axle_loads is not None and (self.shares is not None or self.force is not None):
             raise ValueError("axle_loads replaces shares and force")
         if self.uniform and self.axle_loads is None and self.axles:
-            raise ValueError("uniform needs axle_loads, or axles = [] without axles")
+            raise ValueError("uniform requires axle_loads, or axles = [] if there are no axles")
         if self.serviceability is not None and self.train is None and self.axle_loads is None and not self.uniform:
-            raise ValueError("serviceability: requires a train, axle_loads or uniform")
+            raise ValueError("serviceability requires a train, axle_loads or uniform")
         if not self.axles and not self.uniform:
-            raise ValueError("axles: expected one at least, or uniform loads")
+            raise ValueError("axles: expected at least one axle, or uniform loads")
         if self.lanes is not None and self.train != "LM1":
-            raise ValueError("lanes belongs to the train LM1")
+            raise ValueError('lanes belongs to train = "LM1": remove it')
         if self.gap is not None and not (self.train or "").startswith("SV"):
-            raise ValueError("gap belongs to the trains SV80, SV100 and SV196")
+            raise ValueError("gap belongs to the trains SV80, SV100 and SV196: remove it")
         if self.gap not in (None, 1.2, 5.0, 9.0):
             raise ValueError(f"gap: expected 1.2, 5 or 9 m, found {self.gap:g}")
         for one in self.uniform:

@@ -16,6 +16,7 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )
 from extrados.analyses.limit.tables import Thrust
+from extrados.analyses.needs import in_space
 from extrados.limit.answer import Answer, assess, safety_factor
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
@@ -27,7 +28,11 @@ from extrados.results.model import Result, TableData
 
 
 def run(context: Context, options: Thrust) -> Result:
-    """Least, greatest and most central thrust line, each with its force polygon."""
+    """Least, greatest and most central thrust line, each with its force polygon; of solids the states of stress."""
+    if in_space(context.building, options):
+        from extrados.analyses.limit import solid_thrust  # with a solver of its own, which takes a while to load
+
+        return solid_thrust.run(context, options)
     assembly: Assembly = context.building.blocks()
     limit = limit_of(context.building, options, forces_only=True)
     chain = chain_of(assembly, options.chain)
@@ -43,7 +48,7 @@ def run(context: Context, options: Thrust) -> Result:
         states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
-            f"at {options.gamma:g} g no thrust line is admissible: the structure carries {low:.4f} to {high:.4f} g", ("analysis", "gamma")
+            f"no thrust line is admissible at {options.gamma:g} g: the structure can carry {low:.4f} to {high:.4f} g", ("analysis", "gamma")
         ) from None
     safety = None if part is None else safety_factor(part)
     lines: Keys = {}
@@ -87,7 +92,7 @@ def _with_central(limit: LimitAnalysis, gamma: float, ends: dict[str, State], re
     try:
         central, part = limit.central(gamma, start=list(ends.values()))
     except (NoAnswer, NoEquilibrium) as error:
-        result.warnings.append(f"the most central line is not given: {error}")
+        result.warnings.append(f"the most central thrust line is not given: {error}")
         return ends, None
     return {**ends, "central": central}, part
 
@@ -112,41 +117,41 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
     needs = ""
     if central is not None:
         keeps = (
-            "can run through the middles of all joints, within 1 % of their length: no horizontal demand,"
+            "can pass within 1 % of the joint length from the middles of all joints (no horizontal demand)"
             if safety is None
-            else f"keeps to the middle {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
+            else f"stays within the central {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
         )
         needed = np.inf if central.required_friction is None else central.required_friction
-        needs = f"{keeps} and needs a friction of {needed:.2f}"
+        needs = f"{keeps} and requires a friction of {needed:.2f}"
     if r.chain is None:
         text = (
-            f"At {r.gamma_g:g} g {f'the most central state {needs}' if needs else 'a state is admissible'}. No stones form an arch or "
-            "a stack here, so no chain has a least and a greatest thrust."
+            f"At {r.gamma_g:g} g {f'the most central state {needs}' if needs else 'an equilibrium state is admissible'}. The "
+            "blocks form no arch or stack, so no least and greatest thrust are given."
         )
     else:
         tied = r.least.crown_N is not None
         least, most = (line.told_kN_per_m(r.depth_m) for line in (r.least, r.most))
         if central is not None and is_stack(assembly, assembly.chains[r.chain]):  # determinate: all lines are one at its base
             text = (
-                f"At {r.gamma_g:g} g the most central line of the stack ({central.horizontal_kN_per_m:.4g} kN/m horizontally "
-                f"at its base) {needs}."
+                f"At {r.gamma_g:g} g the most central thrust line of the stack (horizontal thrust "
+                f"{central.horizontal_kN_per_m:.4g} kN/m at its base) {needs}."
             )
         else:
             text = (
-                f"At {r.gamma_g:g} g the thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre of "
-                f"depth at its {'crown' if tied else 'left springing'}"
+                f"At {r.gamma_g:g} g the horizontal thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre "
+                f"of depth, at its {'crown' if tied else 'left springing'}"
             )
             if central is not None:
-                text += f"; the most central line ({central.told_kN_per_m(r.depth_m):.4g} kN/m) {needs}"
+                text += f"; the most central thrust line ({central.told_kN_per_m(r.depth_m):.4g} kN/m) {needs}"
             text += "."
             if tied:
                 shown = central or r.least
-                text += f" Of it {shown.horizontal_kN_per_m:.4g} kN/m reach its left springing, the ties take the rest."
+                text += f" Of this thrust, {shown.horizontal_kN_per_m:.4g} kN/m act at the left springing, and the ties carry the rest."
     low, high = r.admissible_interval_g
     shown = central or r.least
     text += spoken_ties(None if shown is None else shown.ties)
     bound = f" (joints slide there: {out.DILATANT})" if r.dilating else ""
-    return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g{bound}."
+    return f"{text} Thrust lines are admissible from {low:.4f} to {high:.4f} g{bound}."
 
 
 def _table(assembly: Assembly, state: State) -> TableData:

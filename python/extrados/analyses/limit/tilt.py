@@ -23,7 +23,7 @@ from extrados.analyses.limit.common import (
 )
 from extrados.analyses.limit.paths import doubt, follow_paths
 from extrados.analyses.limit.tables import Tilt
-from extrados.analyses.needs import SPATIAL
+from extrados.analyses.needs import in_space
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import Certificate, certify
 from extrados.limit.finite_motion import finite_motion
@@ -31,7 +31,6 @@ from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.plane_path import collapse_along_path
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
-from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results import limit as out
 from extrados.results.fields import Keys
@@ -55,25 +54,10 @@ def degrees(gamma: float) -> float:
     return float(np.degrees(np.arctan(gamma)))
 
 
-def looks_at_solids(building: Building, options: Tilt) -> bool:
-    """Whether a deck asks for solids: by a direction or a rose, or since there is no plane section."""
-    if any(getattr(options, name) is not None for name in SPATIAL):
-        return True
-    try:
-        building.blocks()
-    except NoView as error:
-        try:
-            building.solids()
-        except NoView:
-            raise error from None
-        return True
-    return False
-
-
 def run(context: Context, options: Tilt) -> Result:
     """Capacity both ways, hinges, mechanism, thrust line at collapse, least and greatest thrust upright."""
     building = context.building
-    if looks_at_solids(building, options):
+    if in_space(building, options):
         from extrados.analyses.limit import solids  # with a solver of its own, which takes a while to load
 
         return solids.run(context, options)
@@ -121,7 +105,7 @@ def run(context: Context, options: Tilt) -> Result:
             finite_motion(assembly, mechanism),
             ("block", "component"),
             "m, m, rad",
-            "the mechanism carried on: places of the centroids, rotations",
+            "mechanism at a finite displacement: positions of the centroids, and rotations",
         ),
         **tie_arrays(building, answer.loads, {"collapse": state}),
         **load_arrays(assembly, options.load),
@@ -142,11 +126,11 @@ def run(context: Context, options: Tilt) -> Result:
     needed = found.required_friction or 0.0
     if building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
-            f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): joints slide "
-            "before; give friction"
+            f"the structure requires a coefficient of friction of {needed:.2f}. Masonry has about {USUAL_FRICTION:g}, so "
+            "joints slide before this load: give friction"
         )
     if preset := getattr(context.deck.structure, "preset", None):
-        result.warnings.append(f'the sizes of preset "{preset}" are inferred or guessed, not taken from a survey')
+        result.warnings.append(f'the dimensions of preset "{preset}" are inferred or estimated, not taken from a survey')
     return result
 
 
@@ -160,9 +144,11 @@ def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
     for gamma in np.linspace(0.0, answer.gamma * (1.0 - 1e-6), FILM).tolist():
         pair = limit.thrust(joints, gamma)
         rows.append([(s.points(answer.assembly)[joints], thrust_of(answer.assembly, s, joints, at)) for s in pair])
-    about = "of the first chain as the ground is tilted to collapse"
+    about = "for the first arch or stack, as the ground is tilted up to collapse"
     return {
-        "film_tilt": Array(np.linspace(0.0, degrees(answer.gamma), FILM), ("film",), "deg", "tilt of the ground in the animation"),
+        "film_tilt": Array(
+            np.linspace(0.0, degrees(answer.gamma), FILM), ("film",), "deg", "tilt of the ground in each picture of the animation"
+        ),
         **{
             f"film_{name}": Array(np.array([row[k][0] for row in rows]), ("film", "chain_joint", "axis"), "m", f"{name} thrust {about}")
             for k, name in enumerate(("least", "most"))
@@ -221,12 +207,13 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
         way = "to +x" if direction > 0 else "to -x"
         if limit.strength is not None:
             result.warnings.append(
-                f"Load paths {way} do not consider crushing: the capacity is the least state found, not the design value."
+                f"Load paths {way} do not include crushing. The capacity is therefore the least state found, not the design value."
             )
         elif limit.associated and len(limit.assembly.a) > MOST_FOLLOWED:
             result.warnings.append(
-                f'Load paths {way} are not followed: of more than {MOST_FOLLOWED} joints friction_rule = "non-associated" requests '
-                "them. The capacity is the least state found, not the design value."
+                f"Load paths {way} are not calculated, because the structure has more than {MOST_FOLLOWED} joints. The capacity "
+                "is therefore the least state found, not the design value. To calculate load paths, give friction_rule = "
+                '"non-associated".'
             )
         elif beside.coulomb[direction].falling is None:
             paths, ends = _paths(beside, direction, patient=not limit.associated)
@@ -266,8 +253,8 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
         if found.falling is not None:
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
-                f"{stone} hangs between its neighbours by friction alone, and slides out of them at any load in a state without "
-                f"dilatancy: {way} no horizontal load is carried reliably"
+                f"{stone} is carried only by friction between its neighbours. In a state without dilatancy it slides out at any "
+                f"load, so no horizontal load {way} is carried reliably"
             )
         if not certified:
             told["non_associated_reason"] = f"the state found {way} is not certified (zero gap {proof.zero_gap:.1e} g)"
@@ -299,7 +286,7 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
         if found is not None and found.gamma <= 0.0:
             raise NoEquilibrium
     except NoEquilibrium:
-        result.warnings.append("with its leeward buttress cracked the structure cannot stand upright")
+        result.warnings.append("with a crack in its leeward buttress the structure cannot stand upright")
         return {"fracture": out.Fracture(stands=False)}
     if found is None or block is None:
         return {"fracture": out.Fracture(cracks=False, collapse_acceleration_g=answer.gamma, ratio=1.0)}
@@ -311,12 +298,17 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
                 finite_motion(found.assembly, found.mechanism),
                 ("block", "component"),
                 "m, m, rad",
-                "the mechanism with the buttress cracked, carried on",
+                "mechanism with the buttress cracked, at a finite displacement",
             ),
             "crack_centroid": Array(found.assembly.centroid, ("block", "axis"), "m", "centroids of the cracked blocks"),
-            "crack_outline": Array(np.concatenate(outlines), ("crack_vertex", "axis"), "m", "outlines of the blocks, the buttress cracked"),
+            "crack_outline": Array(
+                np.concatenate(outlines), ("crack_vertex", "axis"), "m", "outlines of the blocks with the cracked buttress"
+            ),
             "crack_outline_start": Array(
-                np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"
+                np.cumsum([0, *map(len, outlines)]),
+                ("block_edge",),
+                "",
+                "index of the first vertex of each block; the last value is the end",
             ),
             "crack_point": Array(found.state.points(found.assembly), ("joint", "axis"), "m", "thrust line, cracked"),
         }
@@ -357,20 +349,20 @@ def _told(found: out.Tilt) -> str:
         ),
     )
     bounds = [way for way, dilating, *_ in ends if dilating]
-    text = f"Pushed {' and '.join(bounds)} joints slide: {out.DILATANT}. " if bounds else ""
+    text = f"Under the load {' and '.join(bounds)} joints slide: {out.DILATANT}. " if bounds else ""
     for way, _, r, least, design, paths in ends:
         if r is None or least is None:
             continue
         upper = "none" if r.associated_g is None else f"{r.associated_g:.4f} g"
         lower = "nothing stands" if r.frictionless_g is None else f"{r.frictionless_g:z.4f} g"
         if design is not None:
-            text += f"Without dilatancy {way}: design value {design:.4f} g, the least of {len(paths)} load paths of elastic joints. "
+            text += f"Without dilatancy, the design value {way} is {design:.4f} g, the least of {len(paths)} load paths of elastic joints. "
         text += (
-            f"Least state found {way}: {least:.4f} g, the least of {len(r.starts_g)} states found (spread {r.spread_g:.4f} g); "
-            f"bounds: {lower} without friction, {upper} with dilatancy. "
+            f"The least of {len(r.starts_g)} states found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The lower "
+            f"bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
         )
     if found.non_associated_reason:
-        text += f"A state without dilatancy is not given: {found.non_associated_reason}. "
+        text += f"No state without dilatancy is given: {found.non_associated_reason}. "
     return text
 
 
@@ -391,19 +383,22 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     gamma, back = answer.gamma, -answer.back_state.gamma
     where = _some([h.told() for h in found.hinges], "; ")
     slides = _sliding(assembly, answer.mechanism.sliding)
-    moves = ([f"hinges form at the {where}"] if where else []) + ([f"joints slide or part at {slides}"] if slides else [])
+    moves = ([f"hinges form at the {where}"] if where else []) + ([f"joints slide or open at {slides}"] if slides else [])
     text = (
         f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
-        f"tilted by {degrees(gamma):.2f} degrees. In the mechanism to +x {' and '.join(moves)}. "
+        f"tilted by {degrees(gamma):.2f} degrees. In the mechanism towards +x {' and '.join(moves)}. "
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
-        text += f"To -x the collapse acceleration is {back:.4f} g ({degrees(back):.2f} degrees). "
+        text += f"Towards -x the collapse acceleration is {back:.4f} g ({degrees(back):.2f} degrees). "
     text += _told(found)
     needed = np.inf if found.required_friction is None else found.required_friction
     text += f"Friction of {needed:.2f} is needed" + (
-        f"; upright the geometric safety factor is {answer.safety:.2f}."
+        f"; the geometric safety factor of the upright structure is {answer.safety:.2f}."
         if np.isfinite(answer.safety)
-        else "; upright the thrust line runs through the middles of the joints, within 1 % of their length: self-weight makes no horizontal demand."
+        else (
+            "; in the upright structure a thrust line passes within 1 % of the joint length from the middles of all joints, "
+            "so self-weight causes no horizontal demand."
+        )
         if answer.part < CENTRAL
         else "."
     )
@@ -411,10 +406,10 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     fracture = found.fracture
     if fracture and fracture.cracks:
         text += (
-            f" With the leeward buttress cracked from {fracture.crack_height_m:.2f} m above its base down to the toe the "
+            f"If the leeward buttress cracks from {fracture.crack_height_m:.2f} m above its base down to the toe, the "
             f"collapse acceleration is {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} degrees), "
-            f"{fracture.ratio:.2f} of that."
+            f"{fracture.ratio:.2f} of the value above."
         )
     elif fracture and fracture.cracks is False:
-        text += " The leeward buttress does not crack before that."
+        text += " The leeward buttress does not crack before this collapse."
     return text

@@ -94,7 +94,10 @@ def _lm1(width: float, lanes: int | None) -> tuple[float, float]:
     """Weight of an axle of the tandem systems [N] and even load [N/m] of LM1 over a carriageway [m] (Tables 4.1, 4.2)."""
     most = 1 if width < 5.4 else 2 if width < 6.0 else int(width / 3.0)
     if lanes is not None and lanes > most:
-        raise Refused(f"lanes: a carriageway of {width:g} m holds {most}, not {lanes} (EN 1991-2 Table 4.1)", ("analysis", "lanes"))
+        raise Refused(
+            f"lanes: a carriageway with a width of {width:g} m has space for {most}, not {lanes} (EN 1991-2 Table 4.1)",
+            ("analysis", "lanes"),
+        )
     count = most if lanes is None else lanes
     lane = min(width, 0.5 * width if 5.4 <= width < 6.0 else 3.0)
     axle = sum((300.0, 200.0, 100.0)[:count])
@@ -106,5 +109,5 @@ def fitting_train(building: Building, options: MovingLoad) -> Train:
     """The train of a deck on its structure; Refused where it is wider."""
     depth, structure = building.blocks().depth, building.structure
     if options.width is not None and options.width > depth and structure is not None:
-        raise Refused(f"width: {options.width:g} m is more than the depth of the {structure.word}, {depth:g} m", ("analysis", "width"))
+        raise Refused(f"width: {options.width:g} m exceeds the depth of the {structure.word}, {depth:g} m", ("analysis", "width"))
     return train_of(options, depth)

@@ -2,13 +2,15 @@
 
 import json
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.analyses.batches import Swept
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import fracture_of, limit_of
-from extrados.analyses.limit.tables import LimitAnalysisTable
+from extrados.analyses.limit.tables import LimitAnalysisTable, SpatialLimit
+from extrados.analyses.needs import in_space
 from extrados.limit.answer import cannot_stand
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
@@ -17,9 +19,15 @@ from extrados.model.geometry.assembly import GROUND, Assembly, part_of
 from extrados.results import limit as out
 from extrados.views.building import Building
 
+if TYPE_CHECKING:
+    from extrados.limit.solids import Programme
+    from extrados.model.geometry.solids.assembly import SolidAssembly
+
 Signature = tuple[tuple[str, str], ...]
 #: Stands for a structure that no load of the kind brings down
 LOCKED: Signature = (("all", "locked"),)
+#: Marks the blocks that move in a mechanism of solids, in words
+MOVES = "m"
 
 
 @dataclass(frozen=True)
@@ -32,8 +40,8 @@ class Outcome:
     signature: Signature = ()
     gap: float = 0.0
     reason: str = ""
-    assembly: Assembly | None = None
-    mechanism: Mechanism | None = None
+    assembly: "Assembly | SolidAssembly | None" = None
+    mechanism: "Mechanism | Programme | None" = None
     notes: list[str] = field(default_factory=list)
     locked: bool = False  # no load of the kind brings it down: it stands, but has no capacity to give
     dilating: bool = False  # pressed joints slide in its mechanism: gamma is an upper bound by dilatant friction
@@ -104,14 +112,18 @@ def spoken(found: Signature) -> str:
     if found == LOCKED:
         return "none: no collapse mechanism exists"
     words = {"i": "intrados", "e": "extrados", "s": "slide"}
-    return "; ".join(f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
+    return "; ".join(name if marks == MOVES else f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
 
 
 def evaluate(
     building: Building, options: LimitAnalysisTable, *, fracture: bool = False, alone: bool = False, explain: bool = True
 ) -> Outcome:
-    """Build the section and load it to +x."""
+    """Build the section and load it to +x, or solids along their direction."""
     try:
+        if isinstance(options, SpatialLimit) and in_space(building, options):
+            from extrados.analyses.limit.solid_variation import evaluate_solids  # with a solver that takes a while to load
+
+            return evaluate_solids(building, options)
         assembly, limit = building.blocks(), limit_of(building, options)
     except (BadGeometry, Refused, ValueError) as error:
         return Outcome(reason=str(error))
@@ -185,6 +197,6 @@ def _evaluate(
     )
 
 
-def measures_of(assembly: Assembly) -> dict[str, float]:
+def measures_of(assembly: "Assembly | SolidAssembly") -> dict[str, float]:
     """Derived lengths of a section."""
     return {k: float(v) for k, v in assembly.measures.items()}

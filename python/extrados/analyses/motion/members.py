@@ -27,7 +27,7 @@ def series(motion: Motion) -> tuple[np.ndarray, float]:
     """Horizontal acceleration from time zero of the file [m/s^2], and its step [s]; Refused where it is too long."""
     time, acceleration = motion.series()
     if len(time) > MOST_POINTS:
-        raise Refused(f"{motion.name} has {len(time)} samples, at most {MOST_POINTS} can be studied", ("motion",))
+        raise Refused(f"{motion.name} has {len(time)} samples, and at most {MOST_POINTS} can be analysed", ("motion",))
     return acceleration, float(time[1] - time[0])
 
 

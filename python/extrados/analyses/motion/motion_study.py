@@ -20,7 +20,7 @@ from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.measures import BANDWIDTH, HOUSNER_BAND, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
 from extrados.motions.processing import drift
-from extrados.motions.wavelet_pulse import classify
+from extrados.motions.wavelet_pulse import classify, classify_directions
 from extrados.results import motion as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -46,7 +46,7 @@ def _periods(options: MotionStudy, step: float) -> np.ndarray:
     """Of a spectrum [s]; Refused where the time step is too long for those that are asked for or of a measure."""
     shortest = core.POINTS_PER_CYCLE * step / 4096.0
     if shortest > (needed := min(options.longest, HOUSNER_BAND[0])):
-        raise Refused(f"a time step of {step:.3g} s is too long for the spectrum at a period of {needed:g} s", ("motion",))
+        raise Refused(f"a time step of {step:.3g} s is too long for the spectrum, which requires the period of {needed:g} s", ("motion",))
     return np.geomspace(max(options.shortest, shortest), options.longest, options.periods)
 
 
@@ -126,7 +126,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     rotd: dict[str, np.ndarray] = {}
     if motion.horizontal is not None:
         rotd = _all_directions(context, options, periods, result)
-        r |= {**rotd_peaks(motion), "rotd_damping": _damping(options)}
+        r |= {**rotd_peaks(motion), "rotd_damping": _damping(options), "directed_pulses": _directed(motion)}
     result.tables = {
         "motion": TableData(
             {"time": time, "acceleration": a, "velocity": velocity, "displacement": displacement},
@@ -186,24 +186,57 @@ def _all_directions(context: Context, options: MotionStudy, periods: np.ndarray,
     return found
 
 
+def _directed(motion: Motion) -> list[out.DirectedPulse]:
+    """Candidates of pulses over all directions of a record with both horizontal components."""
+    assert motion.horizontal is not None
+    return [
+        out.DirectedPulse(
+            indicator=one.indicator,
+            period_s=one.period,
+            angle_deg=float(np.degrees(one.angle)),
+            pgv_m_s=one.pgv,
+            pgv_ratio=one.pgv_ratio,
+            energy_ratio=one.energy_ratio,
+            energy_before=one.before,
+            pulse_like=one.pulse_like,
+        )
+        for one in classify_directions(motion.horizontal, motion.ground.step)
+    ]
+
+
 def describe(name: str, r: out.OneMotion) -> str:
     """The numbers of one motion in words."""
     said = ", ".join(part for part in (r.title, r.station) if part)
     text = (
-        f"{name}{f' ({said})' if said else ''}: peak {r.pga_g:.4g} g at {r.pga_time_s:.2f} s, {100 * r.pgv_m_s:.3g} cm/s, {100 * r.pgd_m:.3g} cm; "
-        f"Arias intensity {r.arias_m_s:.3g} m/s over {r.duration_5_95_s:.3g} s (5 to 95 %). "
+        f"{name}{f' ({said})' if said else ''}: peak acceleration {r.pga_g:.4g} g at {r.pga_time_s:.2f} s, peak velocity "
+        f"{100 * r.pgv_m_s:.3g} cm/s, peak displacement {100 * r.pgd_m:.3g} cm; Arias intensity {r.arias_m_s:.3g} m/s "
+        f"over {r.duration_5_95_s:.3g} s (5 to 95 %). "
     )
     if r.rotd100_pga_g is not None:
-        text += f"Over all directions the peak is {r.rotd50_pga_g:.4g} g (RotD50), {r.rotd100_pga_g:.4g} g at most (RotD100). "
+        text += (
+            f"Over all directions the median peak is {r.rotd50_pga_g:.4g} g (RotD50), and the greatest peak is "
+            f"{r.rotd100_pga_g:.4g} g (RotD100). "
+        )
     if first := r.primary_impulse:
         text += (
-            f"Primary impulse {abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s from {first.start_s:.2f} s "
-            f"(explains {100 * first.goodness_of_fit:.0f} % of the motion over its span). "
+            f"The primary impulse has {abs(first.amplitude_g):.3g} g and a period of {first.period_s:.3g} s, and starts at "
+            f"{first.start_s:.2f} s (it explains {100 * first.goodness_of_fit:.0f} % of the motion over its duration). "
+        )
+    if r.directed_pulses is not None:
+        like = [one for one in r.directed_pulses if one.pulse_like]
+        text += (
+            f"Over all directions it is pulse-like: period {like[0].period_s:.2f} s at {like[0].angle_deg:.0f} degrees from the first component "
+            "(Shahi and Baker 2014). "
+            if like
+            else "Over all directions it is not pulse-like (Shahi and Baker 2014). "
         )
     pulse = r.wavelet_pulse
     if pulse.pulse_like:
-        return f"{text}By Baker's classification it is pulse-like (indicator {pulse.indicator:.2f}, period {pulse.period_s:.2f} s)."
-    return f"{text}By Baker's classification it is not pulse-like: {'; '.join(pulse.fails)} (period {pulse.period_s:.2f} s)."
+        return (
+            f"{text}By the classification of Baker the motion is pulse-like (indicator {pulse.indicator:.2f}, period "
+            f"{pulse.period_s:.2f} s)."
+        )
+    return f"{text}By the classification of Baker the motion is not pulse-like: {'; '.join(pulse.fails)} (period {pulse.period_s:.2f} s)."
 
 
 def _spectra_arrays(spectra: core.Spectra) -> dict[str, Array]:
@@ -235,7 +268,7 @@ def _readable(context: Context, model: models.Suite, warnings: list[str]) -> lis
     if len(wrong) > 10:
         warnings.append(f"and {len(wrong) - 10} more records that cannot be read")
     if not found:
-        raise Refused(f"none of the {len(wrong)} records can be read; the first: {wrong[0]}", ("motion",))
+        raise Refused(f"none of the {len(wrong)} records can be read. First reason: {wrong[0]}", ("motion",))
     return found
 
 
@@ -256,6 +289,7 @@ def _members(context: Context, options: MotionStudy, warnings: list[str]) -> tup
 
 def _run_set(context: Context, options: MotionStudy) -> Result:
     model, folder = context.deck.motion, context.deck.folder
+    assert model is not None  # is_set
     suite = isinstance(model, models.Suite)
     damping = model.damping if isinstance(model, models.Compatible) else _damping(options)
     warnings: list[str] = []
@@ -300,7 +334,14 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         result.arrays["fourier"] = Array(
             np.sqrt(np.mean(spectra["fourier"] ** 2, axis=0)), ("frequency",), "m/s", "root mean square Fourier amplitude"
         )
-    if isinstance(model, models.Generated):
+    if model.floor is not None:  # targets and intensities are those of the ground
+        result.answer = (
+            f"{count} motions of a floor: median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s, "
+            f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
+        )
+        if not isinstance(model, models.Suite) or model.selection is not None:
+            result.warnings.append("The target of the set is that of the ground. The motions of the floor are not compared with it.")
+    elif isinstance(model, models.Generated):
         r |= _compare_with_intensity(result, r, model, context)
     elif isinstance(model, models.Compatible):
         known = periods <= (model.longest if model.code == "table" else np.inf)
@@ -309,8 +350,9 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         r |= _compare_with_target(result, r, model, periods, psa, target)
     else:
         result.answer = (
-            f"{count} records: median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s, "
-            f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
+            f"{count} records: median peak acceleration {r['median_pga_g']:.3g} g (largest {r['largest_pga_g']:.3g} g), "
+            f"median peak velocity {100 * r['median_pgv_m_s']:.3g} cm/s, median Arias intensity {r['median_arias_m_s']:.3g} "
+            "m/s."
         )
         if isinstance(model, models.Suite) and model.selection is not None:
             r |= _beside_selection(result, model.selection, folder, periods, psa)
@@ -332,8 +374,8 @@ def _beside_selection(result: Result, chosen: models.Selection, folder: Path, pe
     result.arrays["target"] = Array(target, ("period",), "m/s^2", "target spectrum of the selection")
     ratio = np.exp(np.log(psa[:, band] / target[band]).mean(axis=0))
     result.answer += (
-        f" They are selected by spectrum: from {chosen.shortest:g} to {chosen.longest:g} s their geometric mean lies between "
-        f"{ratio.min():.2f} and {ratio.max():.2f} of the target."
+        f" The records are selected by spectrum: from {chosen.shortest:g} to {chosen.longest:g} s their geometric mean is "
+        f"{ratio.min():.2f} to {ratio.max():.2f} times the target."
     )
     return {"shortest_s": chosen.shortest, "longest_s": chosen.longest}
 
@@ -360,10 +402,12 @@ def _compare_with_intensity(result: Result, r: dict[str, Any], model: models.Gen
     }
     ratio = further["pga_over_expected"]
     result.answer = (
-        f"{r['count']} generated motions of intensity {model.mmi:g}: median peaks {r['median_pga_g']:.3g} g and "
-        f"{100 * r['median_pgv_m_s']:.3g} cm/s, Arias intensity {r['median_arias_m_s']:.3g} m/s. Records of that intensity have "
-        f"medians of {further['expected_pga_g']:.3g} g and {100 * further['expected_pgv_m_s']:.3g} cm/s (Worden et al. 2012), and the "
-        f"spectrum an Arias intensity of {further['expected_arias_m_s']:.3g} m/s: the set is {ratio:.2f} times as strong by PGA."
+        f"{r['count']} generated motions of intensity {model.mmi:g}: median peak acceleration {r['median_pga_g']:.3g} g, "
+        f"median peak velocity {100 * r['median_pgv_m_s']:.3g} cm/s, Arias intensity {r['median_arias_m_s']:.3g} m/s. "
+        f"Records of this intensity have medians of {further['expected_pga_g']:.3g} g and "
+        f"{100 * further['expected_pgv_m_s']:.3g} cm/s (Worden et al. 2012), and the target spectrum has an Arias "
+        f"intensity of {further['expected_arias_m_s']:.3g} m/s. The peak acceleration of the set is {ratio:.2f} times "
+        "that of the records."
     )
     if not 0.5 <= ratio <= 2.0:
         result.warnings.append(
@@ -383,8 +427,9 @@ def _compare_with_target(
     result.arrays["target"] = Array(target, ("period",), "m/s^2", "target spectrum")
     result.answer = (
         f"{len(psa)} motions match the spectrum of {model.code} within {100 * off.max():.1f} % from {model.shortest:g} to "
-        f"{model.longest:g} s ({100 * model.damping:g} % damping); their mean is nowhere below {100 * mean_low:.0f} % of it. "
-        f"Median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s."
+        f"{model.longest:g} s ({100 * model.damping:g} % damping); their mean is at least {100 * mean_low:.0f} % of the "
+        f"spectrum at every period. The median peak acceleration is {r['median_pga_g']:.3g} g, and the median peak "
+        f"velocity {100 * r['median_pgv_m_s']:.3g} cm/s."
     )
     return {
         "largest_deviation": float(off.max()),

@@ -18,4 +18,4 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
 
 def _refuse_backward(options: tables.ShakeTable) -> None:
     if options.highest <= options.lowest:
-        raise Refused(f"highest {options.highest:g} Hz is not above lowest {options.lowest:g} Hz", ("analysis", "highest"))
+        raise Refused(f"highest = {options.highest:g} Hz is not above lowest = {options.lowest:g} Hz", ("analysis", "highest"))

@@ -47,9 +47,13 @@ def run(context: Context, options: ShakeTable) -> Result:
         {"frequency": "Hz", **{n: "m" for n in ("stroke", "flow", *(f"force_{mass:.4g}kg" for mass in options.masses))}},
     )
     result.answer = (
-        f"The table reaches {100 * table.stroke:.3g} cm below {corners[0]['stroke_to_flow']:.3g} Hz and {100 * velocity:.3g} cm/s above it; "
+        (
+            f"The stroke limits the table to {100 * table.stroke:.3g} cm below {corners[0]['stroke_to_flow']:.3g} Hz, and the "
+            f"velocity to {100 * velocity:.3g} cm/s above it; "
+        )
         + "; ".join(
-            f"{mass:.4g} kg is limited by force above {c['flow_to_force']:.3g} Hz" for mass, c in zip(options.masses, corners, strict=True)
+            f"with {mass:.4g} kg, the force limits the table above {c['flow_to_force']:.3g} Hz"
+            for mass, c in zip(options.masses, corners, strict=True)
         )
         + "."
     )
@@ -96,7 +100,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         "rest_error_m": float(max(abs(played.displacement[0]), abs(played.displacement[-1]))),
     }
     result.arrays |= {
-        "drive_time": Array(played.time, ("drive_time",), "s", "of the scaled motion, its start at zero"),
+        "drive_time": Array(played.time, ("drive_time",), "s", "displacement of the scaled motion, starting from zero"),
         "drive_displacement": Array(played.displacement, ("drive_time",), "m"),
         "drive_velocity": Array(played.velocity, ("drive_time",), "m/s"),
         "drive_acceleration": Array(played.acceleration, ("drive_time",), "m/s^2"),
@@ -112,16 +116,18 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         },
         {"time": "s", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"},
     )
-    result.files["table_motion.AT2"] = export.at2(f"{motion.name}, as the table plays it", played.acceleration, played.step)
+    result.files["table_motion.AT2"] = export.at2(f"{motion.name}, as played by the table", played.acceleration, played.step)
     if r["fits"]:
         result.answer += (
-            f" {motion.name} fits: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} cm/s."
+            f" {motion.name} is within the limits: it needs {100 * r['peak_displacement_m']:.3g} cm and "
+            f"{100 * r['peak_velocity_m_s']:.3g} cm/s."
         )
         return r
     worst = max(fits, key=lambda f: max(f.stroke, f.flow, f.force))
     result.answer += (
-        f" {motion.name} does not fit: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} cm/s, "
-        f"{max(worst.stroke, worst.flow, worst.force):.2f} times the {worst.governing}. "
-        f"It fits with time scaled by {chosen.time_scale:.3f} and acceleration by {chosen.amplitude:.3f}."
+        f" {motion.name} exceeds the limits: it needs {100 * r['peak_displacement_m']:.3g} cm and "
+        f"{100 * r['peak_velocity_m_s']:.3g} cm/s, {max(worst.stroke, worst.flow, worst.force):.2f} times the "
+        f"{worst.governing}. The motion fits if time is scaled by {chosen.time_scale:.3f} and acceleration by "
+        f"{chosen.amplitude:.3f}."
     )
     return r

@@ -17,12 +17,12 @@ class MotionStudy(Analysis):
     kind: Literal["motion"]
     starter: ClassVar = {"count": "10"}
     needs_motion: ClassVar = True
-    count: int = key(100, "motions taken of a generated set", ge=1, le=1_000_000)
+    count: int = key(100, "number of motions used from a generated set", ge=1, le=1_000_000)
     dampings: list[float] = key([0.02, 0.05, 0.10], "damping ratios of the response spectra", min_length=1, max_length=8)
     shortest: Time = key(0.02, "shortest period of the spectra", ge=0.005)
     longest: Time = key(10.0, "longest period of the spectra", le=50)
-    periods: int = key(200, "number of periods, in equal ratios", ge=10, le=4000)
-    impulses: int = key(3, "how many of the strongest impulses are fitted", ge=1, le=20, source="thesis 5.3.2")
+    periods: int = key(200, "number of periods of the spectra, in equal ratios", ge=10, le=4000)
+    impulses: int = key(3, "number of the strongest impulses that are fitted", ge=1, le=20, source="thesis 5.3.2")
     max_period: Time = key(4.0, "longest impulse sought", gt=0)
     export: list[Literal["AT2", "columns"]] = key(["AT2", "columns"], "formats in which the motion is written")
 
@@ -31,7 +31,7 @@ class MotionStudy(Analysis):
         if self.longest <= self.shortest:
             raise ValueError("longest must be above shortest")
         if any(not 0.0 <= d < 1.0 for d in self.dampings):
-            raise ValueError("dampings must lie from 0 to below 1")
+            raise ValueError("dampings must be 0 or above, and below 1")
         return self
 
 
@@ -53,7 +53,12 @@ class ShakeTable(Analysis):
     )
     lowest: Frequency = key(0.1, "lowest frequency of the capacity curves", gt=0)
     highest: Frequency = key(20.0, "highest frequency of the capacity curves", le=200)
-    low_cut: Frequency = key(0.1, "corner of the high-pass that takes drift out of the drive", gt=0)
+    low_cut: Frequency = key(0.1, "corner frequency of the high-pass filter that removes drift from the drive signal", gt=0)
     keep: Literal["amplitude", "time"] = key(
-        "amplitude", "fit a too large motion by squeezing time (amplitude kept) or by scaling it down (time kept)", source="thesis 5.3.2"
+        "amplitude",
+        (
+            "how a motion that exceeds the limits is fitted: by compressing time (amplitude kept), or by scaling the "
+            "amplitude down (time kept)"
+        ),
+        source="thesis 5.3.2",
     )

@@ -44,7 +44,9 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     )
     result.arrays |= {
         **geometry_arrays(model.arch),
-        "thrust_position": Array(thrust.position, ("time", "joint"), "", "thrust line: 0 intrados, 1 extrados"),
+        "thrust_position": Array(
+            thrust.position, ("time", "joint"), "", "position of the thrust line in each joint: 0 intrados, 1 extrados"
+        ),
         **_snapshots(model, response, thrust, snapshot_index(response, options, result.warnings)),
     }
     result.answer = answer_of(context, ran, f"The {rocker.word}", "collapses", gamma)
@@ -94,6 +96,6 @@ def _snapshots(model: ArchModel, response: core_rocking.Response, thrust: core_a
     placed[left] = placed[left, ::-1] * np.array([-1.0, 1.0, -1.0])
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(placed, ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the voussoirs"),
+        "snapshot_pose": Array(placed, ("snapshot", "block", "component"), "m, m, rad", "x, y and rotation of the voussoirs"),
         "snapshot_thrust": Array(thrust.point[index], ("snapshot", "joint", "axis"), "m", "dynamic thrust line"),
     }

@@ -50,7 +50,7 @@ def run(context: Context, options: Assessment) -> Result:
     try:
         own, own_periods, own_curve = fit_own(rocker.body, gamma, scale, context.threads, context=context)
     except ValueError as error:
-        raise Refused(f"no failure curve of single sines could be fitted: {error}", WHOLE) from None
+        raise Refused(f"no failure curve for single sines could be fitted: {error}", WHOLE) from None
     result = Result("assessment")
     # The table was made of arches with the thesis' impact rule: anything else is judged by its own curve.
     table = None
@@ -61,8 +61,8 @@ def run(context: Context, options: Assessment) -> Result:
         table = interpolated(ratio, embrace, gamma)
     if by_table and table is None:
         result.warnings.append(
-            f"Table 5.3 covers t/R 0.12 to 0.21 and 140 to 180 deg; for t/R {ratio:.3f} and {embrace:g} deg the failure "
-            "curve fitted to this arch is used alone"
+            f"Table 5.3 covers t/R from 0.12 to 0.21 and 140 to 180 deg. This arch has t/R {ratio:.3f} and {embrace:g} deg, "
+            "so only the failure curve fitted to this arch is used"
         )
     fit = table or own
     rows = [_row(k + 1, impulse, fit, own, scale) for k, impulse in enumerate(impulses)]
@@ -105,7 +105,7 @@ def run(context: Context, options: Assessment) -> Result:
         "failing_amplitude": Array(fit.amplitude(periods, scale), ("period",), "g", "Eq. 5.8"),
         "failing_amplitude_own": Array(own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 fitted to this {rocker.word}"),
         "computed_period": Array(own_periods * np.sqrt(scale), ("computed",), "s"),
-        "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of its own, computed"),
+        "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve calculated for this structure"),
     }
     result.answer = _answer(r, worst, rocker.word)
     return result
@@ -118,26 +118,27 @@ def _limits_of_criterion(context: Context, r: out.Assessment) -> list[str]:
     beyond = [row for row in rows if row.verdict == "stands" and abs(row.amplitude_g) > CAP * gamma]
     if beyond:
         warnings.append(
-            f"the criterion follows the failure curve up to {CAP:g} times the acceleration that starts rocking ({CAP * gamma:.3g} g): "
-            f"an impulse of {abs(beyond[0].amplitude_g):.3g} g over {beyond[0].period_s:.3g} s lies above: one swing may cause "
-            "collapse; see `failure-domain`"
+            f"the criterion follows the failure curve up to {CAP:g} times the acceleration that starts rocking "
+            f"({CAP * gamma:.3g} g). An impulse of this motion exceeds this range ({abs(beyond[0].amplitude_g):.3g} g over "
+            f"{beyond[0].period_s:.3g} s), and may cause collapse in one swing: use `failure-domain`"
         )
     if r.run_outcome is not None and (r.verdict == "fails") != (r.run_outcome == "collapse"):
         why = (
-            "impulses this strong lie beyond the criterion"
+            "the criterion does not cover impulses of this amplitude"
             if beyond
-            else "the criterion holds for single impulses without the motion before and after them"
+            else "the criterion covers a single impulse, not the motion before and after it"
         )
         warnings.append(
-            f"the criterion predicts that it {r.verdict}, but under the whole motion it "
-            f"{'collapses' if r.run_outcome == 'collapse' else 'recovers'}: {why}; the run (analysis `rocking`) is more reliable"
+            f"the criterion predicts that the structure {r.verdict}, but under the whole motion the structure "
+            f"{'collapses' if r.run_outcome == 'collapse' else 'recovers'}: {why}. The run of the whole motion (analysis "
+            "`rocking`) is more reliable"
         )
     if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
         first = rows[0]
         warnings.append(
-            f"the criterion was made for single sines: the strongest impulse of this motion is replaced by a sine of "
+            "the criterion was derived for single sines. The strongest impulse of this motion is replaced by a sine of "
             f"{abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s, which removes {100 * first.goodness_of_fit:.0f} % "
-            "of the squared acceleration over its span"
+            "of the squared acceleration over the duration of the sine"
         )
     return warnings
 
@@ -159,7 +160,7 @@ def _at_margin(context: Context, rocker: Rocker, margin: float | None) -> list[s
         return []
     _, found = _run_through(context, rocker, margin)
     return [
-        f"The margin is conditional: at {margin:.3g} times the motion an assumption of rocking does not hold. {text}"
+        f"The safety factor is conditional: at {margin:.3g} times the motion an assumption of rocking is violated. {text}"
         for text in found["conditions"].violated
     ]
 
@@ -183,8 +184,8 @@ def _undecided(margins: dict[str, float | None]) -> list[str]:
     falls = {margin is not None and margin <= 1.0 for margin in margins.values()}
     if len(falls) < 2:
         return []
-    each = ", ".join(f'"{rule}" {"no harm" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
-    return [f"The impact rule decides: margin by rule {each}."]
+    each = ", ".join(f'"{rule}" {"none" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
+    return [f"The impact rule decides the verdict. Safety factor by each rule: {each}."]
 
 
 def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:
@@ -212,7 +213,7 @@ def _coefficients(fit: Fit) -> out.Coefficients:
 def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> str:
     first = r.primary_impulse
     if worst is None or first is None:
-        return "The motion holds no impulse in the given range of periods: it is too short, or zero."
+        return "The motion contains no impulse in the given range of periods: the motion is too short, or zero."
     text = (
         f"The primary impulse of the motion is {abs(first.amplitude_g):.3f} g over {first.period_s:.3f} s, "
         f"starting at {first.start_s:.2f} s. "
@@ -221,7 +222,10 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> 
     if worst.margin is None:
         text += f"Predicted for the {what}: no collapse. All impulses are too short to cause collapse. "
     elif r.verdict == "fails":
-        text += f"Predicted for the {what}: collapse. The amplitude of {which} is {1 / worst.margin:.2f} times the failing one. "
+        text += (
+            f"Predicted for the {what}: collapse. The amplitude of {which} is {1 / worst.margin:.2f} times the amplitude that "
+            "causes collapse. "
+        )
     else:
         text += (
             f"Predicted for the {what}: no collapse. The amplitude of {which} would have to be {worst.margin:.2f} times larger to "

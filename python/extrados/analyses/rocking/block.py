@@ -22,7 +22,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     assert isinstance(model, BlockModel)
     context.warnings += rocker.warnings
     if structure.kind == "column":
-        context.warnings.append("the column is taken as one rigid body; joints that open are left to the analysis `dem`")
+        context.warnings.append("the column is modelled as one rigid body; use `dem` for joints that open")
     end_time = options.end_time or context.motion.end + rest_time(rocker)
     ran = rock(context, options, rocker, end_time, 12)
     response = ran.response
@@ -56,13 +56,14 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     if flying.any():
         first = response.time[flying.argmax()]
         result.warnings.append(
-            f"from {first:.3f} s on the {rocker.word} would leave the ground for a while: rocking without flight is assumed"
+            f"from {first:.3f} s on, the {rocker.word} would lift off completely for some time, but the analysis assumes that "
+            "it stays in contact"
         )
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = (
         answer_of(context, ran, f"The {rocker.word}", "overturns", rocker.uplift)
-        + f" The {rocker.word} slides instead where friction is below {needed:.2f}."
+        + f" If friction is below {needed:.2f}, the {rocker.word} slides instead."
     )
     return result
 

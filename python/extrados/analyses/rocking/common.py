@@ -40,8 +40,7 @@ def refuse_movements(context: Context) -> None:
     """Refused where supports move."""
     if context.building.initial.movements:
         raise Refused(
-            "supports that move during rocking are followed by `rocking` and `dem` only: remove [[initial.movements]]",
-            ("initial", "movements"),
+            "only `rocking` and `dem` can follow supports that move during rocking: remove [[initial.movements]]", ("initial", "movements")
         )
 
 
@@ -60,7 +59,7 @@ def shifts_of(building: Building) -> list[Shift]:
     for k, one in enumerate(movements):
         if one.turn:
             raise Refused(
-                f"the support at '{one.joint}' rotates; rocking during such a movement is followed by `dem`",
+                f"the support at '{one.joint}' rotates. Only `dem` can follow such a movement during rocking",
                 ("initial", "movements", k, "turn"),
             )
     shifts = {Shift(one.dx, one.dy, one.start, one.duration) for one in movements}
@@ -68,8 +67,10 @@ def shifts_of(building: Building) -> list[Shift]:
         moved = {m.joint for m in movements if Shift(m.dx, m.dy, m.start, m.duration) == shift}
         if moved != grounded:
             raise Refused(
-                f"the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the others; "
-                "rocking on supports that part is followed by `dem`",
+                (
+                    f"the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the other supports. Only `dem` can "
+                    "follow supports that move apart during rocking"
+                ),
                 ("initial", "movements"),
             )
     return sorted(shifts, key=lambda s: (s.start, s.duration, s.dx, s.dy))

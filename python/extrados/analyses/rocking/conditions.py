@@ -46,15 +46,15 @@ def not_checked(rocker: Rocker) -> str:
     if isinstance(rocker.model, StackModel):
         return ""
     if isinstance(rocker.model, SoftBaseModel):
-        return "Friction is not checked: the base is compliant."
+        return "Friction is not checked, because the base is compliant."
     if watch is None:
-        return "Friction and thrust line are not checked: ties, dampers, added hinges or a wall act on the structure."
+        return "Friction and thrust line are not checked, because ties, dampers, added hinges or a wall act on the structure."
     if not len(watch.joints):
-        return "Friction and thrust line are not checked: the forces at the hinges are statically indeterminate."
+        return "Friction and thrust line are not checked, because the forces at the hinges are statically indeterminate."
     if watch.unknown:
         return (
-            f"Friction and thrust line are checked at {len(watch.joints)} of {len(watch.assembly.a)} joints: the forces at the others "
-            "are statically indeterminate."
+            f"Friction and thrust line are checked at {len(watch.joints)} of {len(watch.assembly.a)} joints, because the "
+            "forces at the other joints are statically indeterminate."
         )
     return ""
 
@@ -120,16 +120,16 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
         share = _share(counted.sliding, counted.runs, runs)
         given = friction_of(watch)
         if np.isinf(min(watch.capacity)) and np.isinf(counted.friction):
-            found.append(f"A joint comes under tension or slides {share}. Use dem.")
+            found.append(f"A joint is in tension or slides {share}. Use dem.")
         else:
-            reason = _rests(rocker, watch) if np.isfinite(min(watch.capacity)) else f"rocking needs up to {counted.friction:.2f}"
+            reason = _rests(rocker, watch) if np.isfinite(min(watch.capacity)) else f"rocking requires up to {counted.friction:.2f}"
             found.append(f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction.")
     if counted.elsewhere:
         share = _share(counted.elsewhere, counted.runs, runs)
         found.append(
-            f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem."
+            f"Hinges form at other joints {share}: {_elsewhere(rocker)}. Use dem."
             if len(watch.joints) > 1
-            else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
+            else f"The whole base lifts off {share}, but rocking assumes contact with the ground. Use dem."
         )
     return found
 
@@ -140,14 +140,16 @@ def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     if counted.sliding:
         share = _share(counted.sliding, counted.runs, runs)
         found.append(
-            f"Friction {friction_of(rocker):.2f} is too low {share}: rocking needs up to {counted.friction:.2f}. Blocks slide first. Use dem, "
-            "or check the friction."
+            (
+                f"Friction {friction_of(rocker):.2f} is too low {share}: rocking requires up to {counted.friction:.2f}. Blocks "
+                "slide first. Use dem, or check the friction."
+            )
             if np.isfinite(counted.friction)
-            else f"A joint slides or parts as a whole {share}. Use dem."
+            else f"A joint slides or opens over its whole length {share}. Use dem."
         )
     if counted.elsewhere:
         found.append(
-            f"A joint parts as a whole {_share(counted.elsewhere, counted.runs, runs)}: rocking without flight is assumed. Use dem."
+            f"A joint opens over its whole length {_share(counted.elsewhere, counted.runs, runs)}, but rocking assumes contact. Use dem."
         )
     return found
 
@@ -169,7 +171,7 @@ def slides_at_rest(rocker: Rocker, rows: "list[dict[str, np.ndarray]]", runs: st
 
 
 def _rests(rocker: Rocker, watch: Watch) -> str:
-    return f"the resting {rocker.word} slides from {min(watch.capacity):.3g} g on, and rocking starts at {rocker.uplift:.3g} g"
+    return f"the resting {rocker.word} slides from {min(watch.capacity):.3g} g upwards, and rocking starts at {rocker.uplift:.3g} g"
 
 
 def told(conditions: Conditions) -> list[str]:
@@ -181,10 +183,10 @@ def _elsewhere(rocker: Rocker) -> str:
     astray = astray_of(rocker)
     if astray > LOST:
         return (
-            f"after an impact {100.0 * astray:.0f} % of the kinetic energy lies outside the assumed mechanism, or the thrust line "
-            "leaves a joint"
+            f"after an impact {100.0 * astray:.0f} % of the kinetic energy does not belong to the assumed mechanism, or the "
+            "thrust line passes outside a joint"
         )
-    return "the thrust line leaves a joint"
+    return "the thrust line passes outside a joint"
 
 
 def _share(part: int, whole: int, runs: str) -> str:
@@ -214,21 +216,21 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
             )
         elif np.isfinite(needed):
             text = (
-                f"Friction {given:.2f} is below the {needed:.2f} that rocking needs, first at {slides.joint} at {slides.time_s:.3f} s: "
-                f"blocks slide.{check}"
+                f"Friction {given:.2f} is below the {needed:.2f} that rocking requires, first at {slides.joint} at "
+                f"{slides.time_s:.3f} s: blocks slide.{check}"
             )
         else:
-            text = f"{_upper(slides.joint)} comes under tension or slides, first at {slides.time_s:.3f} s.{use}"
+            text = f"{_upper(slides.joint)} is in tension or slides, first at {slides.time_s:.3f} s.{use}"
         found.append((slides.time_s, text))
     if joints.leaves_at >= 0.0:
         leaves = JointTime(joint=watch.name(int(joints.leaves)), time_s=float(joints.leaves_at))
-        far = f", at most by {100.0 * outside:.0f} % of the joint" if np.isfinite(outside) else ", and a joint comes under tension"
+        far = f", by up to {100.0 * outside:.0f} % of the joint length" if np.isfinite(outside) else ", and a joint is in tension"
         found.append(
             (
                 leaves.time_s,
-                f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"
+                f"Hinges form at other joints: the thrust line passes outside {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"
                 if len(watch.joints) > 1
-                else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed.{use}",
+                else f"The whole base lifts off at {leaves.time_s:.3f} s, but rocking assumes contact with the ground.{use}",
             )
         )
     astray = astray_of(rocker)
@@ -237,8 +239,10 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         found.append(
             (
                 impacts[0] if impacts else response.stop_time,
-                f"Hinges form elsewhere: after an impact {100.0 * astray:.0f} % of the kinetic energy lies outside the assumed "
-                f"mechanism.{use}",
+                (
+                    f"Hinges form at other joints: after an impact {100.0 * astray:.0f} % of the kinetic energy does not belong to "
+                    f"the assumed mechanism.{use}"
+                ),
             )
         )
     return Conditions(
@@ -264,7 +268,9 @@ def of_pair(rocker: Rocker, joints: JointDemand, handed: bool = False) -> Condit
     found: list[tuple[float, str]] = []
     if leaves_at >= 0.0:
         leaves = JointTime(joint=names[int(joints.leaves[0])], time_s=leaves_at)
-        found.append((leaves_at, f"{_upper(leaves.joint)} parts as a whole at {leaves_at:.3f} s: rocking without flight is assumed.{use}"))
+        found.append(
+            (leaves_at, f"{_upper(leaves.joint)} opens over its whole length at {leaves_at:.3f} s, but rocking assumes contact.{use}")
+        )
     if slips_at >= 0.0:
         first = int(joints.slips[0])
         slides = JointTime(joint=names[first], time_s=slips_at)

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.core.rocking import Outcome
+from extrados.core import rocking
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -18,37 +18,7 @@ LARGEST = 20_000_000
 ROOM = 20_000
 
 
-class Response(Protocol):
-    """A response of the core: series over `time` [s], accelerations of the ground [m/s^2], energies and work [J], events (kind, time,
-    value)."""
-
-    @property
-    def outcome(self) -> Outcome: ...
-    @property
-    def stop_time(self) -> float: ...
-    @property
-    def steps(self) -> int: ...
-    @property
-    def time(self) -> np.ndarray: ...
-    @property
-    def ground(self) -> np.ndarray: ...
-    @property
-    def vertical(self) -> np.ndarray: ...
-    @property
-    def kinetic(self) -> np.ndarray: ...
-    @property
-    def ledger(self) -> np.ndarray: ...
-    @property
-    def events(self) -> Any: ...
-    @property
-    def events_found(self) -> int: ...
-    @property
-    def work(self) -> float: ...
-    @property
-    def interrupted(self) -> bool: ...
-
-
-R = TypeVar("R", bound=Response)
+R = TypeVar("R", bound=rocking.Course)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,8 +54,10 @@ def refuse_long_history(end_time: float, output_step: float, width: int) -> None
     if end_time / output_step * width > LARGEST:
         least = end_time * width / LARGEST
         raise Refused(
-            f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store; "
-            f"the least output_step that fits is {least:.2g} s",
+            (
+                f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store: give an output_step of at least "
+                f"{least:.2g} s"
+            ),
             ("analysis", "output_step"),
         )
 
@@ -100,20 +72,20 @@ def keep_events(rock: Callable[[int], R]) -> R:
         room = response.events_found
 
 
-def impact_times(r: Response) -> list[float]:
+def impact_times(r: rocking.Course) -> list[float]:
     """Times of the impacts [s]."""
     return [t for kind, t, _ in r.events if kind == "impact"]
 
 
-def build_result(context: Context, r: Response, course: Course, **further: Any) -> Result:
+def build_result(context: Context, r: rocking.Course, course: Course, **further: Any) -> Result:
     """Results, tables and arrays that every rocking structure has; further: results of this structure, before those of all."""
     fell = r.outcome == "collapse"
     result = Result("rocking", status="interrupted" if r.interrupted else "ok")
     result.reason = f"interrupted at {r.stop_time:.3f} s" if r.interrupted else ""
     if r.events_found > len(r.events):
-        result.warnings.append(f"only the first {len(r.events)} of {r.events_found} events are kept")
+        result.warnings.append(f"only the first {len(r.events)} of {r.events_found} events are saved")
     if not course.settled and not r.interrupted:
-        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time")
+        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s, so the outcome is open: give a later end_time")
     results = {
         "rotation_of": course.of,
         "outcome": r.outcome,
@@ -154,7 +126,7 @@ def build_result(context: Context, r: Response, course: Course, **further: Any) 
     return result
 
 
-def _table(r: Response, course: Course) -> TableData:
+def _table(r: rocking.Course, course: Course) -> TableData:
     """The history as a table."""
     columns = {
         "time": (r.time, "s"),

@@ -70,7 +70,7 @@ def fit(periods: np.ndarray, amplitudes: np.ndarray, gamma: float) -> Fit:
     good = np.isfinite(amplitudes) & (amplitudes > FLOOR * gamma) & (amplitudes < CAP * gamma)
     t, a = periods[good], amplitudes[good]
     if len(t) < 4:
-        raise ValueError(f"only {len(t)} points of the failure curve lie below the cap, too few for a fit")
+        raise ValueError(f"only {len(t)} points of the failure curve lie below the cap, which is too few for a fit")
 
     def misfit(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         left = t - x[2]
@@ -196,7 +196,7 @@ def main() -> None:
 
     rule = next(iter(sys.argv[1:]), SHIPPED_RULE)
     if rule not in RULES:
-        sys.exit(f"no impact rule '{rule}'; there are {', '.join(RULES)}")
+        sys.exit(f"no impact rule '{rule}' exists; expected one of {', '.join(RULES)}")
     rows = regenerate(rule, default_threads())
     if rule != SHIPPED_RULE:
         return

@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados.analyses.chaos import NUDGE, growth, over_critical, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
-from extrados.analyses.rocking.hand_over import Contacts, decide
+from extrados.analyses.rocking.hand_over import Contacts, decide, word_of
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, arch_body, ensemble, history
 from extrados.results.rocking import HandOver, RuleOutcome
@@ -53,8 +53,8 @@ def beat(context: Context, response: Response) -> float:
 def too_fast(limit: float) -> str:
     """Why motion that repeats itself above a frequency [Hz] is worse than fixed hinges say."""
     return (
-        f"above {limit:.2g} Hz impacts in a row, of hinges that do not move, lose too much energy in an arch of this "
-        "size: discrete elements collapsed at a third of the amplitude"
+        f"in an arch of this size, successive impacts at more than {limit:.2g} Hz lose too much energy if the hinges stay "
+        "fixed. Discrete elements collapsed at 1/3 of the amplitude"
     )
 
 
@@ -65,10 +65,10 @@ def _keeping_more(context: Context, rocker: Rocker, response: Response) -> list[
         return []
     found = []
     if (kept := model.kept_by_elements) is not None:
-        found.append((kept, "discrete elements may keep more velocity than the impact at all joints"))
+        found.append((kept, "discrete elements may keep more velocity than a plastic impact at all joints"))
     frequency, limit = beat(context, response), model.fastest_beat
     if limit is not None and frequency > limit:
-        found.append((1.0, f"the motion repeats itself at {frequency:.2g} Hz: {too_fast(limit)}"))
+        found.append((1.0, f"the motion repeats itself at {frequency:.2g} Hz. {too_fast(limit)}"))
     return found
 
 
@@ -150,15 +150,15 @@ def _rules(
     if rules:
         listed = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.outcome}' for one in rules)
         if {one.outcome for one in rules} == {response.outcome}:
-            warnings.append(f"The impact rules differ by more than {DIFFER:g}, and the outcome is the same: {listed}.")
+            warnings.append(f"The impact rules differ by more than {DIFFER:g}, but the outcome is the same: {listed}.")
         else:
             violated.append(f"The impact rule decides the outcome: {listed}.")
     for (c_v, why), one in zip(more, outcome[len(rivals) :], strict=True):
         if one:
             rules.append(RuleOutcome(rule=f"{c_v:.3f}", restitution=c_v, outcome=one))
-            warnings.append(f"{why}: with {c_v:.3f} the outcome is {one}; use `dem`")
+            warnings.append(f"{why}. With a coefficient of restitution of {c_v:.3f} the outcome is {one}; use `dem`")
             if one != response.outcome:
-                violated.append(f"The restitution decides the outcome: with {c_v:.3f} {one}. Use dem.")
+                violated.append(f"The coefficient of restitution decides the outcome: with {c_v:.3f} the outcome is {one}. Use dem.")
     return rules, warnings, violated
 
 
@@ -172,9 +172,9 @@ def doubts_on_contacts(context: Context, rocker: Rocker, contacts: Contacts, res
     for rule, (c_v, body) in rivals.items():
         rival = replace(contacts, leaving=replace(contacts.leaving, body=rocker.held(body)))
         one = np.zeros(1, dtype=int)
-        place = decide(context, f"contacts-{rule}", rival, [context.motion.ground], one, one + 1.0, one + end_time)[0]
+        place = int(decide(context, f"contacts-{rule}", rival, [context.motion.ground], one, one + 1.0, one + end_time)["outcome"][0])
         if place >= 0:
-            rules.append(RuleOutcome(rule=rule, restitution=c_v, outcome=OUTCOMES[place]))
+            rules.append(RuleOutcome(rule=rule, restitution=c_v, outcome=word_of(place)))
     violated = list(run.violated)
     if len({one.outcome == "collapse" for one in rules}) > 1:
         told = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.outcome}' for one in rules)

@@ -42,7 +42,9 @@ def _with_friction(context: Context, result: Result) -> Result:
     watched = r.conditions is not None and "friction" in r.conditions
     if watched or given is None or r.required_friction is None or r.required_friction <= given:
         return result
-    told = f"Friction {given:.2f} is below the {r.required_friction:.2f} that rocking needs: blocks slide. Use dem, or check the friction."
+    told = (
+        f"Friction {given:.2f} is below the {r.required_friction:.2f} that rocking requires: blocks slide. Use dem, or check the friction."
+    )
     result.results = r.model_copy(update={"violated": [*r.violated, told]})
     result.warnings.append(told)
     return result

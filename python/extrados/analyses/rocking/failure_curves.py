@@ -98,18 +98,18 @@ def run(context: Context, options: FailureCurves) -> Result:
     )
     if r.agreement is not None and r.agreement < 1.0:
         result.warnings.append(
-            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs of the whole motion: a curve holds for "
-            "single impulses without the motion before and after them; use the outcomes of the runs"
+            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs of the whole motion, because a "
+            "curve covers a single impulse, not the motion before and after it. Use the outcomes of the runs"
         )
     longest = max(len(d) for d, _, _ in curves)
     padded = [np.array([np.append(np.asarray(c[k]), np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]
     result.arrays = {
-        "duration": Array(padded[0], ("curve", "point"), "s", "t_p of step and rectangular pulses, else the period T_p"),
+        "duration": Array(padded[0], ("curve", "point"), "s", "duration t_p of step and rectangular pulses, period T_p of other pulses"),
         "amplitude": Array(padded[1], ("curve", "point"), "g", "lowest amplitude of collapse"),
         "natural_time": Array(np.array([v.rocker.time_unit if _slender(v) else v.natural for v in variants]), ("curve",), "s"),
         "slender": Array(np.array([_slender(v) for v in variants]), ("curve",), "", "true of a block"),
     }
-    for name, about in (("fit", "Eq. 5.5 fitted to each curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
+    for name, about in (("fit", "Eq. 5.5, fitted to each failure curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
         if any(name in fit for fit in fits):
             lines = [fit[name][1](padded[0][k]) if name in fit else np.full(longest, np.nan) for k, fit in enumerate(fits)]
             result.arrays[name] = Array(np.array(lines), ("curve", "point"), "g", about)
@@ -149,7 +149,7 @@ def _fits(
     periods [s]; a warning states the one that is not possible."""
     model = variant.rocker.model
     if not isinstance(model, ArchModel):
-        raise Refused(f"fits are of arches; this is a {variant.rocker.word}: remove fits", ("analysis", "fits"))
+        raise Refused(f"fits apply to arches, and this structure is a {variant.rocker.word}: remove fits", ("analysis", "fits"))
     gamma, arch = model.collapse[0].gamma, model.arch
     ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
     found: dict[str, tuple[criterion.Fit, float]] = {}
@@ -160,7 +160,7 @@ def _fits(
     table = criterion.interpolated(ratio, embrace, gamma)
     if table is None:
         context.warnings.append(
-            f"{variant.label}: Table 5.3 covers t/R 0.12 to 0.21 and 140 to 180 deg, not t/R {ratio:.3f} and {embrace:g} deg"
+            f"{variant.label}: Table 5.3 covers t/R from 0.12 to 0.21 and 140 to 180 deg. This arch has t/R {ratio:.3f} and {embrace:g} deg"
         )
     else:
         found["criterion"] = table, arch.radius
@@ -200,7 +200,7 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
         context.warnings += [told + warning for warning in rocker.warnings]
         limit = rocker.model.fastest_beat if isinstance(rocker.model, ArchModel) else None
         if limit is not None and max(options.cycles) >= OFTEN:
-            context.warnings.append(f"{told}trains of sines repeat themselves: {too_fast(limit)}")
+            context.warnings.append(f"{told}trains of sines repeat themselves. {too_fast(limit)}")
         for cycles in options.cycles:
             of_train = [f"{cycles} cycle{'s' if cycles > 1 else ''}"] if len(options.cycles) > 1 else []
             found.append(Variant(", ".join(parts + of_train) or rocker.word, rocker, cycles))
@@ -267,7 +267,7 @@ def _motions(context: Context, options: FailureCurves) -> list[Shaken]:
         if impulses:
             found.append(Shaken(name, motion, impulses[0]))
         else:
-            context.warnings.append(f"{name} is not considered: it holds no impulse")
+            context.warnings.append(f"{name} is not considered, because it contains no impulse")
     return found
 
 
@@ -323,11 +323,14 @@ def _answer(r: out.FailureCurves) -> str:
     parts = []
     for c in r.curves:
         failing = [a for a in c.amplitudes_g if a is not None]
-        low = f"collapses from {min(failing):.3f} g on" if failing else "does not collapse below the cap"
-        parts.append(f"{c.label}: rocks from {c.uplift_acceleration_g:.3f} g, {low}")
+        low = f"collapses from {min(failing):.3f} g on" if failing else "no collapse below the cap of the amplitudes"
+        parts.append(f"{c.label}: rocking starts at {c.uplift_acceleration_g:.3f} g, {low}")
     text = f"Failure curves of {r.pulse} pulses. {'; '.join(parts)}."
     if r.scaling_misfit is not None:
-        text += f" Over natural time and uplift the curves differ by at most {100.0 * r.scaling_misfit:.2f} %."
+        text += (
+            " If durations are divided by the natural time and amplitudes by the uplift acceleration, the curves differ by "
+            f"at most {100.0 * r.scaling_misfit:.2f} %."
+        )
     if r.impulses:
         told = []
         for c in r.curves:
@@ -335,5 +338,5 @@ def _answer(r: out.FailureCurves) -> str:
             above = sum(v == "fails" for v in c.curve_verdicts)
             static = sum(v == "fails" for v in c.static_verdicts)
             told.append(f"{c.label}: {static} by a static check, {above} by the failure curve, {falls} in a run of the whole motion")
-        text += f" Of {len(r.impulses)} motions these cause collapse: {'; '.join(told)}."
+        text += f" Of {len(r.impulses)} motions the following numbers cause collapse: {'; '.join(told)}."
     return text

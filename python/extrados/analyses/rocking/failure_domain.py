@@ -25,7 +25,7 @@ from extrados.motions.motion import Motion
 from extrados.results import rocking as out
 from extrados.results.fields import Keys, given
 from extrados.results.model import Array, Result, TableData
-from extrados.results.rocking import COLLAPSE, RECOVERY
+from extrados.results.rocking import COLLAPSE, RECOVERY, SLID
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.rocker import Rocker
@@ -67,6 +67,7 @@ class Curves:
 
     codes (durations, amplitudes): 0 no hinging, 1 recovery, 2 Mode I, 3 Mode II; rows (durations, amplitudes): see Mapper.rows.
     handed (durations, amplitudes): cells that rigid contacts decided; a curve next to one is known to a cell of the map only.
+    slid (durations, amplitudes): those of them in which blocks only slide, which count as recovery in `codes`.
     """
 
     durations: np.ndarray
@@ -77,6 +78,7 @@ class Curves:
     pocket: np.ndarray
     rows: dict[str, np.ndarray]
     handed: np.ndarray
+    slid: np.ndarray
 
 
 def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
@@ -146,12 +148,13 @@ def failure_curves(
     rows = {name: values.reshape(nd, na) for name, values in rows.items()}
     codes = rows["code"]
     grid = np.broadcast_to(amplitudes, codes.shape)
-    handed = np.zeros(codes.shape, dtype=bool)
+    handed, slid = np.zeros((2, *codes.shape), dtype=bool)
     if decided is not None:
         handed = (rows["slips"] > 0) | (rows["strays"] > 0)
         place, _ = np.nonzero(handed)
         found = decided(place, grid[handed])
         known = found >= 0
+        slid[handed], found = found == SLID, np.where(found == SLID, RECOVERY, found)
         # contacts have no half cycles: a collapse keeps the mode of fixed hinges, and is of Mode I where these stand
         codes[handed] = np.where(known, np.where(found == COLLAPSE, np.maximum(codes[handed], MODE_I), found), codes[handed])
         handed[handed] = known
@@ -163,7 +166,7 @@ def failure_curves(
     def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
 
-    return Curves(durations, amplitudes, codes, mode_i, mode_ii, _refine(safe, risen, grid, MODE_I, within), rows, handed)
+    return Curves(durations, amplitudes, codes, mode_i, mode_ii, _refine(safe, risen, grid, MODE_I, within), rows, handed, slid)
 
 
 @dataclass(frozen=True)
@@ -362,23 +365,29 @@ def run(context: Context, options: FailureDomain) -> Result:
         columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"}
     )
     result.arrays = {
-        "duration": Array(durations, ("duration",), "s", "t_p of step and rectangular pulses, else the period T_p"),
+        "duration": Array(durations, ("duration",), "s", "duration t_p of step and rectangular pulses, period T_p of other pulses"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
-        "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
+        "outcome": Array(
+            np.where(curves.slid, SLID, curves.codes),
+            ("duration", "amplitude"),
+            "",
+            f"outcome: 0 no rocking, 1 recovery, 2 Mode I, 3 Mode II, {SLID} sliding alone",
+        ),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude that causes collapse, with or without an impact"),
         "pocket": Array(curves.pocket / GRAVITY, ("duration",), "g", "lowest amplitude of the first safe region above the curve"),
-        "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"),
+        "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude that causes collapse in the first half cycle"),
     }
     result.answer = _answer(model, options, durations, curves, r.safe_pockets)
     result.warnings += warned(r)
     if handed:
         friction = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
         result.warnings.append(
-            f"Rigid contacts decided {handed} of {curves.codes.size} pulses: joints slide{friction} in {conditions.sliding} pulses, and hinges "
-            f"form elsewhere in {conditions.hinges_elsewhere}. The curves at these durations are known to a cell of the map."
+            f"{handed} of {curves.codes.size} pulses were decided with rigid contacts: joints slide{friction} in "
+            f"{conditions.sliding} pulses, and hinges form at other joints in {conditions.hinges_elsewhere}. At these "
+            "durations the failure curves are accurate to one cell of the map."
         )
         if options.at_amplitudes:
-            result.warnings.append("The shortest failing durations (at_amplitudes) are those of fixed hinges without sliding.")
+            result.warnings.append("The shortest durations that cause collapse (at_amplitudes) are those for fixed hinges without sliding.")
     return result
 
 
@@ -399,7 +408,9 @@ def _by_contacts(
     def decided(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         ends = np.array([m.end for m in mapper.motions]) + mapper.settle
         grounds = [m.ground for m in mapper.motions]
-        return decide_cells(context, model, options.hand_over_cells, options.form == "linear", grounds, index, amplitude, ends[index])
+        return decide_cells(context, model, options.hand_over_cells, options.form == "linear", grounds, index, amplitude, ends[index])[
+            "outcome"
+        ]
 
     return decided
 
@@ -414,8 +425,8 @@ def rule_band(curves: list[out.RuleCurve] | None, ratio: float | None) -> str:
     if not curves:
         return ""
     each = ", ".join(f'"{one.rule}" {one.restitution:.3f}' for one in curves)
-    band = "" if ratio is None else f"; the failing amplitude differs by up to {ratio:.2f} between them"
-    return f"The impact rules differ by more than {DIFFER:g} for this structure ({each}){band}. Use dem where this decides."
+    band = "" if ratio is None else f"; the failure amplitudes differ by a factor of up to {ratio:.2f} between the rules"
+    return f"The impact rules differ by more than {DIFFER:g} for this structure ({each}){band}. Use dem if this decides the verdict."
 
 
 def _by_rule(
@@ -449,7 +460,7 @@ def curves_by_rule(
     if not jobs:
         return {}
     found = {
-        rule: computed(context, "failure-curves", job, count, f"failure curve by the impact rule {rule}", context.threads)["amplitude"]
+        rule: computed(context, "failure-curves", job, count, f"failure curve with the impact rule {rule}", context.threads)["amplitude"]
         for rule, (_, job) in jobs.items()
     }
     if without is not None:
@@ -484,9 +495,11 @@ def _over_uplift(durations: np.ndarray, pocket: np.ndarray, model: Rocker) -> di
     return {
         "frequency_ratio": 2.0 * np.pi / durations * model.time_unit,
         "pocket_begins_ratio": pocket / model.unit_acceleration,
-        "mode_names": "mode_I: lowest amplitude that causes collapse, with or without an impact; where mode_I is less than "
-        "mode_II, the block overturns after an impact (mode 1 of Zhang and Makris 2001). mode_II: lowest amplitude that "
-        "causes collapse without an impact (mode 2 of Zhang and Makris)",
+        "mode_names": (
+            "mode_I: lowest amplitude that causes collapse, with or without an impact. mode_II: lowest amplitude that causes "
+            "collapse without an impact (mode 2 of Zhang and Makris). If mode_I is lower than mode_II, the block overturns "
+            "after an impact (mode 1 of Zhang and Makris 2001)"
+        ),
     }
 
 
@@ -495,7 +508,7 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
         options.pulse, f"{options.pulse} pulses"
     )
     if not np.isfinite(curves.mode_i).any():
-        return f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g brings the {model.word} down."
+        return f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g causes collapse of the {model.word}."
     governing = np.nanmin(curves.mode_i) / GRAVITY
     shortest = durations[np.isfinite(curves.mode_i)].min()
     start = "hinge" if model.what == "arch" else "rock"
@@ -503,13 +516,13 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
         start = "lift an edge (held on)"
     below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
     modes = (
-        "Collapse after an impact (Mode I) governs where its curve lies below that of Mode II"
+        "Collapse after an impact (Mode I) governs at durations where its curve is the lower one"
         if below.any()
-        else "At no duration is the amplitude of collapse after an impact (Mode I) lower than that without an impact (Mode II)"
+        else "At no duration does an impact (Mode I) lower the amplitude of collapse below that without an impact (Mode II)"
     )
     return (
-        f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. It collapses from {shortest:.3f} s on "
-        f"(at up to {options.max_amplitude / GRAVITY:g} g); over the durations tried the lowest failing amplitude is {governing:.3f} g. "
-        f"{modes}; "
-        f"{pockets} of {len(durations)} durations have safe regions above the curve; they are not to be relied on."
+        f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. With amplitudes up to "
+        f"{options.max_amplitude / GRAVITY:g} g, it collapses for durations from {shortest:.3f} s upwards. Over the "
+        f"calculated durations, the lowest amplitude that causes collapse is {governing:.3f} g. {modes}. At {pockets} of "
+        f"{len(durations)} durations there are safe regions above the curve: do not rely on them."
     )

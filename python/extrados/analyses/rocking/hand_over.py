@@ -33,7 +33,7 @@ from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results.dem import DemRun
 from extrados.results.model import Array, Result
-from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, WholeOutcome
+from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, SLID, WholeOutcome
 from extrados.views.building import Building
 from extrados.views.rockers.rocker import Rocker
 from extrados.views.rockers.stack import StackModel
@@ -43,13 +43,15 @@ from extrados.views.rockers.watch import LOST
 BEFORE = 1e-3
 #: Spacing of the history of contacts in maps, over the time unit of the structure
 COARSE = 0.02
+#: Blocks have collapsed beyond a fifth of the size, and so many times as far as at the critical rotation, from which they may recover
+FALLEN, BEYOND = 0.2, 1.5
 #: Heights of joints on the ground that differ by no more than this share of the size are one level
 LEVEL = 1e-6
-#: Outcome of `rocking` for one of contacts; of many runs sliding counts as recovery
+#: Outcome of `rocking` for one of contacts
 WORDS: dict[str, WholeOutcome] = {"at-rest": "no-hinging", "slid": "slid", "rocked": "recovery", "collapse": "collapse"}
 #: Outcome of a member whose contacts gave no result
 UNKNOWN = -2
-CODES = {"no-hinging": NO_HINGING, "slid": RECOVERY, "recovery": RECOVERY, "collapse": COLLAPSE}
+CODES: dict[WholeOutcome, int] = {"no-hinging": NO_HINGING, "slid": SLID, "recovery": RECOVERY, "collapse": COLLAPSE}
 
 
 def leaving_time(response: Response, astray: float, time_unit: float) -> float | None:
@@ -83,7 +85,8 @@ class Left(NamedTuple):
 @dataclass(frozen=True)
 class Leaving:
     """A rocking structure until one of its conditions fails: body of the core, mechanisms (to +x, to -x) of its blocks, share of
-    energy astray (rocking.conditions), rotation at the start [rad], > 0 to +x, its time unit [s], and the least critical rotation [rad]."""
+    energy astray (rocking.conditions), rotation at the start [rad], > 0 to +x, its time unit [s], and critical rotations (to +x, to -x)
+    [rad]."""
 
     body: Body
     linkages: tuple[Linkage, Linkage]
@@ -91,8 +94,23 @@ class Leaving:
     astray: float
     start: float
     time_unit: float
-    critical: float
+    limits: tuple[float, float]
     tolerance: float = 1e-8
+
+    @property
+    def critical(self) -> float:
+        """The least critical rotation [rad]."""
+        return min(self.limits)
+
+    @property
+    def reach(self) -> float:
+        """Greatest displacement of the centre of a block at the critical rotations [m]."""
+        n, found = len(self.blocks.mass), 0.0
+        for one, limit in zip(self.linkages, self.limits, strict=True):
+            place = core_mechanism.follow(one, [limit * (1.0 - 1e-9)])[0]  # it may lock at the critical rotation itself
+            away = one.blocks(self.blocks, place)[0, :n, :2] - self.blocks.centroid
+            found = max(found, float(np.hypot(*away.T).max()))
+        return found
 
     def respond(self, ground: Ground, end_time: float, step: float, scale: float = 1.0) -> Response:
         """The response of the mechanism."""
@@ -151,6 +169,13 @@ class StackLeaving:
         """The blocks."""
         return self.pair.assembly
 
+    @property
+    def reach(self) -> float:
+        """See Leaving: of both blocks as one, and of the upper alone."""
+        whole, alone = self.pair.whole[0], self.pair.alone[0]
+        at = self.pair.pose(np.array([[whole, whole], [0.0, alone]]), np.array([[1.0, 0.0], [0.0, 1.0]]))[:, :, :2] - self.blocks.centroid
+        return float(np.hypot(at[..., 0], at[..., 1]).max())
+
     def leave(self, ground: Ground, end_time: float, scale: float) -> Left:
         """When and how a run leaves the assumption that joints neither slide nor part as a whole."""
         one = np.zeros(1, dtype=int)
@@ -203,6 +228,16 @@ class Contacts:
     floor: float | None
 
     @cached_property
+    def fallen(self) -> float:
+        """Displacement from which a block that also rotates or loses height has collapsed [m]."""
+        return max(FALLEN * self.model.size, BEYOND * self.leaving.reach)
+
+    @property
+    def options(self) -> Dem:
+        """Table of an analysis that follows them."""
+        return Dem(kind="dem", solver="nonsmooth", floor=self.floor, collapse_displacement=self.fallen)
+
+    @cached_property
     def bodies(self) -> dem.Bodies:
         """Bodies of the core."""
         return self.model.bodies()
@@ -238,8 +273,7 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
             return None
         right, left = (replace(one, part=np.ones(len(blocks.mass), dtype=int)) for one in linkages)
         linkages = right, left
-    critical = min(rocker.critical)
-    leaving = Leaving(rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, critical, tolerance)
+    leaving = Leaving(rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, rocker.critical, tolerance)
     return Contacts(leaving, model, floor)
 
 
@@ -256,7 +290,7 @@ def follow_contacts(
     context: Context, contacts: Contacts, begin: Begin, end_time: float | None, output_step: float
 ) -> tuple[DemRun, Result]:
     """The run of contacts from a state, and what is stored of it. Refused where it has no result."""
-    options = Dem(kind="dem", solver="nonsmooth", end_time=end_time, output_step=output_step, floor=contacts.floor)
+    options = contacts.options.model_copy(update={"end_time": end_time, "output_step": output_step})
     context.warnings += dem_model.adjusted(contacts.model)
     trial = Trial(context, options, contacts.model, begin)
     result = dem_history.follow(context, options, trial, "rocking-contacts")
@@ -280,14 +314,17 @@ def stored(result: Result) -> dict[str, Array]:
     }
 
 
+def word_of(code: int) -> WholeOutcome:
+    """The outcome of a number in CODES."""
+    return next(word for word, number in CODES.items() if number == code)
+
+
 class Fate(NamedTuple):
-    """How a run ends on contacts, in OUTCOMES or UNKNOWN, its greatest rotation from there on [rad], that over the critical one, and
-    whether it only slides."""
+    """How a run ends on contacts, in CODES or UNKNOWN, its greatest rotation from there on [rad], and that over the critical one."""
 
     outcome: int
     rotation: float
     ratio: float
-    slides: bool = False
 
 
 @dataclass(frozen=True)
@@ -302,20 +339,24 @@ class Fates:
     @classmethod
     def of(cls, context: Context, contacts: Contacts) -> "Fates":
         """Of a structure of the deck."""
-        options, model = Dem(kind="dem", solver="nonsmooth", floor=contacts.floor), contacts.model
+        options, model = contacts.options, contacts.model
         step = COARSE * contacts.leaving.time_unit
         asked = core_options(context, options, model)
-        collapse = Collapse.of(0.2 * model.size, model.size)
+        collapse = Collapse.of(contacts.fallen, model.size)
         brief = replace(asked, end_time=dem_model.settle_time(model), output_step=step, stop_at_rest=True)
         return cls(contacts, brief, collapse)
 
     def alike(self, contacts: Contacts) -> "Fates":
         """The same of another building of the same joints."""
-        model = contacts.model
+        model, collapse = contacts.model, Collapse.of(contacts.fallen, contacts.model.size)
         options = replace(
-            self.options, settle_damping=model.values.settle_damping, end_time=dem_model.settle_time(model), domain=domain_of(model)
+            self.options,
+            settle_damping=model.values.settle_damping,
+            end_time=dem_model.settle_time(model),
+            domain=domain_of(model),
+            **collapse.options,
         )
-        return Fates(contacts, options, Collapse.of(0.2 * model.size, model.size))
+        return Fates(contacts, options, collapse)
 
     def follow(self, ground: Ground, scale: float, end: float, threads: int = 1) -> Fate:
         """The run of a motion times a factor, whose mechanism is followed until `end` [s]; its outcome is UNKNOWN where contacts have no
@@ -337,7 +378,7 @@ class Fates:
             return Fate(UNKNOWN, 0.0, 0.0)
         seen = Seen.of(c.model, run, c.floor is not None)
         outcome = outcome_of(left.rocks, seen.fate(self.collapse).outcome)
-        return Fate(CODES[outcome], *c.leaving.greatest(seen.rotation), outcome == "slid")
+        return Fate(CODES[outcome], *c.leaving.greatest(seen.rotation))
 
 
 @dataclass(frozen=True)
@@ -353,24 +394,24 @@ class ContactRuns:
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         members = range(first, first + count)
         found = [self.fates.follow(self.grounds[self.motion[k]], float(self.scale[k]), float(self.end[k]), threads) for k in members]
-        return {"outcome": np.array([one.outcome for one in found], dtype=np.int8), "peak": np.array([one.rotation for one in found])}
+        return {"outcome": np.array([one.outcome for one in found], dtype=np.int8), "ratio": np.array([one.ratio for one in found])}
 
 
 def decide(
     context: Context, name: str, contacts: Contacts, grounds: list[Ground], motion: np.ndarray, scale: np.ndarray, end: np.ndarray
-) -> np.ndarray:
-    """Outcomes (runs) on contacts of runs whose mechanism a condition leaves, UNKNOWN where contacts gave no result; see
-    ContactRuns."""
+) -> dict[str, np.ndarray]:
+    """On contacts, of runs whose mechanism a condition leaves (see ContactRuns): `outcome` (runs) in CODES, UNKNOWN where contacts gave no
+    result, and `ratio` of the greatest rotation to the critical one (runs)."""
     job = ContactRuns(Fates.of(context, contacts), grounds, motion, scale, end)
-    return sweep(context, name, job, len(motion), "rigid contacts", slow=True, parallel=True).whole()["outcome"]
+    return sweep(context, name, job, len(motion), "rigid contacts", slow=True, parallel=True).whole().arrays
 
 
 def decide_cells(
     context: Context, rocker: Rocker, limit: int, linear: bool, grounds: list[Ground], index: np.ndarray, scale: np.ndarray, end: np.ndarray
-) -> np.ndarray:
-    """Outcomes (runs) of cells of a map whose mechanism a condition leaves: motion index[k] times scale[k] until end[k] [s]; UNKNOWN where
+) -> dict[str, np.ndarray]:
+    """See `decide`: of cells of a map whose mechanism a condition leaves, motion index[k] times scale[k] until end[k] [s]; UNKNOWN where
     contacts do not decide them, or where they are more than `limit`, with a warning."""
-    unknown = np.full(len(index), UNKNOWN)
+    unknown = {"outcome": np.full(len(index), UNKNOWN), "ratio": np.full(len(index), np.nan)}
     if not len(index):
         return unknown
     contacts = contacts_of(rocker, context.building, linear)
@@ -378,7 +419,8 @@ def decide_cells(
         return unknown
     if len(index) > limit:
         context.warnings.append(
-            f"Joints slide or hinges form elsewhere in {len(index)} cells of the map; rigid contacts decide up to hand_over_cells = {limit}."
+            f"Joints slide or hinges form at other joints in {len(index)} cells of the map. This exceeds hand_over_cells = "
+            f"{limit}, so these cells are not decided with rigid contacts."
         )
         return unknown
     return decide(context, "map-contacts", contacts, grounds, index, scale, end)

@@ -64,7 +64,7 @@ def rock(context: Context, options: Rocking, rocker: Rocker, end_time: float, wi
         try:
             run, result = follow_contacts(context, contacts, contacts.begin(ground, time), options.end_time, options.output_step)
         except (Refused, Unfinished) as error:
-            context.warnings.append(f"Rigid contacts gave no result from {time:.3f} s: {error}")
+            context.warnings.append(f"The run with rigid contacts, from {time:.3f} s on, gave no result: {error}")
         else:
             response = until(max(time, 1e-9 * rocker.time_unit))
             conditions = of_one(rocker, fixed, handed=True)
@@ -109,7 +109,7 @@ def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction
         lost="the energy lost at impacts, minus the energy absorbed by restraints",
         friction=friction,
         coordinates={"rotation": (response.rotation, "rad"), "rotation_rate": (response.rate, "rad/s")},
-        event_value="rad at peak and collapse; rad/s before impact; side at uplift",
+        event_value="rotation in rad at peak and collapse; angular velocity in rad/s before impact; side at uplift",
         chaotic=doubt.chaotic,
         growth=doubt.growth,
         violated=doubt.violated,
@@ -134,7 +134,7 @@ def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction
     if over is not None and ran.run is not None:
         if ran.run.status != "ok":
             result.status, result.reason = ran.run.status, f"rigid contacts: {ran.run.reason}"
-        result.warnings.append(f"Rigid contacts follow the blocks from {over.time_s:.3f} s on.")
+        result.warnings.append(f"From {over.time_s:.3f} s on, the blocks are followed with rigid contacts.")
         result.warnings += [text for text in ran.run.warnings if text not in result.warnings]
         result.arrays |= stored(ran.run)
     result.arrays |= {
@@ -186,7 +186,7 @@ def snapshot_index(response: Response, options: Rocking, warnings: list[str]) ->
     end = float(response.time[-1])
     asked = [t for t in options.thrust_line_times if 0.0 <= t <= end + options.output_step]
     if len(asked) < len(options.thrust_line_times):
-        warnings.append(f"some thrust_line_times lie outside the run of {end:g} s and are not drawn")
+        warnings.append(f"some thrust_line_times lie outside the run, which ends at {end:g} s, and are not drawn")
     if not asked:
         peaks = [t for kind, t, _ in response.events if kind in ("peak", "collapse")]
         size = np.abs(np.interp(peaks, response.time, response.rotation)) if peaks else np.zeros(0)
@@ -215,8 +215,8 @@ def answer_of(context: Context, ran: Ran, who: str, falls: str, uplift: float) -
         return answer(context, response, who, falls, uplift)
     before = f"rocks ({count(response.impacts, 'impact')})" if response.half_cycles else "rests"
     return (
-        f"By rigid contacts: {ran.run.answer} {who} {before} by the assumed mechanism until {over.time_s:.3f} s, from when on contacts "
-        f"follow the blocks. {over.reason}"
+        f"By rigid contacts: {ran.run.answer} {who} {before} by the assumed mechanism until {over.time_s:.3f} s. From "
+        f"then on the blocks are followed with rigid contacts. {over.reason}"
     )
 
 
@@ -235,8 +235,8 @@ def answer(context: Context, response: Response, who: str, falls: str, uplift: f
         else:
             after = f"after {count(response.impacts, 'impact')}, the last at {times[-1]:.3f} s"
         return (
-            f"{who} {falls} to {way} in the {ordinal(response.half_cycles)} half cycle {after} (at "
-            f"{response.stop_time:.2f} s its rotation is past recovery; {about})."
+            f"{who} {falls} to {way} in the {ordinal(response.half_cycles)} half cycle {after} (at {response.stop_time:.2f} s "
+            f"its rotation can no longer recover; {about})."
         )
     greatest = (
         f"greatest rotation {1e3 * abs(response.peak):.3g} mrad to {way}, {100 * response.peak_ratio:.0f} % of the rotation "
@@ -247,5 +247,5 @@ def answer(context: Context, response: Response, who: str, falls: str, uplift: f
         state = "has not rocked yet" if response.outcome == "no-hinging" else "still rocks"
         return f"{who} {state} when the run ends at {response.stop_time:.2f} s: the outcome is open. So far {rocked}"
     if response.outcome == "no-hinging":
-        return f"{who} does not rock: {about}; it moves with the ground as a rigid body."
+        return f"{who} does not rock and moves with the ground as a rigid body ({about})."
     return f"{who} rocks and recovers: {rocked}"

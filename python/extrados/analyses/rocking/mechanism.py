@@ -56,7 +56,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         **geometry_arrays(model.assembly),
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
         "snapshot_pose": Array(
-            model.pose(response.rotation[index]), ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the stones"
+            model.pose(response.rotation[index]), ("snapshot", "block", "component"), "m, m, rad", "x, y and rotation of the blocks"
         ),
     }
     result.answer = answer_of(context, ran, f"The {rocker.word}", "collapses", rocker.uplift)

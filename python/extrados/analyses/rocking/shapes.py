@@ -68,7 +68,7 @@ def film(time: np.ndarray, pose: np.ndarray) -> dict[str, Array]:
     """What a film shows: times [s], and poses (times, blocks, 3) [m, m, rad] of the stones."""
     return {
         "film_time": Array(time, ("film",), "s", "times of the pictures of the animation"),
-        "film_pose": Array(pose, ("film", "block", "component"), "m, m, rad", "x, y, rotation of the stones"),
+        "film_pose": Array(pose, ("film", "block", "component"), "m, m, rad", "x, y and rotation of the blocks"),
     }
 
 
@@ -108,7 +108,7 @@ def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
     made = shapes(rocker, States(*(get[k][index] for k in ("rotation", "rate", "acceleration", "ground", "vertical"))))
     arrays = film(time[index], made.pose)
     if made.line is not None:
-        arrays["film_line"] = Array(made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force")
+        arrays["film_line"] = Array(made.line, ("film", "line_point", "axis"), "m", "thrust line, or line of the reaction of the ground")
     return arrays
 
 
@@ -123,7 +123,7 @@ def on_contacts(assembly: Assembly, result: Result) -> dict[str, Array]:
     found = {
         **geometry_arrays(assembly),
         "snapshot_time": Array(time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(place[index], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the blocks"),
+        "snapshot_pose": Array(place[index], ("snapshot", "block", "component"), "m, m, rad", "x, y and rotation of the blocks"),
     }
     if "film_pose" in result.arrays:
         shown = pictures(time)

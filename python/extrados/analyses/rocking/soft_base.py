@@ -29,7 +29,7 @@ def run(context: Context, options: Rocking) -> Result:
     building = context.building
     model = soft_base_model(building, options.form == "linear")
     if building.structure is not None and building.structure.kind == "column":
-        context.warnings.append("the column is taken as one rigid body; joints that open are left to the analysis `dem`")
+        context.warnings.append("the column is modelled as one rigid body; use `dem` for joints that open")
     if not model.core.damping:
         context.warnings.append(UNDAMPED)
     end_time = options.end_time or context.motion.end + SETTLE / float(model.rigid.frequency.min())
@@ -93,13 +93,13 @@ def _result(
     chaotic = bool(violated)
     if flies.any():
         violated.append(
-            f"The base does not press in {100.0 * flies.mean():.2g} % of the time: the block is airborne, and its sides are assumed not to "
-            "slide. Use dem."
+            f"The whole base is lifted in {100.0 * flies.mean():.2g} % of the time. The block is then airborne, and the "
+            "analysis assumes that its sides do not slide. Use dem."
         )
     course = Course(
         of="the block",
         settled=_is_settled(context, model, r, energy),
-        moves="the block still moves enough to overturn",
+        moves="the block can still overturn",
         half_cycles=r.half_cycles,
         potential=potential,
         energy=energy,
@@ -131,13 +131,13 @@ def _result(
     )
     result.warnings += violated
     if rigid is not None and rigid[0] != r.outcome:
-        result.warnings.append(f"on a rigid base, with Housner's impact, the outcome is another one: {rigid[0]}")
+        result.warnings.append(f"on a rigid base, with the impact rule of Housner, the outcome is different: {rigid[0]}")
     pressed = np.where(flies[:, None], np.nan, r.range)
     result.arrays |= {
         "rotation": Array(r.rotation, ("time",), "rad", "rotation of the block, positive to +x"),
         "rate": Array(r.rate, ("time",), "rad/s"),
-        "sinking": Array(r.sinking, ("time",), "m", "settlement at the foot of its centre"),
-        "pressed": Array(pressed, ("time", "end"), "m", "range of the base that pushes, from the foot of the centre"),
+        "sinking": Array(r.sinking, ("time",), "m", "settlement of the base below the centre of the block"),
+        "pressed": Array(pressed, ("time", "end"), "m", "ends of the range of the base in contact, from the foot of the centre"),
     }
     return result
 
@@ -187,7 +187,7 @@ def _answer(context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: 
         "rotation from which gravity causes collapse"
     )
     said = {
-        "collapse": f"overturns to {way}: at {r.stop_time:.2f} s its rotation is past recovery",
+        "collapse": f"overturns to {way}: at {r.stop_time:.2f} s its rotation can no longer recover",
         "recovery": f"rocks and recovers: {greatest}",
         "no-hinging": f"keeps its whole base on the ground: {greatest}",
     }[r.outcome]
@@ -204,7 +204,7 @@ def _answer(context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: 
         }[rigid[0]]
     word = context.building.structure.word if context.building.structure is not None else "block"
     return (
-        f"On its compliant base the {word} {said}; {count(lifts, 'time')} an edge lifts (peak ground "
-        f"acceleration {context.motion.peak / GRAVITY:.3f} g; held on, {found.uplift_acceleration_g:.3f} g lift an edge and "
-        f"{found.soft_base.capacity_g:.3f} g overturn it).{rigidly}"
+        f"On its compliant base the {word} {said}. An edge lifts {count(lifts, 'time')}. The peak ground acceleration is "
+        f"{context.motion.peak / GRAVITY:.3f} g. As constant accelerations, {found.uplift_acceleration_g:.3f} g lift an "
+        f"edge and {found.soft_base.capacity_g:.3f} g overturn the block.{rigidly}"
     )

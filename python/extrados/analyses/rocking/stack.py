@@ -69,7 +69,9 @@ def _result(context: Context, model: StackModel, r: StackResponse, grown: float,
     violated = violated_by_chaos(grown, turns)
     chaotic = bool(violated)
     if flies.any():
-        violated.append(f"A joint parts as a whole from {r.time[flies.argmax()]:.3f} s on: rocking without flight is assumed. Use dem.")
+        violated.append(
+            f"From {r.time[flies.argmax()]:.3f} s on a joint opens over its whole length, but the analysis assumes contact. Use dem."
+        )
     course = Course(
         of="the lower block",
         settled=r.settled,
@@ -82,7 +84,7 @@ def _result(context: Context, model: StackModel, r: StackResponse, grown: float,
         friction=needed,
         coordinates={"rotation": (r.rotation[:, 0], "rad"), "rotation_upper": (r.rotation[:, 1], "rad")},
         further={"mode": (np.array(MODES)[found], "")},
-        event_value="contact: 1 on the ground, 2 between the blocks",
+        event_value="contact at which the event occurs: 1 on the ground, 2 between the blocks",
         chaotic=chaotic,
         growth=grown,
         violated=violated,
@@ -124,12 +126,18 @@ def _answer(model: StackModel, r: StackResponse) -> str:
     how = {"collapse": "collapses", "recovery": "rocks and recovers", "no-hinging": "does not rock"}[r.outcome]
     shares = sorted(((share, name) for name, share in _shares(r)), reverse=True)
     rocked = (
-        f": lower block {1e3 * abs(r.peak[0]):.3g} mrad, upper {1e3 * abs(r.peak[1]):.3g} mrad at most, {count(r.impacts[0], 'impact')} on "
-        f"the ground and {r.impacts[1]} between, {100 * shares[0][0]:.0f} % of the rocking time {shares[0][1]}."
+        (
+            f": greatest rotation {1e3 * abs(r.peak[0]):.3g} mrad of the lower block and {1e3 * abs(r.peak[1]):.3g} mrad of "
+            f"the upper block, {count(r.impacts[0], 'impact')} on the ground and {r.impacts[1]} between the blocks, "
+            f"{100 * shares[0][0]:.0f} % of the rocking time {shares[0][1]}."
+        )
         if shares
         else "."
     )
-    return f"The stack {how}{rocked} Both as one begin to rock at {model.uplift[0]:.3f} g, the upper alone at {model.uplift[1]:.3f} g."
+    return (
+        f"The stack {how}{rocked} Rocking of both blocks as one body starts at {model.uplift[0]:.3f} g, and rocking of "
+        f"the upper block alone at {model.uplift[1]:.3f} g."
+    )
 
 
 def _shares(r: StackResponse) -> list[tuple[str, float]]:

@@ -29,7 +29,7 @@ def run(context: Context, options: Rocking) -> Result:
         try:
             return _handed(context, options, rocker, demand, contacts, left, left.time)
         except (Refused, Unfinished) as error:
-            context.warnings.append(f"Rigid contacts gave no result from {left.time:.3f} s: {error}")
+            context.warnings.append(f"The run with rigid contacts, from {left.time:.3f} s on, gave no result: {error}")
     result = stack.run(context, options)
     conditions = of_pair(rocker, demand, handed=False)
     result.results = result.of(out.Rocking).model_copy(update={"conditions": conditions})
@@ -61,12 +61,12 @@ def _handed(context: Context, options: Rocking, rocker: Rocker, demand: JointDem
     )
     if further.status != "ok":
         result.status, result.reason = further.status, f"rigid contacts: {further.reason}"
-    told = [*conditions.violated, *run.violated, f"Rigid contacts follow the blocks from {time:.3f} s on.", *further.warnings]
+    told = [*conditions.violated, *run.violated, f"From {time:.3f} s on, the blocks are followed with rigid contacts.", *further.warnings]
     result.warnings = list(dict.fromkeys(told))
     result.arrays |= stored(further)
     result.arrays |= on_contacts(context.building.blocks(), result)
     result.answer = (
-        f"By rigid contacts: {further.answer} The blocks {'rock' if left.rocks else 'rest'} without sliding until {time:.3f} s, from when on "
-        f"contacts follow them. {over.reason}"
+        f"By rigid contacts: {further.answer} The blocks {'rock' if left.rocks else 'rest'} without sliding until "
+        f"{time:.3f} s. From then on they are followed with rigid contacts. {over.reason}"
     )
     return result

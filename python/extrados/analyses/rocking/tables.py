@@ -21,7 +21,10 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        "rigid contacts decide cells of the map in which joints slide or hinges form elsewhere, where these are not more; 0: never",
+        (
+            "limit on the number of cells of the map in which joints slide or hinges form at other joints: up to this "
+            "number, these cells are decided with rigid contacts; 0: never"
+        ),
         ge=0,
         le=1_000_000,
         source="Moreau 1988",
@@ -45,7 +48,9 @@ class RockingTable(BuildingAnalysis):
     )
     bears: ClassVar[tuple[str, ...]] = HOLDS
     soft_base: ClassVar = False
-    form: Literal["nonlinear", "linear"] = key("nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963")
+    form: Literal["nonlinear", "linear"] = key(
+        "nonlinear", "form of the equations: full, or linear for slender blocks", source="Housner 1963"
+    )
 
     def rests_on(self, building: Building) -> dict[str, str | None]:
         """An energy ratio stands in place of the restitution; on a compliant base the impact follows from it; a wall
@@ -78,15 +83,20 @@ class Rocking(RockingTable, Animated):
     bears: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     needs_motion: ClassVar = True
-    end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
+    end_time: Time | None = key(None, "end of the run; default: the end of the motion plus the time to come to rest or to collapse", gt=0)
     output_step: Time = key(0.005, "spacing of the history", gt=0)
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
     hand_over: bool = key(
         True,
-        "where joints slide or hinges form elsewhere, rigid contacts follow the blocks from that state; false leaves the outcome open",
+        (
+            "if joints slide or hinges form at other joints, continue the run with rigid contacts from that state; false "
+            "leaves the outcome open"
+        ),
         source="Moreau 1988",
     )
-    thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key([], "draw the structure and its thrust line at these times", max_length=24)
+    thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key(
+        [], "times at which the structure and its thrust line are drawn", max_length=24
+    )
 
 
 class FailureDomain(RockingTable):
@@ -96,17 +106,17 @@ class FailureDomain(RockingTable):
     bears: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
-        "step", "step pulse of duration t_p, one sine of period T_p, or another shape of `pulse`", source="thesis 5.2.3"
+        "step", "shape: step pulse of duration t_p, single sine of period T_p, or another shape of `pulse`", source="thesis 5.2.3"
     )
     durations: list[Annotated[Time, Field(gt=0)]] | None = key(
-        None, "t_p or T_p; default 40 values scaled to the structure", min_length=1, max_length=2000
+        None, "durations t_p or periods T_p; default: 40 values scaled to the structure", min_length=1, max_length=2000
     )
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
-    accuracy: float = key(1e-4, "accuracy of the curves, in g (and of durations in s)", ge=1e-9, le=0.1)
+    accuracy: float = key(1e-4, "accuracy of the failure curves: amplitudes in g, durations in s", ge=1e-9, le=0.1)
     hand_over_cells: int = hand_over_cells()
     at_amplitudes: list[Annotated[Acceleration, Field(gt=0)]] = key(
-        [], "also find the shortest failing durations at these amplitudes", max_length=200
+        [], "also find the shortest durations that cause collapse at these amplitudes", max_length=200
     )
 
 
@@ -117,37 +127,41 @@ class FailureCurves(RockingTable):
     bears: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     variants: list[dict[str, int | float | str]] = key(
-        [], "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure of the deck", max_length=24
+        [],
+        ("changes of [structure], with one failure curve for each, such as `{ radius = 5.0 }`; default: only the structure of the deck"),
+        max_length=24,
     )
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
         "sine", "shape of the pulses", source="thesis Figs 5-4, 5-5, 5-15"
     )
     cycles: list[Annotated[int, Field(ge=1, le=100)]] = key(
-        [1], "cycles of a train of sines, a curve for each number", min_length=1, max_length=12, source="thesis 5.3.4"
+        [1], "numbers of cycles of a train of sines, with one failure curve for each", min_length=1, max_length=12, source="thesis 5.3.4"
     )
     durations: list[Annotated[Time, Field(gt=0)]] | None = key(
-        None, "t_p or T_p; default `count` values scaled to each structure", min_length=2, max_length=2000
+        None, "durations t_p or periods T_p; default: `count` values scaled to each structure", min_length=2, max_length=2000
     )
-    count: int = key(40, "number of durations of each curve, unless `durations` lists them", ge=2, le=2000)
-    amplitudes: int = key(60, "amplitudes tried up to the cap before the lowest failing one is refined", ge=2, le=2000)
+    count: int = key(40, "number of durations of each failure curve, if `durations` is not given", ge=2, le=2000)
+    amplitudes: int = key(
+        60, "number of amplitudes up to the cap that are tried before the lowest one that causes collapse is refined", ge=2, le=2000
+    )
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
-    accuracy: float = key(1e-4, "accuracy of the curves, in g", ge=1e-9, le=0.1)
-    motions: int = key(12, "of a suite or a generated set at most so many are put into the picture", ge=1, le=200)
+    accuracy: float = key(1e-4, "accuracy of the failure curves, in g", ge=1e-9, le=0.1)
+    motions: int = key(12, "greatest number of motions of a suite or a generated set in the figure", ge=1, le=200)
     max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
     fits: bool = key(
-        False, "of arches: also Eq. 5.5 fitted to each curve, and the criterion of Eq. 5.8 with Table 5.3", source="thesis Fig. 5-14"
+        False, "for arches: also fit Eq. 5.5 to each curve, and apply the criterion of Eq. 5.8 with Table 5.3", source="thesis Fig. 5-14"
     )
 
     @model_validator(mode="after")
     def _trains(self) -> "FailureCurves":
         if self.pulse != "sine" and self.cycles != [1]:
-            raise ValueError(f"cycles make trains of sines; a pulse of shape '{self.pulse}' comes once")
+            raise ValueError(f"cycles belong to trains of sines; a pulse of shape '{self.pulse}' occurs only once")
         if self.fits and (self.pulse != "sine" or self.cycles != [1]):
-            raise ValueError('fits requires curves of single sines: set pulse = "sine" and cycles = [1], or remove fits')
+            raise ValueError('fits requires failure curves of single sines: give pulse = "sine" and cycles = [1], or remove fits')
         if len(set(self.cycles)) < len(self.cycles):
             raise ValueError("cycles holds a number twice")
         if max(1, len(self.variants)) * len(self.cycles) > 24:
-            raise ValueError("variants times cycles are more than the 24 curves that a picture holds")
+            raise ValueError("the number of variants times cycles exceeds the 24 curves that a figure can show")
         return self
 
 
@@ -157,12 +171,12 @@ class Assessment(RockingTable):
     kind: Literal["assessment"]
     bears: ClassVar = ()
     needs_motion: ClassVar = True
-    impulses: int = key(3, "how many of the strongest impulses are tried", ge=1, le=20)
-    min_period: Time | None = key(None, "shortest impulse sought; default 4 sampling steps", gt=0)
+    impulses: int = key(3, "number of the strongest impulses that are checked", ge=1, le=20)
+    min_period: Time | None = key(None, "shortest period of the impulses searched; default: 4 time steps", gt=0)
     max_period: Time = key(4.0, "longest impulse sought", gt=0)
 
     @model_validator(mode="after")
     def _range(self) -> "Assessment":
         if self.min_period is not None and self.min_period >= self.max_period:
-            raise ValueError(f"min_period {self.min_period:g} s is not below max_period {self.max_period:g} s")
+            raise ValueError(f"min_period = {self.min_period:g} s is not below max_period = {self.max_period:g} s")
         return self

@@ -10,7 +10,6 @@ from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.model import (
     MOST_CHANGES_OF_JOINTS,
-    POINTS_PER_THREAD,
     EventModel,
     bands_of,
     crushing_of,
@@ -31,37 +30,28 @@ from extrados.views.shell.mesh import ShellBar, ShellJoint, ShellMesh, ShellPart
 ROUNDS, VECTORS = 12, 4
 
 
-@dataclass
+@dataclass(kw_only=True)
 class ShellModel(EventModel):
-    """A building ready for the core. constant, reference: nodal forces (nodes, 6) [N]; unit: resultant of the reference
-    load, by which lambda becomes a force [N]; control: the displacement that is followed."""
+    """A building ready for the core."""
 
     mesh: ShellMesh
-    freedoms: core.Freedoms
-    groups: list[core.Group]
-    behaviour: core.Behaviour
-    constant: np.ndarray
-    reference: np.ndarray
-    unit: float
-    control: core.Monitor
     along: np.ndarray  # (3) direction of the push
     weight: float  # [N]
     axes: list[np.ndarray]  # of the elements of each part, rows x, y, normal
-    mechanism_ratio: float
-    acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
-    already: float = 0.0  # reference load that stages before have left on [N]
     grounds: dict["Ground", int] = field(default_factory=dict)  # ground that may give way: which of what may move it is
-    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each has, with the weight [m]
     stands: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each has at the start of a stage [m]
     rate: np.ndarray = field(default_factory=lambda: np.empty(0))  # and goes on to with the multiplier, in a stage [m]
     warnings: list[str] = field(default_factory=list)
 
-    dimensions = 3
+    @property
+    def place(self) -> np.ndarray:
+        """Places of the nodes (nodes, 3) [m]."""
+        return self.mesh.xyz
 
     @property
-    def extent(self) -> float:
-        """Greatest extent of the building [m]."""
-        return float(np.ptp(self.mesh.xyz, axis=0).max())
+    def point_count(self) -> int:
+        """Integration points of the shells."""
+        return sum(len(g.connect) * g.points_each for g in self.groups if isinstance(g, core.Shells))
 
     @property
     def reach(self) -> float:
@@ -74,40 +64,18 @@ class ShellModel(EventModel):
         return bool(self.rate.any())
 
     @property
-    def slides(self) -> bool:
-        """Whether a joint has a coefficient of friction."""
-        return any(isinstance(g, core.ShellJoints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
-
-    @property
-    def continues(self) -> bool:
-        """Whether equilibrium iterations may follow the building."""
-        return True
-
-    @property
     def steps_alone(self) -> bool:
         """Whether they follow it from the first load on: joints slide out of the plane of their wall in steps alone."""
         return self.slides
 
-    @property
-    def watched(self) -> list[core.Monitor]:
-        """What is recorded at each event."""
-        return [self.control]
-
-    def open(self, options: Pushover, threads: int) -> core.Model:
-        """The model in the core; Refused names a free node or a bad element."""
-        points = sum(len(g.connect) * g.points_each for g in self.groups if isinstance(g, core.Shells))
-        threads = max(1, min(threads, points // POINTS_PER_THREAD))
-        try:
-            return core.Model(self.mesh.xyz, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads)
-        except core.FreeNode as error:
-            x, y, z = self.mesh.xyz[error.node]
-            raise Refused(
-                f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
-                f"{error.direction}; the structure there is not supported",
-                ("structure",),
-            ) from None
-        except core.BadElement as error:
-            raise Refused(str(error), ("structure",)) from None
+    def refuse_free(self, error: core.FreeNode) -> Refused:
+        """The refusal of a node that nothing holds."""
+        x, y, z = self.mesh.xyz[error.node]
+        return Refused(
+            f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m can move freely in "
+            f"{error.direction}, because the structure is not supported there",
+            ("structure",),
+        )
 
     def borne(self, options: Pushover, curve: Curve, state: State, threads: int) -> np.ndarray:
         """What each ground bears in a state [N], in the direction in which it may give way."""
@@ -161,9 +129,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     frames, flat = node_frames(mesh.xyz, [part.connect for part in mesh.parts if part.bends])
     flat &= ~_twisted(mesh, frames)
     held = set(mesh.held) | {(int(n), 5) for n in np.flatnonzero(flat)}
-    angle = np.radians(options.direction)
-    along = np.array([np.cos(angle), np.sin(angle), 0.0])
-    along[np.abs(along) < 1e-12] = 0.0
+    along = _way(options.direction)
     groups: list[core.Group] = []
     ties: list[list[tuple[int, int, float]]] = []
     axes: list[np.ndarray] = []
@@ -188,8 +154,10 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         )
     if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
-            'joints that slide keep forces that only "continue" and "load-unload" can follow: give them friction = "no-sliding", or leave '
-            "without_equilibrium out",
+            (
+                'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = "no-sliding", or '
+                "remove without_equilibrium"
+            ),
             ("analysis", "without_equilibrium"),
         )
     mass = mesh.mass()
@@ -205,24 +173,24 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     reference = np.zeros_like(constant)
     weight, acceleration = float(GRAVITY * mass.sum()), None
     if not weight > 0.0:
-        raise BadGeometry("a building without weight: give the material a density")
+        raise BadGeometry("the building has no weight: give the material a density")
     behaviour = core.Behaviour(
         options.cracking, options.shear_retention, options.closes, MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes
     )
     control = _control(mesh, options, along, held)
     model = ShellModel(
-        mesh,
-        freedoms,
-        groups,
-        behaviour,
-        constant,
-        reference,
-        1.0,
-        control,
-        along,
-        weight,
-        axes,
-        options.mechanism_ratio,
+        mesh=mesh,
+        freedoms=freedoms,
+        groups=groups,
+        behaviour=behaviour,
+        constant=constant,
+        reference=reference,
+        unit=1.0,
+        control=control,
+        along=along,
+        weight=weight,
+        axes=axes,
+        mechanism_ratio=options.mechanism_ratio,
         grounds=grounds,
         settled=how_far(mesh, grounds, options.settlements),
     )
@@ -240,11 +208,17 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     return model
 
 
-def mass_push(model: ShellModel, options: Pushover, direction: float) -> tuple[np.ndarray, np.ndarray]:
-    """Nodal forces (nodes, 6) [N] of a push by the pattern in a direction on the plan [deg], and its unit vector."""
+def _way(direction: float) -> np.ndarray:
+    """Unit vector (3) of a direction on the plan [deg]."""
     angle = np.radians(direction)
     along = np.array([np.cos(angle), np.sin(angle), 0.0])
     along[np.abs(along) < 1e-12] = 0.0
+    return along
+
+
+def mass_push(model: ShellModel, options: Pushover, direction: float) -> tuple[np.ndarray, np.ndarray]:
+    """Nodal forces (nodes, 6) [N] of a push by the pattern in a direction on the plan [deg], and its unit vector."""
+    along = _way(direction)
     mass, force = model.mesh.mass(), np.zeros((len(model.mesh.xyz), 6))
     model = replace(model, along=along)
     force[:, :3] = GRAVITY * (mass * _pattern(model, options, mass))[:, None] * along
@@ -253,7 +227,7 @@ def mass_push(model: ShellModel, options: Pushover, direction: float) -> tuple[n
 
 def _level_of(mesh: ShellMesh, storey: int, what: str) -> float:
     if storey >= len(mesh.levels):
-        raise BadGeometry(f"{what}: there is no storey {storey}, there are {len(mesh.levels) - 1}")
+        raise BadGeometry(f"{what}: storey {storey} does not exist; the number of storeys is {len(mesh.levels) - 1}")
     return float(mesh.levels[storey])
 
 
@@ -267,7 +241,7 @@ def _place(mesh: ShellMesh, drive: Drive, what: str) -> np.ndarray:
     names = [wall.name for wall in mesh.walls]
     if drive.wall not in names:
         there = f"there are {', '.join(names)}" if names else "it has none"
-        raise BadGeometry(f"{what}: there is no wall '{drive.wall}'; {there}")
+        raise BadGeometry(f"{what}: wall '{drive.wall}' does not exist; {there}")
     nodes = nodes_on(mesh, names.index(drive.wall), _level_of(mesh, drive.storey, what))
     if not len(nodes):
         raise BadGeometry(f"{what}: wall '{drive.wall}' does not reach the top of storey {drive.storey}")
@@ -284,9 +258,9 @@ def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> li
         for node in _place(mesh, drive, f"drives[{k}]").tolist():
             share = drive.ratio * float(along[axis])
             if tie.setdefault(node, share) != share:
-                raise BadGeometry(f"drives[{k}]: a node of wall '{drive.wall}' is driven with another ratio already")
+                raise BadGeometry(f"drives[{k}]: a node of wall '{drive.wall}' already has a different ratio")
     if clash := [n for n in tie if (n, axis) in held]:
-        raise BadGeometry(f"drives: node {clash[0] + 1} is held")
+        raise BadGeometry(f"drives: node {clash[0] + 1} is restrained")
     return [(n, axis, share) for n, share in sorted(tie.items())]
 
 
@@ -305,7 +279,7 @@ def _feet_of(mesh: ShellMesh, settlement: Settlement, what: str) -> list[int]:
         return list(range(len(names)))
     if settlement.place not in names:
         word = "wall" if settlement.foot is None else "foot"
-        raise BadGeometry(f"{what}: there is no {word} '{settlement.place}'; there are {', '.join(names)}")
+        raise BadGeometry(f"{what}: {word} '{settlement.place}' does not exist; expected one of {', '.join(names)}")
     return [names.index(settlement.place)]
 
 
@@ -339,7 +313,8 @@ def _grounds(mesh: ShellMesh, options: Pushover, held: set) -> tuple[list[list[t
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(
-                f"{what}: no support of {word} '{support.name}' lies there that restrains it {'upright' if ground.way == 'down' else 'across'}"
+                f"{what}: no support of {word} '{support.name}' at this place restrains it "
+                f"{'upright' if ground.way == 'down' else 'across'}"
             )
         held -= {(n, d) for n, d, _ in free}
         grounds[ground] = len(ties)

@@ -33,7 +33,7 @@ def _verified(context: Context, options: Pushover) -> None:
     """The action of the verification belongs to the code of the deck, and the building has walls on a plan."""
     refuse_mixed(context, options.verification)
     if options.verification.model_fields_set and not isinstance(context.building.structure, Plan):
-        raise Refused("verification: displacements are verified of buildings of walls on a plan", ("analysis", "verification"))
+        raise Refused("verification by displacement requires a building given by walls in plan", ("analysis", "verification"))
     demands(context, options.verification)
 
 
@@ -48,10 +48,10 @@ def pier_strength(building: Building, options: Pushover) -> float:
     """f_m of the formulas of piers [Pa]; Refused where the deck says none, or has no piers."""
     key = ("analysis", "frame")
     if not isinstance(building.structure, Plan):
-        raise Refused("frame: piers are of a building of walls on a plan", key)
+        raise Refused("frame: piers require a building given by walls in plan", key)
     if options.drives:
-        raise Refused("frame: how the push goes to the storeys is not known of drives", key)
+        raise Refused("frame: with drives, the distribution of the load over the storeys is not known", key)
     strength = (options.frame and options.frame.compressive_strength) or building.material.compressive_strength
     if strength is None:
-        raise Refused("frame: the formulas of piers need compressive_strength (f_m), there or in [material]", key)
+        raise Refused("frame: the formulas of piers require compressive_strength (f_m), in this table or in [material]", key)
     return strength

@@ -59,10 +59,10 @@ def _run(context: Context, options: Pushover) -> Result:
     model = build(context.building.shell(options.mesh), options)
     context.warnings += model.warnings
     if not any(g.tension is not None for g in model.groups if isinstance(g, Shells | ShellJoints)):
-        context.warnings.append("nothing of it can crack: [material] has no tensile_strength, or no fracture_energy")
+        context.warnings.append("nothing in the structure can crack, because [material] has no tensile_strength or no fracture_energy")
     elastic = _elastic(model, options)
     if model.mesh.walls and not sliding_limits(model, context.building, options, elastic["under"]):
-        why = "the shear force at these heights is not known if imposed displacements load the walls"
+        why = "if imposed displacements load the walls, the shear force at these heights is not known"
         if context.building.joints.coefficient is None:
             why = "[joints] friction excludes it"
         context.warnings.append(f"Sliding of the whole building on a bed joint or on the base of a storey is not checked: {why}.")
@@ -107,7 +107,7 @@ def _run(context: Context, options: Pushover) -> Result:
     result.answer = _answer(context.building, options, numbers)
     if interrupted:
         again = "; --resume continues from them" if context.checkpoint is not None else ""
-        result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
+        result.status, result.reason = "interrupted", f"interrupted; the events up to then are saved{again}"
     return result
 
 
@@ -125,11 +125,11 @@ def _stages(
     staged = run_stages(model, options, context.threads, _progress(context, model, options), _chains(context, model, options))
     main = min(options.main, len(staged) - 1)
     if main != options.main:
-        result.warnings.append(f"the numbers are those of stage {options.stage_names[main]}, the last that began")
+        result.warnings.append(f"the reported results are those of stage {options.stage_names[main]}, the last stage that began")
     if {stage.sense for stage in options.stages if not stage.settlements} == {"+", "-"} and not options.closes:
         result.warnings.append(
-            "cracks stay open where the push changes its sense: cracks opened in one sense carry no pressure in the other; "
-            "crack_closure = true closes them"
+            "cracks stay open when the load is reversed: a crack that opened in one sense carries no compression in the "
+            "other. To let cracks close, give crack_closure = true"
         )
     rows, numbers = [], {}
     for k, (own, curve) in enumerate(staged):
@@ -362,9 +362,12 @@ def _no_base_shear(options: Pushover, numbers: dict[str, Any]) -> list[str]:
         return []
     carried, load = sum(row["shear_N"] for row in numbers["walls"]), numbers["greatest_load_N"]
     return [
-        "The drives move their storeys by unequal ratios. The load of the curve is the work of all drives over the control displacement, "
-        f"and not the base shear. At the greatest load of {engineering(load, 'N')} the walls carry {engineering(carried, 'N')} along the "
-        "push at their feet. Compare the shear of the walls with measured base shears."
+        (
+            "The drives move their storeys by different ratios. The load of the curve is therefore the work of all drives "
+            f"divided by the control displacement, not the base shear. At the greatest load of {engineering(load, 'N')}, the "
+            f"walls carry {engineering(carried, 'N')} along the load at their feet. Compare this shear of the walls with "
+            "measured base shears."
+        )
     ]
 
 
@@ -375,8 +378,8 @@ def _remarks(model: ShellModel, curve: Curve) -> list[str]:
         return said  # a stage that ends where it is told to
     if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
         said.append(
-            f"the base shear{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; "
-            f"its greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is no capacity"
+            f"the base shear{sense} had not passed a peak when the run ended ({events.reason or 'number of events'}). Its "
+            f"greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
         )
     return said
 
@@ -418,15 +421,15 @@ def _verify(
             found = replace(found, limits={} if flexure is None else {"drift": flexure - curve.before})
             if shear is not None and shear - curve.before < found.ultimate:
                 violated.append(
-                    f"To {curve.sense} a wall reaches the limit drift of piers in shear, {100 * drifts_of_piers[0]:.2g} %, at "
-                    f"{1e3 * shear:.3g} mm, before the collapse displacement: piers that fail in shear end the curve there."
+                    f"Towards {curve.sense}, a wall reaches the limit drift of piers in shear ({100 * drifts_of_piers[0]:.2g} %) at "
+                    f"{1e3 * shear:.3g} mm, before the collapse displacement. If its piers fail in shear, the curve ends there."
                 )
         pushes.append(Push(curve.sense, found, float(mass.sum())))
     for own in (numbers, numbers.get("minus")):
         if own is not None and own["capacity_N"] is not None and own["capacity_N"] < own["greatest_load_N"]:
             violated.append(
-                f"To {own['sense']} the building slides on {own['sliding_level']} at {own['capacity_N'] / 1e3:.3g} kN; the curve "
-                "excludes that sliding."
+                f"Towards {own['sense']}, the building slides at {own['sliding_level']} under {own['capacity_N'] / 1e3:.3g} kN, "
+                "but the capacity curve excludes this sliding."
             )
     return verify(context, result, options.verification, pushes, violated)
 
@@ -526,21 +529,23 @@ def _mesh_arrays(result: Result, model: ShellModel) -> None:
             part.connect, (f"elements_of_{k}", f"corner_{corner}"), "", f"nodes of {part.name}, from 0", "elements"
         )
         result.arrays[f"wall_of_{k}"] = Array(
-            np.array([part.wall]), ("one",), "", f"the wall that {part.name} is of, from 0; -1 none", "wall_of"
+            np.array([part.wall]), ("one",), "", f"number of the wall that {part.name} belongs to, from 0; -1: none", "wall_of"
         )
         result.arrays[f"bends_{k}"] = Array(
-            np.array([int(part.bends)]), ("one",), "", f"whether {part.name} bends; a floor does not", "bends"
+            np.array([int(part.bends)]), ("one",), "", f"whether {part.name} resists bending; a floor does not", "bends"
         )
     walls = np.array([[*w.origin, *w.along, w.length] for w in mesh.walls]).reshape(-1, 5)
-    result.arrays["wall"] = Array(walls, ("walls", "wall_row"), "m", "origin and direction on the plan, and length")
+    result.arrays["wall"] = Array(walls, ("walls", "wall_row"), "m", "origin and direction in plan, and length")
     result.arrays["level"] = Array(mesh.levels, ("levels",), "m", "heights of the ground and the storeys")
     if not mesh.walls:
         for name, values in place_axes(model).items():
             unit = "m" if name == "xyz" else ""
-            result.arrays[f"place_{name}"] = Array(values, ("places", "axis"), unit, f"of the places in the shells: {name}")
+            result.arrays[f"place_{name}"] = Array(
+                values, ("places", "axis"), unit, f"value at the integration points of the shells: {name}"
+            )
     for name, values in point_places(model).items():
         unit = "m" if name in "sz" else ""
-        result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"of the places in the walls: {name}")
+        result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"value at the integration points of the walls: {name}")
 
 
 def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) -> None:
@@ -559,14 +564,14 @@ def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) 
             np.stack([curve.sign * _facing(model) * _by_wall(model, sections(model, s.report))[0] for s in states]),
             (*dims, "walls"),
             "N",
-            "shear that each wall carries along the push at its foot",
+            "in-plane shear of each wall at its foot, along the load",
         )
     seen = [cracks(model, s.report) for s in states]
     for name, unit, about in (
-        ("width", "m", "greatest width of a crack through the thickness"),
-        ("angle", "rad", "of its normal to the wall"),
-        ("part", "", "part of the thickness that has cracked"),
-        ("side", "", "where through the thickness it is widest, from -1 to 1 on the side of the normal"),
+        ("width", "m", "greatest crack width through the thickness"),
+        ("angle", "rad", "direction of the crack normal in the wall"),
+        ("part", "", "share of the thickness that has cracked"),
+        ("side", "", "position of the greatest crack width through the thickness, from -1 to 1 on the side of the normal"),
     ):
         result.arrays[f"{prefix}state_{name}"] = Array(np.stack([s[name] for s in seen]), (*dims, "places"), unit, about)
     _pier_table(result, model, curve, states, prefix)
@@ -617,18 +622,20 @@ def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> s
     parts = []
     if "stages" in numbers:
         ends = [_stage_told(stage) for stage in numbers["stages"]]
-        parts.append(f"Stages, each with the damage of those before: {'; '.join(ends)}.")
+        parts.append(f"Stages, each with the damage of the stages before: {'; '.join(ends)}.")
     for curve in [numbers, *([numbers["minus"]] if "minus" in numbers else [])]:
         parts.append(_curve_told(options, numbers, curve, word, grouped))
     if numbers.get("band_N"):
         low, high = numbers["band_N"]
-        parts.append(f"Under the other assumptions of {len(numbers['variants'])} variants it is {low / 1e3:.4g} to {high / 1e3:.4g} kN.")
+        parts.append(
+            f"Under the other assumptions of {len(numbers['variants'])} variants, the base shear is {low / 1e3:.4g} to {high / 1e3:.4g} kN."
+        )
     if "frame" in numbers:
         words = [f"{row['base_shear_N'] / 1e3:.4g} kN by {row['code']} (storey {row['storey']})" for row in numbers["frame"]]
-        parts.append(f"Capacity of its piers by the formulas of codes {' and '.join(words)}.")
+        parts.append(f"The capacity of the piers by code formulas is {' and '.join(words)}.")
     assumed = getattr(building.structure, "assumed", [])
     if assumed:
-        parts.append("Assumed, since its sources do not say: " + "; ".join(assumed) + ".")
+        parts.append("Assumed values, not given by the sources of this building: " + "; ".join(assumed) + ".")
     return " ".join(part for part in parts if part)
 
 
@@ -637,8 +644,8 @@ def _stage_told(stage: dict[str, Any]) -> str:
     if end is None:
         return f"{stage['name']} without a state in equilibrium"
     if stage["of"] == "settlement":
-        return f"{stage['name']}, settlement of the ground, {stage['damaged_points']} points crack"
-    return f"{stage['name']}, a push to {stage['sense']}, ends at {end / 1e3:.4g} kN by: {stage['stop']}"
+        return f"{stage['name']}, settlement of the ground: {stage['damaged_points']} integration points crack"
+    return f"{stage['name']}, load towards {stage['sense']}, ends at {end / 1e3:.4g} kN ({stage['stop']})"
 
 
 def _pressing(row: dict[str, Any], weight: float) -> str:
@@ -658,40 +665,42 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
     if main is not None and main["of"] == "settlement":
         return f"After stage {main['name']} {feet}." if feet else ""
     load = curve["greatest_load_N"]
-    sense = f"Pushed to {curve['sense']} ({options.direction:g} degrees on the plan)" if main is None else f"In stage {main['name']}"
+    sense = (
+        f"Under the load towards {curve['sense']} ({options.direction:g} degrees in plan)" if main is None else f"In stage {main['name']}"
+    )
     if load is None:
-        return f"{sense}: no state in equilibrium was found."
+        return f"{sense}: no equilibrium state was found."
     bears = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
     part = f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
     slides = curve["capacity_N"] < load
     if slides:
         text = (
-            f"{sense} the {word} carries a base shear of at most {curve['capacity_N'] / 1e3:.4g} kN, {part}: it then slides "
-            f"on {curve['sliding_level']} by Coulomb's limit. Without that sliding the model {bears} {load / 1e3:.4g} kN"
+            f"{sense}, the {word} carries a base shear of at most {curve['capacity_N'] / 1e3:.4g} kN({part}), and then slides "
+            f"at {curve['sliding_level']} by Coulomb's law. Without this sliding the model {bears} {load / 1e3:.4g} kN"
         )
     else:
-        text = f"{sense} the {word} {bears} a base shear of {load / 1e3:.4g} kN, {part}"
+        text = f"{sense}, the {word} {bears} a base shear of {load / 1e3:.4g} kN, {part}"
     if curve["roof_drift"] is not None:
         text += f", at a drift of {100 * curve['roof_drift']:.2g} %"
     if "first_crack" in curve:
         crack = curve["first_crack"]
         if "along_m" in crack:
             text += (
-                f"; it cracks first in wall {crack['wall']}, storey {crack['storey']}, {crack['along_m']:.3g} m along and "
-                f"{crack['height_m']:.3g} m up, under {crack['base_shear_N'] / 1e3:.3g} kN"
+                f"; the first crack forms in wall {crack['wall']}, storey {crack['storey']}, {crack['along_m']:.3g} m along the "
+                f"wall and {crack['height_m']:.3g} m above the ground, under {crack['base_shear_N'] / 1e3:.3g} kN"
             )
         else:
             x, y, z = crack["place_m"]
             part = crack["wall"]
             where = f"group {part}" if grouped and part != NO_GROUP else f"the {part}"
-            text += f"; it cracks first in {where} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under {crack['base_shear_N'] / 1e3:.3g} kN"
+            text += f"; the first crack forms in {where} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under {crack['base_shear_N'] / 1e3:.3g} kN"
     if any(r["share"] > 0.02 for r in curve["walls"]):
         most = sorted(curve["walls"], key=lambda row: -row["share"])[:4]
         text += "; " + ", ".join(f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02)
     if "flanges" in curve:
         flanges = curve["flanges"]
         text += (
-            f"; walls across the push {'work as flanges' if flanges['working'] else 'hardly work with them'} "
+            f"; transverse walls {'act as flanges' if flanges['working'] else 'hardly act as flanges'} "
             f"({flanges['uplift_N'] / 1e3:.3g} kN up, {flanges['pressure_N'] / 1e3:.3g} kN down)"
         )
     moved = [row for row in curve.get("joints", []) if row["broken_share"] > 0.0]

@@ -168,8 +168,11 @@ def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, n
         load = (stage.base_shear - staged.already) / staged.unit
         if not load > 0.0:
             raise Refused(
-                f"stages[{number}].base_shear: the base shear in this sense is {staged.already:.4g} N at the start already, not below "
-                f"{stage.base_shear:.4g} N; the other sense reaches it",
+                (
+                    f"stages[{number}].base_shear: at the start of this stage the base shear in this sense is already "
+                    f"{staged.already:.4g} N, not below the given {stage.base_shear:.4g} N. To reduce it, apply the load in the other "
+                    "sense"
+                ),
                 ("analysis", "stages", number, "base_shear"),
             )
     if stage.target_displacement is not None:
@@ -178,7 +181,7 @@ def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, n
         side = int(np.sign(target - now))
         if side == 0:
             raise Refused(
-                f"stages[{number}].target_displacement: the control displacement is {now:g} m at the start already",
+                f"stages[{number}].target_displacement: at the start of this stage the control displacement is already {now:g} m",
                 ("analysis", "stages", number, "target_displacement"),
             )
     return core.Stop(

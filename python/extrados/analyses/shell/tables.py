@@ -28,24 +28,28 @@ class Drive(Table):
 class Settlement(Table):
     """Ground that gives way under a wall or a springing: it goes down, or outward; the damage stays."""
 
-    wall: str | None = key(None, "name of the wall above the support", min_length=1, max_length=40)
+    wall: str | None = key(None, "name of the wall above the support that moves", min_length=1, max_length=40)
     foot: str | None = key(
         None,
-        "of a vault, the side of the support: left or right, springing of a dome, north-east and so on of a groin vault, a support of "
-        "a mesh file, or all",
+        (
+            "for a vault: the side of the support (left or right, springing of a dome, north-east and so on of a groin "
+            "vault, a support of a mesh file, or all)"
+        ),
         min_length=1,
         max_length=200,
     )
-    x: Range | None = key(None, "[from, to] along the wall; default all of it")
-    down: Length = key(0.0, "how far it goes down; negative is a heave")
-    out: Length = key(0.0, "outward displacement: of a wall, perpendicular to it and away from the middle of the plan; of a dome, radial")
+    x: Range | None = key(None, "[from, to] along the wall; default: the whole wall")
+    down: Length = key(0.0, "downward displacement; a negative value is a heave")
+    out: Length = key(
+        0.0, ("outward displacement; for a wall: perpendicular to the wall, away from the middle of the plan; for a dome: radial")
+    )
 
     @model_validator(mode="after")
     def _somewhere(self) -> "Settlement":
         if (self.wall is None) == (self.foot is None):
-            raise ValueError("expected either wall, of a building, or foot, of a vault")
+            raise ValueError("expected either wall (for a building) or foot (for a vault)")
         if self.down == 0.0 and self.out == 0.0:
-            raise ValueError("nothing moves: expected down or out")
+            raise ValueError("the support does not move: give down or out")
         return self
 
     @property
@@ -58,26 +62,31 @@ class PushStage(Table):
     """One stage of several: ground that gives way, or a push. It starts where the one before it ended, with its loads, its
     displacements and its damage."""
 
-    name: str | None = key(None, "of the stage; default its number", min_length=1, max_length=40)
-    settlements: list[Settlement] = key([], "settlements of the ground in this stage; without them the stage is a push", max_length=100)
-    direction: Angle | None = key(None, "of the push on the plan; default the analysis'", ge=-360, le=360)
+    name: str | None = key(None, "name of the stage; default: its number", min_length=1, max_length=40)
+    settlements: list[Settlement] = key(
+        [], "settlements of the ground in this stage; without them, the stage applies a horizontal load", max_length=100
+    )
+    direction: Angle | None = key(None, "direction of the load in plan; default: the direction of the analysis", ge=-360, le=360)
     sense: Literal["+", "-"] = key("+", "of the push")
     base_shear: Force | None = key(
         None,
-        "base shear at which the stage ends, in its direction and sense; the loads that earlier stages left are included, so "
-        "that 0 unloads an earlier push to the other side",
+        (
+            "base shear at which the stage ends, in its direction and sense; the loads that remain from earlier stages are "
+            "included, so 0 removes an earlier load in the other sense"
+        ),
     )
-    target_displacement: Length | None = key(
-        None, "the stage ends where the control displacement has this value, counted from the building without loads"
-    )
-    stop_fraction: float = key(0.0, "stop when the load drops below this part of the stage's peak", ge=0, lt=1)
-    events: int | None = key(None, "most events of the stage; default the analysis'", ge=1, le=100_000_000)
+    target_displacement: Length | None = key(None, "control displacement at which the stage ends, counted from the building without loads")
+    stop_fraction: float = key(0.0, "stop when the load drops below this share of the peak of the stage", ge=0, lt=1)
+    events: int | None = key(None, "greatest number of events of the stage; default: that of the analysis", ge=1, le=100_000_000)
 
     @model_validator(mode="after")
     def _one_cause(self) -> "PushStage":
         own = {"direction", "sense", "base_shear", "target_displacement", "stop_fraction"} & self.model_fields_set
         if self.settlements and own:
-            raise ValueError(f"{', '.join(sorted(own))}: of a push; a stage of settlements ends at their values: take two stages")
+            raise ValueError(
+                f"{', '.join(sorted(own))} belong to a stage with a horizontal load. A stage of settlements ends at their values: "
+                "give two stages"
+            )
         return self
 
 
@@ -85,24 +94,24 @@ class Variant(Table):
     """The same push of a building of which something else is assumed: factors on what the deck says."""
 
     name: str = key(about="name in figures and results", min_length=1, max_length=40)
-    strength: float = key(1.0, "on the tensile strength of all materials", gt=0, le=100)
+    strength: float = key(1.0, "factor on the tensile strength of all materials", gt=0, le=100)
     energy: float = key(1.0, "on their fracture energy", gt=0, le=1000)
     young: float = key(1.0, "on their modulus of elasticity", gt=0, le=100)
     density: float = key(1.0, "on their density", gt=0, le=100)
-    thickness: float = key(1.0, "on the thickness of all walls and vaults, not of floors", gt=0, le=10)
-    floors: float = key(1.0, "on the stiffness of flexible floors and joists", gt=0, le=1e6)
-    prestress: float = key(1.0, "on the forces on top of walls", ge=0, le=100)
+    thickness: float = key(1.0, "factor on the thickness of all walls and vaults, but not of floors", gt=0, le=10)
+    floors: float = key(1.0, "factor on the stiffness of flexible floors and joists", gt=0, le=1e6)
+    prestress: float = key(1.0, "factor on the forces on top of the walls", ge=0, le=100)
 
 
 class FrameRules(Table):
     """Strengths of piers by formulas of codes, beside the push: the equivalent frame's storeys."""
 
-    cohesion: Stress = key(0.0, "shear strength of bed joints without pressure", ge=0)
+    cohesion: Stress = key(0.0, "shear strength of bed joints without compression", ge=0)
     friction: float = key(0.4, "coefficient of friction of bed joints", ge=0, le=1.5)
-    diagonal_strength: Stress = key(about="tau_0 of diagonal cracking, without pressure", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I")
+    diagonal_strength: Stress = key(about="tau_0 of diagonal cracking, without compression", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I")
     compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
-        "double", "ends of the piers without rotation: both, between stiff spandrels, or the lower one alone"
+        "double", "ends of the piers that are fixed against rotation: both (between stiff spandrels), or only the lower end"
     )
 
 
@@ -127,62 +136,85 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     starter_structure: ClassVar = "building"
     starter: ClassVar = {"mesh": '{ size = "0.6 m", layers = 3 }', "ripple": "0.2", "events": "1500"}
 
-    direction: Angle = key(0.0, "of the push on the plan, counter-clockwise from x", ge=-360, le=360)
-    directions: list[Literal["+", "-"]] = key(["+"], "senses of the push, each from the same start", min_length=1, max_length=2)
+    direction: Angle = key(0.0, "direction of the load in plan, counter-clockwise from x", ge=-360, le=360)
+    directions: list[Literal["+", "-"]] = key(["+"], "senses of the load; each run begins from the same start", min_length=1, max_length=2)
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
-        "forces in proportion to the masses, to the masses times their height, or to the masses times the first mode in that direction",
+        (
+            "distribution of the horizontal forces: in proportion to the masses, to the masses times their height, or to the "
+            "masses times the first mode in this direction"
+        ),
     )
     drives: list[Drive] = key(
-        [], "in place of the pattern: walls whose tops of storeys move by given parts of one displacement", max_length=100
+        [],
+        ("imposed displacements that replace the pattern: the tops of storeys of walls move by given ratios of one displacement"),
+        max_length=100,
     )
     control: Drive | None = key(
         None,
-        "place whose mean displacement in the direction is followed; default all walls on the highest level, or all masses if "
-        "that level is propped",
+        (
+            "place whose mean displacement in the direction is the control displacement; default: all walls on the highest "
+            "level, or all masses if this level is propped"
+        ),
     )
-    settlements: list[Settlement] = key([], "settlements that grow with the weight, [[analysis.settlements]]", max_length=100)
+    settlements: list[Settlement] = key([], "settlements that increase together with the weight, [[analysis.settlements]]", max_length=100)
     stages: list[PushStage] = key(
         [],
-        "stages one after the other, [[analysis.stages]], in place of one push: pushes to either sense, settlements; "
-        "each inherits the damage; the weight, with `settlements`, comes first",
+        (
+            "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either sense, or "
+            "settlements. Each stage keeps the damage of the stages before. The weight is applied first, together with "
+            "`settlements`"
+        ),
         min_length=1,
         max_length=50,
     )
     main_stage: str | None = key(
         None,
-        "name of the stage whose results are reported as the results of the analysis; default the last push, or the last "
-        "stage if no stage is a push",
+        (
+            "name of the stage whose results are reported as the results of the analysis; default: the last stage with a "
+            "horizontal load, otherwise the last stage"
+        ),
     )
     mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
     constant_damage: bool = key(
         True,
-        "the weight grows from 0 to 1 and causes damage before the push; false: the push acts on undamaged walls",
+        (
+            "true: the weight increases from 0 to 1 and causes damage before the horizontal load; false: the horizontal load "
+            "acts on undamaged walls"
+        ),
         source="thesis 4.3.1",
     )
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
-    target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
-    stop_fraction: float = key(0.0, "stop when the load drops below this part of its peak", ge=0, lt=1)
-    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "stop where the compliance has grown by this factor")
+    budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
+        None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
+    )
+    target_displacement: Length | None = key(None, "stop when the control displacement reaches this value", gt=0)
+    stop_fraction: float = key(0.0, "stop when the load drops below this share of its peak", ge=0, lt=1)
+    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "stop when the compliance has increased by this factor")
     crack_closure: bool | None = key(
-        None, "cracks that close regain their stiffness; default true of rotating cracks that equilibrium iterations follow, else false"
+        None,
+        ("cracks that close regain their stiffness; default: true for rotating cracks followed by equilibrium iterations, otherwise false"),
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        "if no load suits all points, see sla: equilibrium iterations in displacement control continue from there (rotating "
-        "cracks; joints that slide from the first load on), or A stays and the greatest lower limit decides, which is the default "
-        "of stages",
+        (
+            'method if no load is admissible at all points (see sla). "continue": equilibrium iterations in displacement '
+            'control (for rotating cracks, and for joints that slide from the first load on). "load-unload": loads A remain, '
+            "and the greatest lower limit decides; this is the default with stages"
+        ),
         source="thesis 4.3.1",
     )
     continuation: Literal["newton", "implicit-explicit"] = key("newton", "equilibrium iterations, see sla")
-    states: list[Annotated[int, Field(ge=1)]] = key([], "events whose state is kept (the peak and the last are anyway)", max_length=200)
-    probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
-    frame: FrameRules | None = key(None, "strengths of its piers by formulas of codes, [analysis.frame]")
+    states: list[Annotated[int, Field(ge=1)]] = key(
+        [], "numbers of events whose state is saved, in addition to the peak and the last event", max_length=200
+    )
+    probes: list[Length] = key([], "report the load of the envelope at these displacements", max_length=100)
+    frame: FrameRules | None = key(None, "strengths of the piers by code formulas, [analysis.frame]")
     verification: Verification = key(
-        Verification(), "displacement-based verification of a building that is given in plan, [analysis.verification]"
+        Verification(), "displacement-based verification of a building that is given by its plan, [analysis.verification]"
     )
     variants: list[Variant] = key(
-        [], "the first sense again with other assumptions: a band of curves, [[analysis.variants]]", max_length=50
+        [], "repeat the first sense with other assumptions, for a band of capacity curves, [[analysis.variants]]", max_length=50
     )
     #: What the events of sla ask for and a push does not offer
     solution: ClassVar = "events"
@@ -215,7 +247,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     @model_validator(mode="after")
     def _consistent(self) -> "Pushover":
         if len(set(self.directions)) < len(self.directions):
-            raise ValueError(f"directions: each sense may stand once, not {self.directions}")
+            raise ValueError(f"directions: each sense may occur only once, found {self.directions}")
         self.check_stages(
             {
                 "directions": self.directions != ["+"],
@@ -228,15 +260,15 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
             }
         )
         if self.settlements and not self.constant_damage:
-            raise ValueError("settlements come with the weight: they need constant_damage = true")
+            raise ValueError("settlements are applied together with the weight: they require constant_damage = true")
         if self.drives and self.pattern != "mass":
-            raise ValueError("drives take the place of the pattern: leave pattern out")
+            raise ValueError("drives replace the pattern: remove pattern")
         if len({variant.name for variant in self.variants}) < len(self.variants):
-            raise ValueError("variants: a name stands twice")
+            raise ValueError("variants: a name occurs twice")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         if self.verification.model_fields_set and (self.stages or self.drives):
-            raise ValueError("verification: needs one push by inertia forces: remove stages and drives")
+            raise ValueError("verification requires a single load by inertia forces: remove stages and drives")
         return self
 
     @property

@@ -93,7 +93,7 @@ def bar_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> No
         force = np.stack([along(bar, model, curve, state) for state in curve.states])
         dim = f"{prefix}pieces_of_{k}"
         result.arrays[f"{prefix}bar_place_{k}"] = Array(
-            bar.place, (dim,), "m", f"middles of the pieces of {bar.name}, from its start", f"{prefix}bar_place"
+            bar.place, (dim,), "m", f"middles of the elements of {bar.name}, from its start", f"{prefix}bar_place"
         )
         result.arrays[f"{prefix}bar_along_{k}"] = Array(
             force, (f"{prefix}states", dim), "N", f"force along {bar.name}, tension positive", f"{prefix}bar_along"

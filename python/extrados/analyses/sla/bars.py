@@ -73,7 +73,7 @@ def bar_group(
     material: Material = mesh.named[bar.material]
     what = f"a bar from {bar.start} to {bar.end}"
     if material.tensile_strength_parallel is not None:
-        raise BadGeometry(f"a bar of {bar.material!r}: tensile_strength_parallel is for masonry, a bar has one strength")
+        raise BadGeometry(f"tensile_strength_parallel of {bar.material!r} belongs to masonry; a bar has only one strength")
     rod = None
     if bar.bonded:
         rod = bonded(Corners.of(mesh), np.array([bar.start, bar.end], dtype=float), what)
@@ -87,8 +87,7 @@ def bar_group(
     if bar.yield_strength is not None:
         if not bar.ultimate_strain > bar.yield_strength / material.young:
             raise BadGeometry(
-                f"{what}: ultimate_strain {bar.ultimate_strain:g} is less than that at which it yields, "
-                f"{bar.yield_strength / material.young:g}"
+                f"{what}: ultimate_strain {bar.ultimate_strain:g} is below the yield strain, {bar.yield_strength / material.young:g}"
             )
         band = 1.0
         tension = crushing = yielding(bar.yield_strength, material.young, bar.ultimate_strain, options)
@@ -99,7 +98,9 @@ def bar_group(
 def tie_group(mesh: Mesh, tie: Tie, rod: Rod, options: Sla) -> core.Bars:
     """One of [[ties]]: a bar of 1 m^2, so that its stress is its force."""
     if tie.prestress:
-        raise BadGeometry(f"{tie.name}: prestress is not considered here; add its two forces to the constant loads")
+        raise BadGeometry(
+            f"{tie.name}: this analysis does not include prestress. Add the two forces of the prestress to the constant loads"
+        )
     length = float(rod.length[0])
     thickness = max(float(group.thickness.max()) for group in mesh.groups if group.joint is None)
     young = (tie.stiffness or RIGID * mesh.materials[0].young * thickness) * length

@@ -100,7 +100,9 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     slides = bool(np.isfinite(dry.friction).any())
     if not slides:
         if _rounds(core_model, model, dry, damage, start, MOST_ROUNDS) is None:
-            raise NotCarried("the constant loads are not carried: dry joints that only press cannot balance them", WHOLE)
+            raise NotCarried(
+                "the structure cannot carry the constant loads: dry joints that act only in compression cannot balance them", WHOLE
+            )
         return False
     # What touches without sliding is a sound beginning
     still = _with_friction(model, np.nan)
@@ -115,8 +117,8 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
         core_model.end_stage(1.0)
         return True
     warnings.append(
-        "no set of dry joints that slide under the constant loads alone was found: they stick there, and slide only under the "
-        "reference load"
+        "no consistent set of dry joints that slide under the constant loads alone was found. The analysis therefore "
+        "assumes that the joints do not slide before the reference load acts"
     )
     core_model.set_damage(start.into(damage, at, True))
     return True

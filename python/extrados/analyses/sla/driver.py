@@ -62,8 +62,8 @@ def _run(context: Context, options: Sla) -> Result:
     context.warnings += mesh.warnings
     if any(len({part.ratio for part in load.parts}) > 1 for load in options.reference or []):
         context.warnings.append(
-            "The parts of the displacement move by unequal ratios. The load is the work of all parts over the displacement, and not the "
-            "sum of their forces."
+            "The parts of the displacement move by different ratios. The load is therefore the work of all parts divided by "
+            "the displacement, not the sum of their forces."
         )
     damage, earlier = start_of(context, options, model)
 
@@ -104,7 +104,7 @@ def _run(context: Context, options: Sla) -> Result:
     result.results = out.Sla(**numbers)
     if any(c.events.interrupted for c in curves):
         again = "; --resume continues from them" if context.checkpoint is not None else ""
-        result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
+        result.status, result.reason = "interrupted", f"interrupted; the events up to then are saved{again}"
     return result
 
 
@@ -160,12 +160,12 @@ def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], 
             }
         )
     if options.stages[options.main :] and main.name != options.stage_names[options.main]:
-        result.warnings.append(f"the numbers are those of stage {main.name}, the last that began")
+        result.warnings.append(f"the reported results are those of stage {main.name}, the last stage that began")
     ends = "; ".join(
-        f"{stage['name']} at {stage['end_load_N'] / 1e3:.4g} kN by: {stage['stop']}" for stage in found if stage["end_load_N"] is not None
+        f"{stage['name']} at {stage['end_load_N'] / 1e3:.4g} kN ({stage['stop']})" for stage in found if stage["end_load_N"] is not None
     )
     if ends:
-        result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"
+        result.answer = f"End of each stage: {ends}. Stage {main.name}: {result.answer}"
     return found
 
 
@@ -191,15 +191,15 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         events, sense = curve.events, f" (load to {curve.sense})"
         if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
             result.warnings.append(
-                f"the load{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; its "
-                f"greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is no capacity"
+                f"the load{sense} had not passed a peak when the run ended ({events.reason or 'number of events'}). Its greatest "
+                f"value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
             )
         if far := out_of_reach(curve):
             result.warnings.append(far)
         if len(events) and events.load[0] < 0.0 and not curve.name:
             result.warnings.append(
-                f"the first event{sense} has a negative load, {engineering(events.load[0] * model.unit, 'N')}: the constant loads "
-                "alone are beyond the strength somewhere"
+                f"the first event{sense} has a negative load, {engineering(events.load[0] * model.unit, 'N')}, because the "
+                "constant loads alone exceed the strength at some point"
             )
     result.arrays = mesh_arrays(model)
     for curve, prefix in zip(curves, PREFIXES, strict=False):

@@ -42,6 +42,7 @@ DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
 UNBALANCED = 0.06
 #: How a run ends in which the load can grow for ever, and one that has reached a displacement
 UNBOUNDED, MECHANISM_REACHED, REACHED = (core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement"))
+SPENT = "budget of processor time"
 DRIFTED = f"a drift of {100 * DRIFT:g} %"
 
 
@@ -172,8 +173,8 @@ class Curve:
             return True
         if left:
             self.warnings.append(
-                f"stage {self.name} ended by: {events.reason or 'number of events'}, without a state in equilibrium from which "
-                f"to continue; not run: {', '.join(left)}"
+                f"stage {self.name} ended without an equilibrium state from which the run could continue "
+                f"({events.reason or 'number of events'}). These stages were not run: {', '.join(left)}"
             )
         return False
 
@@ -201,8 +202,10 @@ def run_curves(
     """
     if model.slides and (options.solution == "incremental" or options.without_equilibrium not in ("continue", "load-unload")):
         raise Refused(
-            "joints that slide keep forces that neither an incremental solution nor other variants can "
-            'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload',
+            (
+                "neither an incremental solution nor other variants can follow joints that slide. Give the joints friction = "
+                '"no-sliding", or use events with load-unload'
+            ),
             ("joints", "friction"),
         )
     curves = []
@@ -212,7 +215,10 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    f"resume_from: that wall has {damage.shape[1]} points with its bars, this one {core_model.points}",
+                    (
+                        f"resume_from: the earlier wall has {damage.shape[1]} integration points with its bars, and this wall has "
+                        f"{core_model.points}"
+                    ),
                     ("analysis", "resume_from"),
                 )
             core_model.set_damage(damage)
@@ -283,12 +289,14 @@ def bring_on_constant_loads(
     if np.any(model.constant) and not (found is not None and found.interrupted):
         _settled(core_model, model)
         core_model.loads(model.constant, np.zeros_like(model.constant))
-        far = float(np.abs(core_model.displacement(0.0)[:, : model.dimensions]).max())
+        far = float(np.abs(core_model.displacement(0.0)[:, : model.place.shape[1]]).max())
         if not far <= FAR * model.extent:
             raise NotCarried(
-                f"the constant loads are not carried: under them the structure would move by {far:.3g} m, more than a tenth "
-                f"of its size of {model.extent:.3g} m: it is a mechanism, which only the stiffness left in open joints and "
-                "cracks holds",
+                (
+                    f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
+                    f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and "
+                    "cracks"
+                ),
                 WHOLE,
             )
     return found, rubs
@@ -358,7 +366,7 @@ def _constant_stage(
     if events.reason != "target load" and not events.interrupted:
         most = float(events.load.max()) if len(events) else 0.0
         why = events.reason or f"{way.done} events were not enough"
-        raise NotCarried(f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})", WHOLE)
+        raise NotCarried(f"the structure cannot carry the constant loads: with damage it reaches {100 * most:.3g} % of them ({why})", WHOLE)
     return events
 
 
@@ -379,6 +387,7 @@ def run_reference_loads(
     it must be carried.
     """
     begin = time.perf_counter()
+    ends_at = time.process_time() + (options.budget or np.inf)
     stop = replace(stop, refuse_overload=fresh and bool(np.any(model.constant)), far=FAR * model.extent)
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
     way = UnderWay((core_model.damage(), 0))
@@ -430,8 +439,10 @@ def run_reference_loads(
             if error.status != status_code("beyond_strength"):
                 raise
             raise Refused(
-                "the constant loads alone exceed the strength, and no multiplier of the reference load relieves "
-                "them: let constant_damage = true bring them on with damage, or lower them",
+                (
+                    "the constant loads alone exceed the strength, and no multiplier of the reference load relieves them. Reduce "
+                    "them, or apply them with damage: constant_damage = true"
+                ),
                 WHOLE,
             ) from None
         spent = time.perf_counter() - clock
@@ -461,6 +472,9 @@ def run_reference_loads(
         progress(done, options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
         if part.reason or part.interrupted or not (len(part) or core_model.iterates):
             break
+        if time.process_time() > ends_at:
+            part.reason = SPENT
+            break
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, kept_states = core.Events.join(way.parts), way.states
     events.monitors[:, 0] *= sign  # positive in the sense of the load
@@ -480,12 +494,17 @@ def run_reference_loads(
         curve.most_compliance = floor * float(events.compliance[0])
     if ends_by_drift and events.reason == REACHED:
         events.reason = DRIFTED
+    if events.reason == SPENT and len(events):
+        curve.warnings.append(
+            f"The budget of {options.budget:.4g} s of processor time ended the run at a displacement of {1e3 * events.monitors[-1, 0]:.3g} mm: "
+            "peak and drifts are those up to there. Increase budget, or use larger elements."
+        )
     lost = np.flatnonzero(~events.equilibrium)
     if options.without_equilibrium == "continue" and not (goes_on or model.mesh.has_joints) and len(lost):
         curve.warnings.append(
-            f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations follow rotating cracks of "
-            "isotropic masonry alone (no bed joints, lateral reduction, confinement, shear retention or bars): the events beyond "
-            "are those of load-unload."
+            f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations can follow only "
+            "rotating cracks of isotropic masonry (no bed joints, lateral reduction, confinement, shear retention or bars). "
+            "The events after that are therefore those of load-unload."
         )
     steps = events.steps & events.equilibrium
     if steps.any():
@@ -494,8 +513,9 @@ def run_reference_loads(
         gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
         if gap > UNBALANCED:
             curve.warnings.append(
-                f"Work, stored and dissipated energy of the steps in displacement control differ by {100 * gap:.0f} % of the work of the "
-                "loads. Loads and displacements are in equilibrium; the dissipated energy is not reliable."
+                "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the "
+                f"loads by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not "
+                "reliable."
             )
     if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
         watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
@@ -523,7 +543,7 @@ def run_reference_loads(
                 events.interrupted = True
             else:
                 if state is None:
-                    curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
+                    curve.warnings.append("the state at the peak could not be calculated again from the batch before it")
                 else:
                     kept_states.append(state)
         for step in (drop_step, last_step):

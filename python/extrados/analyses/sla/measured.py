@@ -41,7 +41,7 @@ def read_measured(context: Context, file: str) -> Measured:
         raise Refused(str(error), KEY) from None
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if len(lines) < 3:
-        raise Refused(f"{file}: expected a line of names and at least two of numbers", KEY)
+        raise Refused(f"{file}: expected a line of column names and at least two lines of numbers", KEY)
     try:
         rows = [next(csv.reader([line])) for _, line in lines]
     except csv.Error as error:
@@ -49,7 +49,9 @@ def read_measured(context: Context, file: str) -> Measured:
     names, scales = zip(*(_column(file, title) for title in rows[0]), strict=True)
     wanted = ("displacement", "load") if "load" in names else ("displacement", "least", "greatest")
     if sorted(names) != sorted(wanted):
-        raise Refused(f"{file}: has the columns {', '.join(names)}; expected displacement with load, or with least and greatest", KEY)
+        raise Refused(
+            (f"{file}: the columns are {', '.join(names)}; expected displacement with load, or displacement with least and greatest"), KEY
+        )
     values = np.empty((len(rows) - 1, len(names)))
     for k, row in enumerate(rows[1:]):
         try:
@@ -57,15 +59,15 @@ def read_measured(context: Context, file: str) -> Measured:
         except ValueError:
             raise Refused(f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {','.join(row)[:60]!r}", KEY) from None
     if not np.isfinite(values).all():
-        raise Refused(f"{file}: holds a number that is not finite", KEY)
+        raise Refused(f"{file}: this file contains a number that is not finite", KEY)
     columns = dict(zip(names, (values * scales).T, strict=True))
     displacement = columns["displacement"]
     if not (np.diff(displacement) > 0.0).all():
-        raise Refused(f"{file}: the displacements must rise from line to line", KEY)
+        raise Refused(f"{file}: the displacements must increase from line to line", KEY)
     least, greatest = (columns.get(name, columns.get("load")) for name in ("least", "greatest"))
     assert least is not None and greatest is not None  # the head of the file has them
     if (least > greatest).any():
-        raise Refused(f"{file}: a least load is above the greatest", KEY)
+        raise Refused(f"{file}: a least load exceeds the greatest load of its line", KEY)
     return Measured(displacement, least, greatest)
 
 
@@ -74,7 +76,7 @@ def _column(file: str, title: str) -> tuple[str, float]:
     name, _, unit = title.strip().rstrip(")").partition(" (")
     units = LENGTHS if name == "displacement" else FORCES
     if unit not in units:
-        raise Refused(f"{file}: column '{title.strip()}': expected a unit, as '{name} ({next(iter(units))})'", KEY)
+        raise Refused(f"{file}: column '{title.strip()}': expected a unit, as in '{name} ({next(iter(units))})'", KEY)
     return name, units[unit]
 
 

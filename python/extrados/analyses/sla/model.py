@@ -4,7 +4,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -31,49 +31,12 @@ MOST_CHANGES_OF_JOINTS = 1000
 FLOOR_OF_JOINTS = 1e-11
 
 
+@dataclass(kw_only=True)
 class EventModel(ABC):
-    """What the event loop takes from a model: a wall in its plane, or a building of shells."""
+    """What the event loop takes from a model: a wall in its plane, or a building of shells. constant, reference: nodal forces (nodes,
+    2 or 6) [N]; unit: resultant of the reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
 
-    if TYPE_CHECKING:
-        mesh: Mesh | ShellMesh
-        behaviour: core.Behaviour
-        constant: np.ndarray
-        reference: np.ndarray
-        unit: float
-        control: core.Monitor
-        mechanism_ratio: float
-        acceleration: float | None
-        already: float
-        settled: np.ndarray
-
-        @property
-        def dimensions(self) -> int: ...
-        @property
-        def extent(self) -> float: ...
-        @property
-        def reach(self) -> float: ...
-        @property
-        def driven(self) -> bool: ...
-        @property
-        def watched(self) -> list[core.Monitor]: ...
-        @property
-        def slides(self) -> bool: ...
-        @property
-        def continues(self) -> bool: ...
-        @property
-        def steps_alone(self) -> bool: ...
-
-    @abstractmethod
-    def open(self, options: Any, threads: int) -> core.Model:
-        """The model in the core; Refused names a free node or a bad element."""
-
-
-@dataclass
-class SlaModel(EventModel):
-    """A wall or stones ready for the core. constant, reference: nodal forces (nodes, 2) [N]; unit: resultant of the
-    reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
-
-    mesh: Mesh
+    mesh: Mesh | ShellMesh
     freedoms: core.Freedoms
     groups: list[core.Group]
     behaviour: core.Behaviour
@@ -81,21 +44,91 @@ class SlaModel(EventModel):
     reference: np.ndarray
     unit: float
     control: core.Monitor
-    bands: list[np.ndarray]  # crack band of the elements of each plane group before they crack [m]
-    point_xy: np.ndarray  # (points, 2) of the plane groups [m]
     mechanism_ratio: float  # growth of the compliance that ends a run
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
-    moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
     already: float = 0.0  # reference load that stages before have left on [N]
-    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # supports that go down with A, as of a building [m]
-    bars: list[NamedBar] = field(default_factory=list)
+    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each support has settled, with the constant loads [m]
 
-    dimensions = 2
+    @property
+    @abstractmethod
+    def place(self) -> np.ndarray:
+        """Places of the nodes (nodes, 2 or 3) [m]."""
+
+    @property
+    @abstractmethod
+    def point_count(self) -> int:
+        """Integration points that threads share."""
+
+    @property
+    @abstractmethod
+    def reach(self) -> float:
+        """Extent over which a drift is counted [m]."""
+
+    @property
+    @abstractmethod
+    def driven(self) -> bool:
+        """Whether the multiplier moves supports."""
+
+    @property
+    def watched(self) -> list[core.Monitor]:
+        """What is recorded at each event."""
+        return [self.control]
+
+    @property
+    def slides(self) -> bool:
+        """Whether a joint has a coefficient of friction."""
+        return any(isinstance(g, core.Joints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
+
+    @property
+    def continues(self) -> bool:
+        """Whether equilibrium iterations may follow the structure."""
+        return True
+
+    @property
+    def steps_alone(self) -> bool:
+        """Whether they follow it from the first load on."""
+        return False
+
+    @abstractmethod
+    def refuse_free(self, error: core.FreeNode) -> Refused:
+        """The refusal of a node that nothing holds."""
 
     @property
     def extent(self) -> float:
         """Greatest extent of the structure [m]."""
-        return float(np.ptp(self.mesh.xy, axis=0).max())
+        return float(np.ptp(self.place, axis=0).max())
+
+    def open(self, options: Any, threads: int) -> core.Model:
+        """The model in the core; Refused names a free node or a bad element."""
+        # Below this many points a thread costs more than it saves; results are the same for any number
+        threads = max(1, min(threads, self.point_count // POINTS_PER_THREAD))
+        try:
+            return core.Model(self.place, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads)
+        except core.FreeNode as error:
+            raise self.refuse_free(error) from None
+        except core.BadElement as error:
+            raise Refused(str(error), ("structure",)) from None
+
+
+@dataclass(kw_only=True)
+class SlaModel(EventModel):
+    """A wall or stones ready for the core."""
+
+    mesh: Mesh
+    bands: list[np.ndarray]  # crack band of the elements of each plane group before they crack [m]
+    point_xy: np.ndarray  # (points, 2) of the plane groups [m]
+    moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
+    bars: list[NamedBar] = field(default_factory=list)
+
+    @property
+    def place(self) -> np.ndarray:
+        """Places of the nodes (nodes, 2) [m]."""
+        return self.mesh.xy
+
+    @property
+    def point_count(self) -> int:
+        """Integration points of the plane groups."""
+        return len(self.point_xy)
 
     @property
     def reach(self) -> float:
@@ -119,36 +152,19 @@ class SlaModel(EventModel):
         return [group for group in self.groups if isinstance(group, core.Plane | core.Joints)]
 
     @property
-    def slides(self) -> bool:
-        """True where a joint has a coefficient of friction."""
-        return any(isinstance(g, core.Joints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
-
-    @property
     def continues(self) -> bool:
         """Whether equilibrium iterations may follow the wall: dry joints end in the mechanism of limit analysis by events."""
         joints = [g for g in self.groups if isinstance(g, core.Joints)]
         return not joints or any(g.tension is not None or g.cohesion is not None for g in joints)
 
-    @property
-    def steps_alone(self) -> bool:
-        """Whether they follow it from the first load on."""
-        return False
-
-    def open(self, options: Sla, threads: int) -> core.Model:
-        """The model in the core; Refused names a free node or a bad element."""
-        # Below this many points a thread costs more than it saves; results are the same for any number
-        threads = max(1, min(threads, len(self.point_xy) // POINTS_PER_THREAD))
-        try:
-            return core.Model(self.mesh.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads)
-        except core.FreeNode as error:
-            x, y = self.mesh.xy[error.node]
-            raise Refused(
-                f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
-                f"{error.direction}; {_coincident(self.mesh) or 'add supports'}",
-                ("supports", "held"),
-            ) from None
-        except core.BadElement as error:
-            raise Refused(str(error), ("structure",)) from None
+    def refuse_free(self, error: core.FreeNode) -> Refused:
+        """The refusal of a node that nothing holds."""
+        x, y = self.mesh.xy[error.node]
+        return Refused(
+            f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m can move freely in "
+            f"{error.direction}; {_coincident(self.mesh) or 'add supports'}",
+            ("supports", "held"),
+        )
 
 
 def _coincident(mesh: Mesh) -> str:
@@ -161,8 +177,8 @@ def _coincident(mesh: Mesh) -> str:
     one, two = pairs[np.lexsort(pairs.T[::-1])[0]]
     x, y = mesh.xy[one]
     return (
-        f"nodes {one + 1} and {two + 1} lie at the same place, x {x:g} m, y {y:g} m ({len(pairs)} such pairs), and the "
-        "mesh is in pieces there: merge them"
+        f"nodes {one + 1} and {two + 1} have the same position, x {x:g} m, y {y:g} m ({len(pairs)} such pairs), so the "
+        "mesh is not connected there: merge these nodes"
     )
 
 
@@ -195,7 +211,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     if mesh.ground is not None:
         held |= {(node, axis) for node in mesh.ground.tolist() for axis in (0, 1)}
     if mesh.has_joints and options.cracking == "isotropic":
-        raise BadGeometry("joints open along their own direction: isotropic cracking is for walls without stones")
+        raise BadGeometry("joints open along their own direction, so isotropic cracking is only for walls without blocks")
     constant_loads, reference_loads = loads_of(mesh, options)
     ties = [[(int(n), AXES[tie.direction], 1.0) for n in mesh.nodes_at(tie, f"ties[{i}]")] for i, tie in enumerate(mesh.ties)]
     moved = next((load for load in reference_loads if load.kind == "displacement"), None)
@@ -204,20 +220,22 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         for part in moved.parts:
             tie += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in tie):
-            raise BadGeometry("displacement: every ratio is 0, nothing would move")
+            raise BadGeometry("displacement: every ratio is 0, so nothing moves")
         if len({n for n, _, _ in tie}) < len(tie):
-            raise BadGeometry("the parts of the displacement share nodes")
+            raise BadGeometry("two parts of the displacement have a node in common")
         ties.append(tie)
     tied = {(n, d) for tie in ties for n, d, _ in tie}
     if clash := held & tied:
         node, direction = min(clash)
-        raise BadGeometry(f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is held and tied in {'xy'[direction]}")
+        raise BadGeometry(
+            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is both restrained and tied in {'xy'[direction]}"
+        )
     try:
         freedoms = core.Freedoms.make(len(mesh.xy), sorted(held), ties)
     except ValueError as error:
         raise BadGeometry(str(error)) from None
     if not (freedoms.equation >= 0).any():
-        raise BadGeometry("every node is held: nothing can move")
+        raise BadGeometry("every node is restrained, so nothing can move")
 
     groups: list[core.Group] = []
     bands, points = [], []
@@ -244,7 +262,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         groups.append(core.Springs(np.column_stack([nodes, ground]), np.column_stack([ways, ways]), stiffness.astype(float)))
     for i, x in enumerate(options.section_x):
         if not mesh.low[0] <= x <= mesh.high[0]:
-            raise BadGeometry(f"section_x[{i}] is {x:g} m, the wall reaches from {mesh.low[0]:g} to {mesh.high[0]:g} m")
+            raise BadGeometry(f"section_x[{i}] is {x:g} m, but the wall extends from {mesh.low[0]:g} to {mesh.high[0]:g} m")
     constant = nodal_forces(mesh, constant_loads, "constant")
     reference = nodal_forces(mesh, reference_loads, "reference")
     if moved is not None:
@@ -254,42 +272,42 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     else:
         unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
     if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
-        raise BadGeometry("the reference load acts on held nodes only")
+        raise BadGeometry("the reference load acts only on nodes that are restrained")
     closure = options.crack_closure
     if closure is None:  # a single growing load hardly closes a crack
         rotates = options.cracking == "rotating"
         closure = mesh.has_joints or (rotates and bool(constant_loads or options.stages))
     if mesh.has_joints and not closure:
-        raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
+        raise BadGeometry("joints between blocks always open and close: crack_closure = false is only for walls without blocks")
     floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
     if ratio > MOST_OF_FLOOR / floor:
         raise BadGeometry(
-            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, "
-            f"which would carry the load; at most {MOST_OF_FLOOR / floor:g}"
+            f"mechanism_ratio {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would carry the load. "
+            f"Give at most {MOST_OF_FLOOR / floor:g}"
         )
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant
     control = control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
     return SlaModel(
-        mesh,
-        freedoms,
-        groups,
-        core.Behaviour(
+        mesh=mesh,
+        freedoms=freedoms,
+        groups=groups,
+        behaviour=core.Behaviour(
             options.cracking,
             options.shear_retention,
             closure,
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
             floor,
         ),
-        constant,
-        reference,
-        unit,
-        control,
-        bands,
-        np.concatenate(points),
-        ratio,
-        acceleration_of(reference_loads),
+        constant=constant,
+        reference=reference,
+        unit=unit,
+        control=control,
+        bands=bands,
+        point_xy=np.concatenate(points),
+        mechanism_ratio=ratio,
+        acceleration=acceleration_of(reference_loads),
         bars=named,
     )
 
@@ -378,7 +396,7 @@ def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOp
     if not any(criterion is not None for criterion in found):
         return None
     if options.cracking == "isotropic":
-        raise BadGeometry("compressive_strength_parallel needs cracks with a direction: isotropic cracking has none")
+        raise BadGeometry("compressive_strength_parallel requires cracks with a direction, and isotropic cracking has none")
     return found
 
 
@@ -419,7 +437,7 @@ def laws_of(
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
-        raise BadGeometry("tensile_strength_parallel needs cracks with a direction: isotropic cracking has none")
+        raise BadGeometry("tensile_strength_parallel requires cracks with a direction, and isotropic cracking has none")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
     widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):
@@ -428,8 +446,8 @@ def laws_of(
                 limit = core.largest_band(rows[k], materials[k].young)
                 if widths[k] >= limit:
                     raise BadGeometry(
-                        f"{energy} is too small for the elements: a crack band of {widths[k]:.4g} m snaps back, the "
-                        f"largest is {limit:.4g} m; use smaller elements"
+                        f"{energy} is too small for the size of the elements: with a crack band of {widths[k]:.4g} m the softening law "
+                        f"snaps back. The greatest possible band is {limit:.4g} m: use smaller elements"
                     )
     return tension, crushing, beds
 
@@ -504,8 +522,8 @@ def teeth_of_joints(law: JointLaw, factors: np.ndarray, options: CrackOptions) -
         for row, k in zip(rows or [], stiffness.tolist(), strict=False):
             if row is not None and core.largest_band(row, k) <= 1.0:
                 raise BadGeometry(
-                    f"joints.{name} is too small for joints of {k:.4g} Pa/m, which would snap back: it must be above "
-                    f"{row.energy / core.largest_band(row, k):.4g} N/m"
+                    f"joints.{name} is too small for a joint stiffness of {k:.4g} Pa/m, with which the softening law snaps back: give "
+                    f"more than {row.energy / core.largest_band(row, k):.4g} N/m"
                 )
     return tension, crushing, cohesion
 
@@ -546,7 +564,7 @@ def nodal_forces(mesh: Mesh, loads: Sequence[Load], word: str) -> np.ndarray:
                 per_area = (density * group.thickness)[:, None] * [load.ax, load.ay]
                 force += core.body_force(group.kind, group.gauss, mesh.xy, group.connect, per_area)
             if not heavy:
-                raise BadGeometry(f"{what}: gravity without weight: give the material a density")
+                raise BadGeometry(f"{what}: gravity requires weight: give the material a density")
         elif load.kind == "point":
             nodes, share = mesh.shares_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
             force[nodes] += share[:, None] * [load.fx, load.fy]
@@ -565,13 +583,13 @@ def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
         asked, slack = getattr(load, letter), 1e-6 * float(np.max(mesh.high - mesh.low))
         if asked is not None and (asked[0] < mesh.low[axis] - slack or asked[1] > mesh.high[axis] + slack):
             raise BadGeometry(
-                f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m reaches out of the wall, "
-                f"{mesh.low[axis]:g} to {mesh.high[axis]:g} m: a part of the load would be lost"
+                f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m extends beyond the wall ({mesh.low[axis]:g} to "
+                f"{mesh.high[axis]:g} m), so a part of the load would be lost"
             )
     mine = end > begin
     if not mine.any():
         raise BadGeometry(
-            f"{what}: no side of an element on the boundary lies within {words_of_place(load.edge, load.x, load.y)}; a mesh line is missing"
+            f"{what}: no side of a boundary element lies within {words_of_place(load.edge, load.x, load.y)}. Add a mesh line there"
         )
     edges, thickness, begin, end = edges[mine], thickness[mine], begin[mine], end[mine]
     along = mesh.xy[edges[:, 1]] - mesh.xy[edges[:, 0]]

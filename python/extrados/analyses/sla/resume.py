@@ -79,7 +79,7 @@ def _law(law: core.Softening | Sequence[core.Softening | None] | None) -> list:
 
 def _refuse_other(there: Makeup | None, here: Makeup) -> None:
     if there is None:
-        raise Refused("resume_from: that run does not say of which materials it was; run it again with this version", RESUME)
+        raise Refused("resume_from: the earlier run does not state its materials; run it again with this version", RESUME)
     words = {
         "stiffness": "stiffness or thickness",
         "tension": "tensile laws, teeth or crack bands",
@@ -88,7 +88,10 @@ def _refuse_other(there: Makeup | None, here: Makeup) -> None:
     }
     other = [words[name] for name in words if getattr(there, name) != getattr(here, name)]
     if other:
-        raise Refused(f"resume_from: that wall has other {' and other '.join(other)}; its damage says nothing of this one", RESUME)
+        raise Refused(
+            (f"resume_from: the earlier wall has different {' and different '.join(other)}, so its damage does not apply to this wall"),
+            RESUME,
+        )
 
 
 def read_earlier(context: Context, options: Sla) -> Stored:
@@ -108,23 +111,38 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         get = {name: array.numbers for name, array in stored.arrays["sla"].items()}
         there, here = get["point_xy"], model.point_xy
         if len(there) != len(here):
-            raise Refused(f"resume_from: that wall has {len(there)} points, this one {len(here)}; the mesh must be the same", RESUME)
+            raise Refused(
+                (
+                    f"resume_from: the earlier wall has {len(there)} integration points, and this wall has {len(here)}; the mesh must "
+                    "be the same"
+                ),
+                RESUME,
+            )
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
-            raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one", RESUME)
+            raise Refused(
+                f"resume_from: the integration points of the earlier wall are up to {apart:.3g} m away from those of this wall", RESUME
+            )
         if len(get["event_point"]) and get["event_point"].max() < 0:
-            raise Refused("resume_from: that run was incremental and has no events from which to continue", RESUME)
+            raise Refused("resume_from: the earlier run was incremental and has no events from which to continue", RESUME)
         if stored["sla"].get("stages"):
-            raise Refused("resume_from: that run was in stages, whose supports and loads are not kept: write one more stage", RESUME)
+            raise Refused(
+                ("resume_from: the earlier run was in stages, whose supports and loads are not saved: add a stage to that run instead"),
+                RESUME,
+            )
         _refuse_other(stored["sla"].get("makeup"), makeup(model))
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
-            raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events", ("analysis", "resume_event"))
+            raise Refused(
+                f"resume_event is {event}, but the earlier run has {len(get['event_point'])} events", ("analysis", "resume_event")
+            )
         if event >= 1 and "event_step" in get and get["event_step"][event - 1]:
             first = int(np.argmax(get["event_step"])) + 1
             raise Refused(
-                f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth; the last event before "
-                f"them is {first - 1}",
+                (
+                    f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth. The last event "
+                    f"before these steps is {first - 1}"
+                ),
                 ("analysis", "resume_event"),
             )
         earlier = None
@@ -152,8 +170,10 @@ def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) ->
         return get["damage_end"].T
     if traceless is not None:
         raise Refused(
-            f"resume_event: the damage before event {event} was not kept, and {traceless} leave no trace of it; kept "
-            f"were events {', '.join(str(e) for e in kept)}: name others in states of that run",
+            (
+                f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, because of "
+                f"{traceless}. Saved events: {', '.join(str(e) for e in kept)}. Give others in `states` of the earlier run"
+            ),
             ("analysis", "resume_event"),
         )
     return damage_before(get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1])

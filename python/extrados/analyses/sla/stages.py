@@ -76,7 +76,7 @@ class Supports:
         number = np.full(self.count, -1)
         free = np.flatnonzero(~fixed)
         if not len(free):
-            raise BadGeometry("every node is held: nothing can move")
+            raise BadGeometry("every node is restrained, so nothing can move")
         number[free] = np.arange(len(free))
         number[moved] = len(free) + np.arange(len(moved))
         return core.Freedoms(number[self.equation], self.factor, len(moved))
@@ -89,10 +89,10 @@ class Supports:
             nodes = self.model.mesh.nodes_at(part, f"{what}.parts[{i}]")
             at, by = self.equation[nodes, AXES[load.direction]], part.ratio / self.factor[nodes, AXES[load.direction]]
             if (np.isfinite(rate[at]) & (rate[at] != by)).any():
-                raise BadGeometry(f"{what}: the parts of the displacement share nodes, or nodes that are tied")
+                raise BadGeometry(f"{what}: two parts of the displacement have a node in common, or nodes that are tied")
             rate[at] = by
         if not np.nan_to_num(rate).any():
-            raise BadGeometry(f"{what}: every ratio is 0, nothing would move")
+            raise BadGeometry(f"{what}: every ratio is 0, so nothing moves")
         return rate
 
 
@@ -149,7 +149,9 @@ def run_stages(
                 curve.stage_a = stage_a
                 curve.warnings += warnings
             if away > SAME * most and most > 0.0:
-                curve.warnings.append(f"stage {name} does not start quite where the one before ended: nodes lie up to {away:.2g} m away")
+                curve.warnings.append(
+                    f"stage {name} does not start exactly where the stage before ended: nodes are up to {away:.2g} m away"
+                )
             curves.append(curve)
             events = curve.events
             if not curve.leads_on(options.stage_names[k + 1 :]):
@@ -198,7 +200,7 @@ def _prepare(
     if stage.free:
         freed = supports.at(stage.free, f"{what}.free")
         if not wall.fixed[freed].all():
-            raise BadGeometry(f"{what}.free: a place is not held when this stage begins")
+            raise BadGeometry(f"{what}.free: a place is not restrained when this stage begins")
         force = supports.forces(freed, _reactions(supports, wall, options, freed, threads))
         wall.fixed[freed] = False
         wall.loads.append((force, 1.0))
@@ -210,7 +212,7 @@ def _prepare(
     else:
         reference = nodal_forces(mesh, stage.reference, f"{what}.reference")
         if not (~wall.fixed[supports.equation] & (reference != 0.0)).any():
-            raise BadGeometry(f"{what}: the reference load acts on held nodes only")
+            raise BadGeometry(f"{what}: the reference load acts only on nodes that are restrained")
     moved = np.flatnonzero(wall.fixed & ((value != 0.0) | (rate != 0.0)))
     unit = 1.0 if stage.moves else resultant(reference)
     own = options.model_copy(
@@ -240,7 +242,7 @@ def _prepare(
         target = stage.target_displacement
         side = int(np.sign(target - now))
         if side == 0:
-            raise BadGeometry(f"{what}.target_displacement: the control displacement is {now:g} m at the start already")
+            raise BadGeometry(f"{what}.target_displacement: at the start of this stage the control displacement is already {now:g} m")
     multiplier = stage.target_multiplier or (1.0 if stage.free else np.inf)
     stop = core.Stop(
         load=multiplier,

@@ -21,23 +21,26 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
     arrays = {"node": Array(model.mesh.xy, ("nodes", "axis"), "m", "nodes of the mesh")}
     for i, group in enumerate(model.mesh.groups):
         arrays[f"elements_{i}"] = Array(
-            group.connect, (f"elements_of_{i}", f"corner_{i}"), "", f"nodes of the {group.kind} elements, from 0", "elements"
+            group.connect, (f"elements_of_{i}", f"corner_{i}"), "", f"numbers of the nodes of the {group.kind} elements, from 0", "elements"
         )
     arrays["point_xy"] = Array(model.point_xy, ("points", "axis"), "m", "integration points")
     per = [plane.points_each for plane in model.planes]
     band = np.concatenate([np.repeat(h, n) for h, n in zip(model.bands, per, strict=True)])
     owner = np.repeat(np.arange(model.mesh.elements()), np.repeat(per, [len(g.connect) for g in model.mesh.groups]))
     arrays["point_element"] = Array(
-        owner, ("points",), "", "number of the element of the point, counted from 0 through the groups of elements in order"
+        owner,
+        ("points",),
+        "",
+        "number of the element to which the integration point belongs, counted from 0 through the groups of elements",
     )
-    arrays["point_band"] = Array(band, ("points",), "m", "crack band width before the point cracks")
+    arrays["point_band"] = Array(band, ("points",), "m", "width of the crack band before the integration point cracks")
     if model.mesh.has_joints:
         reach = [
             h if g.joint is None else np.hypot(*(model.mesh.xy[g.connect[:, 1]] - model.mesh.xy[g.connect[:, 0]]).T) / g.gauss[0]
             for g, h in zip(model.mesh.groups, model.bands, strict=True)
         ]
         each = np.concatenate([np.repeat(h, n) for h, n in zip(reach, per, strict=True)])
-        arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that belongs to a point")
+        arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that belongs to an integration point")
     return arrays
 
 
@@ -50,27 +53,31 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     columns = {
         "load": (curve.force(unit), "N", "load in the chosen sense"),
         "displacement": (e.monitors[:, 0], "m", "control displacement"),
-        "limit_t": (limits[0], "N", "least upper limit of the load"),
-        "limit_c": (limits[1], "N", "greatest lower limit of the load"),
+        "limit_t": (limits[0], "N", "least of the upper limits of the load"),
+        "limit_c": (limits[1], "N", "greatest of the lower limits of the load"),
         "stored": (e.stored, "J", "elastic energy"),
-        "external": (e.external, "J", "work of all loads along the straight way between events"),
-        "lost": (e.lost, "J", "work along that way that is not stored; it may decrease, because events without equilibrium are no states"),
-        "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; never decreases"),
+        "external": (e.external, "J", "work of all loads along straight lines between events"),
+        "lost": (
+            e.lost,
+            "J",
+            ("part of this work that is not stored as energy; it may decrease, because events without equilibrium are not states"),
+        ),
+        "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; it never decreases"),
         "crack": (e.crack, "J", "area of the teeth passed"),
-        "scale": (e.scale, "", "part of all loads that is applied, below 1 if they were reduced together"),
+        "scale": (e.scale, "", "applied share of all loads; below 1 if all loads were reduced together"),
     }
     for name, (data, u, about) in columns.items():
         result.arrays[f"{prefix}event_{name}"] = Array(data, dim, u, about)
     result.arrays[f"{prefix}event_point"] = Array(e.point, dim, "", "point damaged, from 0")
     result.arrays[f"{prefix}event_code"] = Array(e.code, dim, "", "kind of event: " + ", ".join(f"{k} {v}" for k, v in EVENTS.items()))
     result.arrays[f"{prefix}event_equilibrium"] = Array(e.equilibrium.astype(np.int8), dim, "", "1 in equilibrium")
-    result.arrays[f"{prefix}event_step"] = Array(e.steps.astype(np.int8), dim, "", "1 a step of equilibrium iterations, 0 an event")
+    result.arrays[f"{prefix}event_step"] = Array(e.steps.astype(np.int8), dim, "", "1: step of equilibrium iterations, 0: event")
     result.arrays[f"{prefix}event_residual"] = Array(
-        np.where(e.steps, e.residual, np.nan), dim, "", "residual of a step over the largest nodal force of an element"
+        np.where(e.steps, e.residual, np.nan), dim, "", "residual of a step, divided by the largest nodal force of an element"
     )
     state, out = curve.judged
     result.arrays[f"{prefix}event_state"] = Array(
-        np.where(out, -1, state).astype(np.int8), dim, "", "1 a state of the structure, -1 out of reach, 0 neither"
+        np.where(out, -1, state).astype(np.int8), dim, "", "1: state of the structure, -1: displacements out of range, 0: neither"
     )
     if not prefix:
         for name in ("damage_start", "damage_end"):
@@ -123,11 +130,11 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         for field, (u, about) in {
             "width_n": ("m", "width of the first crack"),
             "width_s": ("m", "width of the second crack"),
-            "angle": ("rad", "direction of the first crack's normal"),
+            "angle": ("rad", "direction of the normal of the first crack"),
             "stress_1": ("Pa", "greater principal stress"),
             "stress_2": ("Pa", "lesser principal stress"),
-            "ratio_n": ("", "stiffness left across the first crack"),
-            "ratio_s": ("", "stiffness left across the second crack"),
+            "ratio_n": ("", "remaining stiffness across the first crack"),
+            "ratio_s": ("", "remaining stiffness across the second crack"),
             "stress_angle": ("rad", "of stress_1"),
         }.items():
             data = np.stack([point_fields(model, s)[field] for s in states])
@@ -184,7 +191,9 @@ def sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> Non
         away = np.abs(model.point_xy[:, 0] - x)
         near = np.flatnonzero(away <= away.min() + 1e-6 * model.mesh.size)
         near = near[np.argsort(model.point_xy[near, 1], kind="stable")]
-        result.arrays[f"section_{i}_y"] = Array(model.point_xy[near, 1], (f"section_{i}",), "m", f"points at x = {x:g} m", "section_y")
+        result.arrays[f"section_{i}_y"] = Array(
+            model.point_xy[near, 1], (f"section_{i}",), "m", f"integration points at x = {x:g} m", "section_y"
+        )
         for end in ("lo", "hi"):
             rows = np.stack([s.report[f"lambda_{end}"][near] for s in curve.states])
             result.arrays[f"section_{i}_{end}"] = Array(

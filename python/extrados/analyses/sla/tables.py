@@ -27,21 +27,23 @@ class Load(Table):
     """One load; which keys it takes depends on its kind."""
 
     kind: Literal["gravity", "pressure", "line", "point", "spread", "displacement"] = key(
-        about="self-weight; pressure or force per length on boundary edges; force on the nearest node, or on all "
-        "nodes of a place in equal parts; force spread evenly along an edge; displacement with ratios"
+        about=(
+            "kind of load: self-weight; pressure, or force per length, on boundary edges; force on the nearest node, or on "
+            "all nodes of a place in equal parts; force spread evenly along an edge; imposed displacement with ratios"
+        )
     )
     edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
-    x: Range | None = key(None, "x of the place, or [from, to]")
-    y: Range | None = key(None, "y of the place, or [from, to]")
+    x: Range | None = key(None, "x of the place, or its range [from, to]")
+    y: Range | None = key(None, "y of the place, or its range [from, to]")
     ax: Acceleration = key(0.0, "of gravity: acceleration to +x")
     ay: Acceleration = key(-GRAVITY, "of gravity: acceleration to +y")
-    value: Stress = key(0.0, "of pressure: positive pushes onto the wall")
-    px: LineForce = key(0.0, "of line: force per length to +x")
-    py: LineForce = key(0.0, "of line: force per length to +y")
-    fx: Force = key(0.0, "of point and spread: force to +x")
-    fy: Force = key(0.0, "of point and spread: force to +y")
+    value: Stress = key(0.0, 'for kind = "pressure": pressure; a positive value acts onto the wall')
+    px: LineForce = key(0.0, 'for kind = "line": force per length towards +x')
+    py: LineForce = key(0.0, 'for kind = "line": force per length towards +y')
+    fx: Force = key(0.0, 'for kind = "point" or "spread": force towards +x')
+    fy: Force = key(0.0, 'for kind = "point" or "spread": force towards +y')
     direction: Literal["x", "y"] = key("x", "of displacement")
-    parts: list[Part] = key([], "of displacement: places and their ratios; they move as one", max_length=50)
+    parts: list[Part] = key([], 'for kind = "displacement": places with their ratios, which move together', max_length=50)
 
     @model_validator(mode="after")
     def _complete(self) -> "Load":
@@ -55,12 +57,12 @@ class Load(Table):
         }[self.kind]
         strange = self.model_fields_set - own - {"kind"}
         if strange:
-            raise ValueError(f"{self.kind} takes {', '.join(sorted(own))}, not {', '.join(sorted(strange))}")
+            raise ValueError(f"a load of kind {self.kind} takes {', '.join(sorted(own))}, not {', '.join(sorted(strange))}")
         if self.kind == "displacement":
             if not self.parts:
-                raise ValueError("displacement needs parts = [{edge = ..., ratio = ...}, ...]")
+                raise ValueError("a load of kind displacement requires parts = [{edge = ..., ratio = ...}, ...]")
         elif self.kind != "gravity" and self.edge is None and self.x is None and self.y is None:
-            raise ValueError(f"the place of the {self.kind} load is missing: expected edge, x or y")
+            raise ValueError(f"the place of the {self.kind} load is missing: give edge, x or y")
         return self
 
 
@@ -68,13 +70,13 @@ class Watch(Placed):
     """A displacement that is followed: the mean of the place's nodes times `weight`."""
 
     direction: Literal["x", "y"] = key("x", "direction of the displacement")
-    weight: float = key(1.0, "share in the sum, not 0")
+    weight: float = key(1.0, "weight of this term in the sum; not 0")
 
     @field_validator("weight")
     @classmethod
     def _counts(cls, weight: float) -> float:
         if weight == 0.0:
-            raise ValueError("a weight of 0 follows nothing: leave the term out")
+            raise ValueError("a term with weight 0 has no effect: remove the term")
         return weight
 
 
@@ -88,37 +90,46 @@ class Stage(Table):
     """One stage of several: what changes of the supports, and the loads that grow. It starts in the state in which the one
     before it ended: its displacements, its loads and its damage."""
 
-    name: str | None = key(None, "of the stage, in figures and results; default its number", min_length=1, max_length=40)
-    hold: list[Hold] = key([], "places held from this stage on, at their positions at its start", max_length=100)
+    name: str | None = key(None, "name of the stage, in figures and results; default: its number", min_length=1, max_length=40)
+    hold: list[Hold] = key([], "places that are held from the start of this stage on, at the positions that they have then", max_length=100)
     free: list[Hold] = key(
-        [], "supports removed in this stage, of any stage or of the building. Their reactions are ramped to zero", max_length=100
+        [],
+        (
+            "supports that are removed in this stage, either supports of the building or of an earlier stage. Their "
+            "reactions are reduced to zero in proportion"
+        ),
+        max_length=100,
     )
     reference: list[Load] = key(
         [],
-        "loads B of this stage, multiplied by lambda; or one displacement, by which places (supports too) move from "
-        "their present positions, and at which they stay held",
+        (
+            "loads B of this stage, multiplied by lambda. Or one imposed displacement: places (also supports) move from "
+            "their present positions, and remain held at the end"
+        ),
         max_length=100,
     )
     control: list[Watch] = key(
-        [], "displacement of the curve, a sum of terms; default the analysis', or the mean displacement under B", max_length=50
+        [],
+        ("control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under B"),
+        max_length=50,
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
-        None, "the stage ends where lambda reaches it, and these loads stay on; 1 where supports are let go"
+        None, "value of lambda at which the stage ends; its loads then remain. With `free` supports, 1 is their full removal"
     )
-    target_displacement: Length | None = key(
-        None, "the stage ends exactly where the control displacement, counted from the unloaded wall, has this value"
-    )
-    stop_fraction: float = key(0.0, "stop when the load drops below this part of the stage's peak", ge=0, lt=1)
-    events: int | None = key(None, "most events of the stage; default the analysis'", ge=1, le=10_000_000)
+    target_displacement: Length | None = key(None, "control displacement at which the stage ends exactly, counted from the unloaded wall")
+    stop_fraction: float = key(0.0, "stop when the load drops below this share of the peak of the stage", ge=0, lt=1)
+    events: int | None = key(None, "greatest number of events of the stage; default: that of the analysis", ge=1, le=10_000_000)
 
     @model_validator(mode="after")
     def _one_cause(self) -> "Stage":
         if self.free and self.reference:
-            raise ValueError("free and reference: supports that are let go are the load of their stage; take two stages")
+            raise ValueError("free and reference exclude each other, because removed supports are the load of their stage: give two stages")
         if not (self.free or self.reference):
-            raise ValueError("a stage needs a load that grows: expected reference, or free")
+            raise ValueError("a stage requires a load that increases: give reference, or free")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
-            raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
+            raise ValueError(
+                "reference with an imposed displacement can contain no other load; give further places of the displacement as parts"
+            )
         return self
 
     @property
@@ -161,28 +172,37 @@ def without_effect(building: "Building") -> set[str]:
 class CrackOptions(Table):
     """How cracking masonry softens, and how cracks stand, in every analysis that is sequentially linear."""
 
-    teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
+    teeth: Literal["exact", "ripple"] = key(
+        "exact",
+        "rule for the teeth of the saw-tooth law: teeth that give the exact energy, or the ripple rule of the thesis",
+        source="thesis 4.2",
+    )
     ripple: float = key(
         0.05,
-        "half-width p of the teeth over the strength: the load is up to about p/2 too high; the thesis has 0.1 and 0.2",
+        ("half-width p of the teeth, divided by the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2"),
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
     )
-    overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
-    crack_band: Length | None = key(None, "crack band width h; default by crack_band_rule", gt=0)
+    overshoot: bool = key(True, "true: the first tooth rises above the strength; false: the first tooth ends at the strength")
+    crack_band: Length | None = key(None, "width h of the crack band; default: by crack_band_rule", gt=0)
     crack_band_rule: Literal["projected", "area"] = key(
         "projected",
-        "crack band from the element's width across its crack, or as in the thesis: sqrt(2 A) of linear and sqrt(A) of quadratic elements",
+        (
+            "rule for the crack band: the width of the element across its crack, or the rule of the thesis: sqrt(2 A) for "
+            "linear and sqrt(A) for quadratic elements"
+        ),
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
-        "cracks that rotate with the principal strain, cracks fixed at their first tooth as in the thesis (they carry too "
-        "much: see docs/sla.md), or one damage for all directions",
+        (
+            "kind of cracking: cracks that rotate with the principal strain; cracks with a fixed direction from their first "
+            "tooth, as in the thesis (overestimates the capacity, see docs/sla.md); or isotropic damage"
+        ),
         source="Eq. 4.10",
     )
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
-        None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
+        None, "constant shear retention factor of cracked points; default: from the smaller modulus", source="Eq. 4.11"
     )
 
 
@@ -198,6 +218,7 @@ class Staged:
         events: int
         target_displacement: float | None
         stop_fraction: float
+        budget: float | None
         without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"]
         continuation: Literal["newton", "implicit-explicit"]
         states: list[int]
@@ -218,14 +239,14 @@ class Staged:
         names = self.stage_names
         if not self.stages:
             if self.main_stage is not None:
-                raise ValueError("main_stage names one of `stages`, and there are none")
+                raise ValueError("main_stage is given, but there are no `stages`")
             return
         if len(set(names)) < len(names):
-            raise ValueError(f"stages: a name stands twice among {', '.join(names)}")
+            raise ValueError(f"stages: a name occurs twice among {', '.join(names)}")
         if self.main_stage is not None and self.main_stage not in names:
-            raise ValueError(f"main_stage: there is no stage '{self.main_stage}'; there are {', '.join(names)}")
+            raise ValueError(f"main_stage: stage '{self.main_stage}' does not exist; expected one of {', '.join(names)}")
         if clash := [name for name, given in alone.items() if given]:
-            raise ValueError(f"{', '.join(clash)} cannot stand beside stages: say it in a stage, or run without stages")
+            raise ValueError(f"{', '.join(clash)} cannot be used together with stages: give them in a stage, or run without stages")
 
 
 class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
@@ -269,98 +290,125 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         return found
 
     constant: list[Load] | None = key(
-        None, "loads A, there from the start; default the weight of stones, and of walls whose reference is not given", max_length=100
+        None, "loads A, which act from the start; default: the weight, for blocks and for walls without a given reference", max_length=100
     )
     reference: list[Load] | None = key(
         None,
-        "loads B that lambda multiplies; default all masses times 1 g to +x, so that lambda is an acceleration in g",
+        "loads B, multiplied by lambda; default: all masses times 1 g towards +x, so that lambda is an acceleration in g",
         min_length=1,
         max_length=100,
     )
     constant_damage: bool = key(
         True,
-        "loads A grow from 0 to 1 and cause damage before loads B act; false: loads B act on the undamaged wall",
+        "true: loads A increase from 0 to 1 and cause damage before loads B act; false: loads B act on the undamaged wall",
         source="thesis 4.3.1",
     )
-    directions: list[Literal["+", "-"]] = key(["+"], "senses of B, each from the same start", min_length=1, max_length=2)
+    directions: list[Literal["+", "-"]] = key(["+"], "senses of loads B; each run begins from the same start", min_length=1, max_length=2)
     stages: list[Stage] = key(
         [],
-        "stages one after the other, [[analysis.stages]], in place of `reference`: each has its supports, loads and end, and "
-        "inherits the damage; `constant` comes first",
+        (
+            "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own supports, loads and "
+            "end, and keeps the damage of the stages before; `constant` is applied first"
+        ),
         min_length=1,
         max_length=50,
     )
     main_stage: str | None = key(
-        None, "name of the stage whose results and figures are reported as those of the analysis; default the last stage"
+        None, "name of the stage whose results and figures are reported as those of the analysis; default: the last stage"
     )
-    control: list[Watch] = key([], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50)
+    control: list[Watch] = key(
+        [], "control displacement of the curve: a sum of terms; default: the mean displacement under B", max_length=50
+    )
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
-    target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
-    stop_fraction: float = key(0.0, "stop when the load drops below this part of its peak", ge=0, lt=1)
+    budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
+        None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
+    )
+    target_displacement: Length | None = key(None, "stop when the control displacement reaches this value", gt=0)
+    stop_fraction: float = key(0.0, "stop when the load drops below this share of its peak", ge=0, lt=1)
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] | None = key(
-        None, "stop where the compliance has grown by this factor; default 1e4, of stones 1e5"
+        None, "stop when the compliance has increased by this factor; default 1e4, for blocks 1e5"
     )
     friction_ripple: float = key(
-        0.02, "a quarter of the slip back after which a joint that slides sticks, over the elastic slip of its friction", ge=0.001, le=0.1
+        0.02,
+        ("ripple p of friction: a joint that slides sticks again after a reverse slip of 4 p times the elastic slip of its friction"),
+        ge=0.001,
+        le=0.1,
     )
     crack_closure: bool | None = key(
         None,
-        "cracks that close regain their stiffness; default true, except for walls of fixed or isotropic cracks and for walls "
-        "under one growing load alone, without constant loads or stages",
+        (
+            "cracks that close regain their stiffness; default true, except for walls with fixed or isotropic cracks, and "
+            "for walls under a single increasing load without constant loads or stages"
+        ),
     )
     solution: Literal["events", "incremental"] = key(
         "events",
-        "one point after the other; or, to compare, steps of arc length with a secant iteration in which all overloaded "
-        "points lose teeth together: `events` counts its steps then",
+        (
+            "solution method: one integration point after the other; or, for comparison, steps of arc length with a secant "
+            "iteration in which all overloaded points lose teeth together (`events` then counts these steps)"
+        ),
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        "if no multiplier of B suits all points: equilibrium iterations in displacement control continue from there (rotating "
-        "cracks without bed joints, bars and joints; else load-unload), or A stays and the greatest lower limit decides, or all loads of the "
-        "last state in equilibrium are reduced together (intermittent proportional loading); or the load never comes back: "
-        "the force that a tooth sets free goes onto the other points before the load grows again (force release)",
+        (
+            'method if no multiplier of B is admissible at all points. "continue": equilibrium iterations in displacement '
+            'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": A '
+            'remains, and the greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
+            'reduced together (intermittent proportional loading). "force-release": the force that a tooth releases acts on '
+            "the other points before the load increases again"
+        ),
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
     continuation: Literal["newton", "implicit-explicit"] = key(
         "newton",
-        "equilibrium iterations: Newton's method, and staggered steps if it stalls; or damage extrapolated from the last step "
-        "(one convex problem a step, cheaper and less accurate)",
+        (
+            "equilibrium iterations: Newton's method, with staggered steps if it does not converge; or damage extrapolated "
+            "from the last step (one convex problem for each step: faster and less accurate)"
+        ),
         source="Oliver, Huespe and Cante 2008",
     )
-    algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
-    states: list[Annotated[int, Field(ge=1)]] = key([], "events whose state is kept (the peak and the last are anyway)", max_length=200)
-    probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
+    algorithm: Literal["update", "refactor"] = key("update", "update the matrix factor at each event, or factorise again")
+    states: list[Annotated[int, Field(ge=1)]] = key(
+        [], "numbers of events whose state is saved, in addition to the peak and the last event", max_length=200
+    )
+    probes: list[Length] = key([], "report the load of the envelope at these displacements", max_length=100)
     measured: str | None = key(
         None,
-        "CSV of a test to draw behind the curve and to compare with: columns 'displacement (mm)' and 'load (N)', or "
-        "'least (N)' and 'greatest (N)' of several tests; lines that begin with # are its source",
+        (
+            "CSV file of a test, drawn with the curve and compared with it. Columns: 'displacement (mm)' and 'load (N)', or "
+            "'least (N)' and 'greatest (N)' of several tests; lines that begin with # give the source"
+        ),
     )
-    section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections", max_length=10)
-    seeds: list[int] = key([], "repeat with these seeds of random mesh and strength: a scatter band", max_length=200)
+    section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections of the wall", max_length=10)
+    seeds: list[int] = key([], "repeat the analysis with these seeds of the random mesh and strength, for a scatter band", max_length=200)
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
-    strength_length: Length | None = key(None, "correlation length of the strength; default one element", gt=0)
+    strength_length: Length | None = key(None, "correlation length of the strength; default: one element", gt=0)
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
     verification: Verification = key(
         Verification(),
-        "displacement-based verification of a wall on which the horizontal forces of its own masses act to +x, [analysis.verification]",
+        (
+            "displacement-based verification of a wall that is loaded by the horizontal forces of its own masses towards +x, "
+            "[analysis.verification]"
+        ),
     )
     resume_from: str | None = key(
-        None, "results folder of an earlier run of the same wall, from which to continue, inside the deck's folder or absolute"
+        None,
+        ("results folder of an earlier run of the same wall, from which this run continues; inside the folder of the deck, or absolute"),
     )
-    resume_event: int | None = key(None, "continue before this event of that run; default its last", ge=1)
+    resume_event: int | None = key(None, "number of the event of that run before which this run continues; default: the last event", ge=1)
 
     @field_validator("directions")
     @classmethod
     def _each_once(cls, directions: list[str]) -> list[str]:
         if len(set(directions)) < len(directions):
-            raise ValueError(f"each sense may stand once, not {directions}")
+            raise ValueError(f"each sense may occur only once, found {directions}")
         return sorted(directions)  # "+" first: the second curve, where there is one, is to -
 
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":
         if any(load.kind == "displacement" for load in self.constant or []):
-            raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
+            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could not follow B")
         reference = self.reference or []
         self.check_stages(
             {
@@ -376,17 +424,19 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             }
         )
         if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
-            raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
+            raise ValueError(
+                "reference with an imposed displacement can contain no other load; give further places of the displacement as parts"
+            )
         if len(set(self.seeds)) < len(self.seeds):
-            raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
+            raise ValueError("seeds: a seed occurs twice, which would give the same wall again")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states):
-            raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
+            raise ValueError("an incremental solution has no events: remove without_equilibrium and states")
         if self.verification.model_fields_set and not self.by_inertia:
-            raise ValueError("verification: needs one horizontal push by masses alone, without stages")
+            raise ValueError("verification requires one horizontal load by the masses only, without stages")
         if self.verification.shape == "mode":
-            raise ValueError('verification: shape = "mode" is of buildings: remove it')
+            raise ValueError('verification: shape = "mode" belongs to buildings: remove it')
         return self
 
     @property

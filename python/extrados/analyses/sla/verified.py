@@ -30,7 +30,8 @@ def verify_wall(context: Context, result: Result, model: SlaModel, options: Sla,
     without = float(-model.constant[:, 1].sum() - GRAVITY * mass.sum())
     if without > ROUNDING * GRAVITY * mass.sum():
         violated.append(
-            f"Vertical loads of {without / 1e3:.3g} kN on the wall have no mass in the push: the period and the demand are too small."
+            f"Vertical loads of {without / 1e3:.3g} kN on the wall are not included in the mass of the horizontal load, so "
+            "the period and the demand are too small."
         )
     y = model.mesh.xy[:, 1]
     top = float(shape[y > y.max() - 1e-6].mean()) / float(np.ptp(y))  # drift for a unit of the control displacement
@@ -46,8 +47,8 @@ def verify_wall(context: Context, result: Result, model: SlaModel, options: Sla,
             found = replace(found, limits={"drift": flexure} if flexure <= found.displacement[-1] else {})
             if shear < found.ultimate:
                 violated.append(
-                    f"To {curve.sense} the wall reaches the limit drift of piers in shear, {100 * limits[0]:.2g} %, at {1e3 * shear:.3g} "
-                    "mm, before the collapse displacement: piers that fail in shear end the curve there."
+                    f"Towards {curve.sense}, the wall reaches the limit drift of piers in shear ({100 * limits[0]:.2g} %) at "
+                    f"{1e3 * shear:.3g} mm, before the collapse displacement. If its piers fail in shear, the curve ends there."
                 )
         pushes.append(Push(curve.sense, found, float(mass.sum())))
     return verify(context, result, options.verification, pushes, violated)

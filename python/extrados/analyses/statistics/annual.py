@@ -41,7 +41,7 @@ def hazard_curve(options: Hazard, folder: Path) -> HazardCurve:
         rows.append((x, rate))
     try:
         if len(rows) < 2 or not np.isfinite(rows).all():
-            raise ValueError(f"holds {len(rows)} pairs of finite numbers; expected two or more")
+            raise ValueError(f"the hazard curve has {len(rows)} pairs of finite numbers; expected two or more")
         check_hazard(*map(list, zip(*rows, strict=True)))
     except ValueError as error:
         raise Refused(f"{options.file}: {error}", FILE) from None
@@ -89,7 +89,8 @@ def annual_collapse(
         first, last = hazard.intensity[[0, -1]]
         result.warnings.append(
             f"intensities below {first:.4g} or above {last:.4g}{f' {unit}' if unit else ''}, the ends of the hazard curve, "
-            f"may add up to {missing:.2g} a year, {100 * missing / rate:.0f} % of the rate of collapse: give a longer curve"
+            f"may add up to {missing:.2g} a year, {100 * missing / rate:.0f} % of the rate of collapse: give a hazard curve "
+            "with a wider range"
         )
     x = np.geomspace(hazard.intensity[0], hazard.intensity[-1], GRID)
     density = probability(x) * hazard.density(x)
@@ -97,7 +98,7 @@ def annual_collapse(
         "hazard_intensity": Array(hazard.intensity, ("hazard",), unit, name),
         "hazard_rate": Array(hazard.rate, ("hazard",), "1/year", "mean annual rate of exceedance"),
         "contribution_intensity": Array(x, ("contribution",), unit, name),
-        "contribution": Array(density, ("contribution",), "1/year", "annual rate of collapse by unit of ln(intensity)"),
+        "contribution": Array(density, ("contribution",), "1/year", "annual rate of collapse per unit of ln(intensity)"),
     }
     return {
         "annual_collapse_rate": rate,
@@ -118,6 +119,6 @@ def spoken(r: dict[str, Any], name: str, unit: str, confidence: float) -> str:
     band = f" ({low:.2g} to {high:.2g} at {100 * confidence:g} %)" if np.isfinite(low) else ""
     return (
         f"With the hazard of the site the annual rate of collapse is {r['annual_collapse_rate']:.3g}{band}: "
-        f"{100 * r['collapse_probability_in_years']:.2g} % in {r['years']:g} years, mostly by motions about "
-        f"{name} {r['decisive_intensity']:.3g}{f' {unit}' if unit else ''}."
+        f"{100 * r['collapse_probability_in_years']:.2g} % in {r['years']:g} years. Motions with {name} about "
+        f"{r['decisive_intensity']:.3g}{f' {unit}' if unit else ''} contribute most."
     )

@@ -60,7 +60,7 @@ def describe(
     try:
         found, region = fit_cloud(x[ok], fell, confidence)
     except NoFit as error:
-        result.warnings.append(f"no curve of collapse over {name}: {error}")
+        result.warnings.append(f"no fragility curve of collapse over {name} could be fitted: {error}")
         r |= {"median": None, "dispersion": None}
     else:
         r |= {
@@ -71,8 +71,8 @@ def describe(
         }
         _curve("curve", "collapse", found, region, grid, columns, result)
         result.answer += (
-            f" Over the {name} that the motions have of themselves the probability of collapse has the median "
-            f"{found.median:.4g}{f' {unit}' if unit else ''}, dispersion {found.dispersion:.3f}."
+            f" For the unscaled motions, the fragility curve of collapse over {name} has the median "
+            f"{found.median:.4g}{f' {unit}' if unit else ''} and the dispersion {found.dispersion:.3f}."
         )
         if hazard is not None:
             r |= annual_collapse(*hazard, found, region.curves, None, unit, name, result)
@@ -82,7 +82,9 @@ def describe(
         try:
             found, region = fit_cloud(x[ok], fell | (ratio[ok] > limit), confidence)
         except NoFit as error:
-            result.warnings.append(f"no curve of rotations beyond {limit:g} of the critical over {name}: {error}")
+            result.warnings.append(
+                f"no fragility curve over {name} could be fitted for rotations above {limit:g} times the critical rotation: {error}"
+            )
             continue
         _curve(f"beyond_{limit:g}", f"a rotation ratio above {limit:g}", found, region, grid, columns, result)
         annual: dict[str, Any] = {}

@@ -112,7 +112,7 @@ class EnsembleJob:
             index = place[motion[good]]
             scale = self._scale(own, member[good] % per_motion, index)
             level_ok = np.isfinite(scale)
-            reason = np.where(np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason)
+            reason = np.where(np.isin(np.arange(count), good[~level_ok]), "the motion is zero, so it cannot be scaled", reason)
             good, index, scale = good[level_ok], index[level_ok], scale[level_ok]
             if not len(good):
                 return {**rows, "reason": reason}
@@ -219,7 +219,7 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
         result.answer = "No member is finished."
         return
     if swept.interrupted and swept.on_disk and job.levels is not None:
-        result.answer = f"{swept.finished} of {swept.count} runs are finished and kept. No result is made of so many before the end."
+        result.answer = f"{swept.finished} of {swept.count} runs are complete and saved. A result requires all runs."
         return
     initial = base.initial_ratio
     per_motion = 1 if job.levels is None else len(job.levels)
@@ -266,7 +266,9 @@ def _describe(context: Context, options: Fragility, base: Rocker, job: EnsembleJ
         compared = cloud.compare(measures | ({name: (swept["intensity"], unit)} if options.intensity == "sa" else {}), swept["outcome"])
         if len(compared) > 1:
             r["measures"] = compared
-            result.answer += f" Of {', '.join(sorted(one.measure for one in compared))}, {compared[0].measure} predicts collapse best."
+            result.answer += (
+                f" Among {', '.join(sorted(one.measure for one in compared))}, the measure {compared[0].measure} predicts collapse best."
+            )
     if options.histories and swept.complete:
         _histories(job, base, min(options.histories, motions), result)
     if options.sensitivity is not None and swept.complete:
@@ -323,7 +325,7 @@ def _histogram(options: Fragility, swept: Swept) -> dict[str, Array]:
         upright = (rows["outcome"] != FAILED) & (rows["outcome"] != COLLAPSE)
         counts += np.histogram(np.minimum(rows["peak_ratio"][upright], 1.0), edges)[0]
     return {
-        "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
+        "bin_edge": Array(edges, ("bin_edge",), "", "ratio of the peak rotation to the critical rotation"),
         "bin_count": Array(counts, ("bin",), "", "members that do not collapse"),
     }
 
@@ -340,10 +342,11 @@ def _words(context: Context, options: Fragility, base: Rocker, r: Keys) -> str:
         else f"{r['collapsed']} of {r['count']} samples of the building with uncertain values collapse"
     )
     return (
-        f"{counted}: probability of collapse {100 * p:.1f} % "
-        f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
-        f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
-        f"The {'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
+        f"{counted}: probability of collapse {100 * p:.1f} % ({100 * options.confidence:g} % interval {100 * low:.1f} to "
+        f"{100 * high:.1f} %). Rocking starts in {100 * r['uplift_probability']:.1f} % of the runs. The mean ratio of the "
+        f"greatest to the critical rotation is {r['mean_peak_rotation_ratio']:.2f} (collapse counts as 1). The "
+        f"{'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; rocking "
+        f"starts at {base.uplift:.3f} g."
     )
 
 
@@ -377,7 +380,8 @@ def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarra
     before it rocks."""
     if options.uncertain and base.watch is not None and not isinstance(base.model, BlockModel) and not options.watches_samples:
         why = (
-            "Friction and thrust line are not checked: the forces at the joints are those of the nominal building, not of the sampled ones."
+            "Friction and thrust line are not checked, because the forces at the joints are those of the nominal building, "
+            "not of the sampled buildings."
         )
         return {"conditions": Conditions(not_checked=why, violated=slides_at_rest(base, rows, "motions"))}
     found = of_many(base, Counted.of(rows), "motions")
@@ -394,20 +398,23 @@ def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJo
     """Share of the runs that collapse by each impact rule, at each level where there are any, where their c_v differ by more than
     DIFFER and the runs are few enough."""
     rivals = base.rivals(DIFFER)
-    if not rivals or options.uncertain or options.hand_over:
+    if not rivals or options.uncertain:
         return {}
     each = ", ".join(f'"{rule}" {c_v:.3f}' for rule, (c_v, _) in rivals.items())
     if count > MOST_BY_RULE:
         result.warnings.append(
-            f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). With {count} motions the probability is given "
-            f"by one rule alone; at most {MOST_BY_RULE} motions are run by each."
+            f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). At most {MOST_BY_RULE} motions are "
+            f"run with every rule. This run has {count} motions, so the probability is given with one rule only."
         )
         return {}
     found = {}
     levels = 1 if job.levels is None else len(job.levels)
     for rule, (_, body) in rivals.items():
-        rival = replace(job, bodies=[base.held(body)], handed=None)
-        swept = sweep(context, "fragility", rival, count, f"fragility by the rule {rule}").whole()
+        held = base.held(body)
+        rival = replace(job, bodies=[held], handed=job.handed and job.handed.by(held))
+        swept = sweep(
+            context, "fragility", rival, count, f"fragility by the rule {rule}", slow=options.hand_over, parallel=options.hand_over
+        ).whole()
         good = swept["outcome"] != FAILED
         at = swept.members % levels
         hits, runs = (np.bincount(at, weight, levels) for weight in (swept["outcome"] == COLLAPSE, good))
@@ -415,7 +422,7 @@ def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJo
     if job.levels is None:
         shares = ", ".join(f'"{rule}" {100.0 * share[0]:.3g} %' for rule, share in found.items())
         result.warnings.append(
-            f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). Probability of collapse by rule: {shares}."
+            f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). Probability of collapse by each rule: {shares}."
         )
         return {"collapse_probability_by_rule": {rule: float(share[0]) for rule, share in found.items()}}
     order = np.argsort(job.levels, kind="stable")
@@ -425,12 +432,12 @@ def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJo
     every = np.array(list(found.values()))[:, order]
     apart = float(np.ptp(every, axis=0).max())
     result.warnings.append(
-        f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). At one level their probabilities of collapse differ "
-        f"by up to {100.0 * apart:.3g} %."
+        f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). At one level the probabilities of "
+        f"collapse by two rules differ by up to {100.0 * apart:.3g} %."
     )
     result.arrays |= {
-        "stripe_rule_least": Array(every.min(axis=0), ("stripe",), "", "least probability of collapse of the impact rules"),
-        "stripe_rule_most": Array(every.max(axis=0), ("stripe",), "", "greatest probability of collapse of the impact rules"),
+        "stripe_rule_least": Array(every.min(axis=0), ("stripe",), "", "lowest probability of collapse among the impact rules"),
+        "stripe_rule_most": Array(every.max(axis=0), ("stripe",), "", "highest probability of collapse among the impact rules"),
     }
     return {"collapse_by_rule": rows, "rule_band": apart}
 
@@ -451,7 +458,7 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
             ("motion_time", "motion_time", at[thin], "s", f"motion {k + 1}"),
             ("motion", "motion_time", ground_acceleration[thin] / GRAVITY, "g", "ground acceleration"),
             ("time", "history_time", h.time, "s", ""),
-            ("rotation", "history_time", h.rotation / critical, "", f"rotation over the critical one: {h.outcome}"),
+            ("rotation", "history_time", h.rotation / critical, "", f"ratio of rotation to critical rotation: {h.outcome}"),
         ):
             result.arrays[f"history_{what}_{k + 1}"] = Array(data, (f"{axis}_{k + 1}",), unit, about, series=f"history_{what}")
 
@@ -496,7 +503,7 @@ def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Resu
             if len(told) <= 5:
                 result.warnings.append(f"{name} has no result: {why}")
     if len(told) > 5:
-        result.warnings.append(f"{count} members in all have no result, see ensemble.csv")
+        result.warnings.append(f"{count} members have no result in total, see ensemble.csv")
 
 
 def _stopped(swept: Swept, result: Result) -> None:
@@ -541,8 +548,8 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
         else TableData(columns(swept.members, swept.arrays), units)
     )
     result.arrays |= {
-        "outcome": Array(swept.column("outcome"), ("member",), "", "-1 failed, 0 at rest, 1 recovery, 2 collapse"),
-        "peak_ratio": Array(swept.column("peak_ratio"), ("member",), "", "greatest rotation over the critical one"),
+        "outcome": Array(swept.column("outcome"), ("member",), "", "outcome: -1 failed, 0 at rest, 1 recovery, 2 collapse"),
+        "peak_ratio": Array(swept.column("peak_ratio"), ("member",), "", "ratio of the greatest rotation to the critical rotation"),
         "pga": Array(swept.column("pga", lambda rows: rows / GRAVITY), ("member",), "g"),
         "pgv": Array(swept.column("pgv"), ("member",), "m/s"),
     }
@@ -607,4 +614,7 @@ def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[floa
         for d, row in zip(durations, rows, strict=True)
         if row["count"]
     )
-    result.answer = f"Over the duration of the motions ({rows[0]['count'] if rows else 0} each), {text} of the critical rotation (collapse counted as 1)."
+    result.answer = (
+        f"Results over the duration of the motions ({rows[0]['count'] if rows else 0} each), rotations as shares of the "
+        f"critical rotation (collapse counts as 1): {text}."
+    )

@@ -1,6 +1,6 @@
 """Members of an ensemble in which joints slide or hinges form elsewhere: rigid contacts decide them, one by one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,8 +8,8 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.hand_over import Fates, contacts_of
 from extrados.analyses.statistics.tables import Fragility
 from extrados.analyses.statistics.uncertain import Sample
-from extrados.core.rocking import Ground
-from extrados.results.rocking import COLLAPSE, NO_HINGING
+from extrados.core.rocking import Body, Ground
+from extrados.results.rocking import COLLAPSE, NO_HINGING, SLID
 from extrados.views.rockers.rocker import Rocker
 
 
@@ -19,6 +19,11 @@ class Handed:
 
     fates: Fates
     sample: Sample | None = None
+
+    def by(self, body: Body) -> "Handed":
+        """The nominal building by another body, of another rule of impact, until contacts follow it."""
+        contacts = self.fates.contacts
+        return Handed(replace(self.fates, contacts=replace(contacts, leaving=replace(contacts.leaving, body=body))))
 
     def settle(
         self, rows: dict[str, np.ndarray], members: np.ndarray, buildings: np.ndarray, grounds: list[Ground], settle: float, threads: int
@@ -37,7 +42,7 @@ class Handed:
             found = fates.follow(ground, float(rows["scale"][k]), ground.end + settle, threads)
             if found.outcome < 0:
                 continue
-            rows["outcome"][k], rows["handed"][k] = NO_HINGING if found.slides else found.outcome, 1
+            rows["outcome"][k], rows["handed"][k] = NO_HINGING if found.outcome == SLID else found.outcome, 1
             rows["half_cycles"][k], rows["stop_time"][k] = 0, np.nan  # of the mechanism, which does not hold
             rows["peak"][k] = found.rotation
             rows["peak_ratio"][k] = max(1.0, found.ratio) if found.outcome == COLLAPSE else found.ratio
@@ -50,8 +55,10 @@ def handed_of(context: Context, options: Fragility, base: Rocker, sample: Sample
     contacts = contacts_of(base, context.building, options.form == "linear")
     if contacts is None:
         raise Refused(
-            "rigid contacts do not follow this building: its joints are not watched (ties, dampers, a wall, a compliant base, piers "
-            'without blocks, form = "linear")',
+            (
+                "this building cannot be followed with rigid contacts, because its joints are not checked (ties, dampers, a "
+                'wall, a compliant base, piers without blocks, or form = "linear")'
+            ),
             ("analysis", "hand_over"),
         )
     return Handed(Fates.of(context, contacts), sample)

@@ -14,7 +14,7 @@ from extrados.motions import pulses
 from extrados.results import statistics as out
 from extrados.results.fields import given
 from extrados.results.model import Array, Result, TableData
-from extrados.results.rocking import COLLAPSE
+from extrados.results.rocking import COLLAPSE, SLID
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.rocker import Rocker
@@ -56,16 +56,16 @@ def run(context: Context, options: HarmonicMap) -> Result:
         at = np.flatnonzero(fails)
         linear = options.form == "linear"
         found = decide_cells(context, model, options.hand_over_cells, linear, grounds, motion[at], job.scale[at], job.end[at])
-        known = found >= 0
-        outcome[at[known]], handed = found[known], int(known.sum())
+        known = found["outcome"] >= 0
+        outcome[at[known]], handed = found["outcome"][known], int(known.sum())
+        swept["peak_ratio"][at[known]] = found["ratio"][known]
         if handed == len(at):
             conditions = conditions.model_copy(update={"violated": []})
         if handed:
             result.warnings.append(
-                f"Rigid contacts decided {handed} of {outcome.size} motions of the map: joints slide in {conditions.sliding}, and hinges form "
-                f"elsewhere in {conditions.hinges_elsewhere}. Their greatest rotations are not given."
+                f"{handed} of {outcome.size} motions of the map were decided with rigid contacts: joints slide in "
+                f"{conditions.sliding}, and hinges form at other joints in {conditions.hinges_elsewhere}."
             )
-            swept["peak_ratio"][at[known]] = np.nan
     outcome = outcome.reshape(shape)
     over = outcome == COLLAPSE
     ratio = np.where(over, np.nan, swept["peak_ratio"].reshape(shape))
@@ -112,8 +112,8 @@ def store_map(
     result.arrays = {
         "frequency": Array(frequency, ("frequency",), "Hz"),
         "amplitude": Array(amplitude / GRAVITY, ("amplitude",), "g"),
-        "outcome": Array(outcome, ("frequency", "amplitude"), "", "0 at rest, 1 recovery, 2 collapse"),
-        "peak_ratio": Array(ratio, ("frequency", "amplitude"), "", "greatest rotation over the critical one"),
+        "outcome": Array(outcome, ("frequency", "amplitude"), "", f"outcome: 0 at rest, 1 recovery, 2 collapse, {SLID} sliding alone"),
+        "peak_ratio": Array(ratio, ("frequency", "amplitude"), "", "ratio of the greatest rotation to the critical rotation"),
         "lowest": Array(lowest, ("frequency",), "g", "lowest overturning amplitude"),
     }
 
@@ -127,7 +127,8 @@ def answer_of(options: HarmonicMap, model: Rocker, found: out.HarmonicMap, cap: 
         )
     k = int(np.nanargmin(lowest))
     return (
-        f"Under {options.cycles} cycles the {model.word} rocks from {model.uplift:.3f} g on; the lowest amplitude of "
-        f"collapse is {lowest[k]:.3f} g, at {found.frequencies_Hz[k]:.3f} Hz (omega/p = {found.frequency_ratios[k]:.2f}); "
-        f"{found.safe_pocket_cells} cells of the map lie above a failing amplitude and are safe."
+        f"Under {options.cycles} cycles rocking of the {model.word} starts at {model.uplift:.3f} g. The lowest amplitude "
+        f"that causes collapse is {lowest[k]:.3f} g, at {found.frequencies_Hz[k]:.3f} Hz (omega/p = "
+        f"{found.frequency_ratios[k]:.2f}). {found.safe_pocket_cells} cells of the map are safe although a lower "
+        "amplitude causes collapse."
     )

@@ -164,7 +164,7 @@ def _curves(
         curves[f"{stage}curve"] = Array(fit.probability(grid), ("grid",), "", f"fitted probability of {text}")
         if stage in ("", "first_collapse_") and fit.freedom > 0 and fit.p_value < 0.01:
             result.warnings.append(
-                f"the lognormal curve of {text} fits badly (deviance {fit.deviance:.1f} at {fit.freedom} degrees of "
+                f"the lognormal curve of {text} does not fit well (deviance {fit.deviance:.1f} at {fit.freedom} degrees of "
                 f"freedom, p = {fit.p_value:.2g})"
             )
     if "uplift_" in fits and "overturning_given_uplift_" in fits:
@@ -184,7 +184,7 @@ def _curves(
         r |= {"first_collapse_median_interval": region.median, "first_collapse_dispersion_interval": region.dispersion}
         low, high = region.band(grid)
         curves |= {
-            "first_collapse_lower": Array(low, ("grid",), "", "profile-likelihood band of the first collapse"),
+            "first_collapse_lower": Array(low, ("grid",), "", "profile-likelihood band of the curve of the first collapse"),
             "first_collapse_upper": Array(high, ("grid",)),
         }
     result.arrays |= curves
@@ -207,9 +207,16 @@ def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) ->
         {"first_collapse": unit},
     )
     result.arrays |= {
-        "incremental_ratio": Array(seen.ratio[:SHOWN], ("shown", "stripe"), "", "peak rotation ratio of the first motions"),
+        "incremental_ratio": Array(
+            seen.ratio[:SHOWN], ("shown", "stripe"), "", "ratio of peak to critical rotation, for the first motions"
+        ),
         "incremental_over": Array(over[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: collapse"),
-        "incremental_risen": Array(risen[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"),
+        "incremental_risen": Array(
+            risen[:SHOWN].astype(np.int8),
+            ("shown", "stripe"),
+            "",
+            "1: the structure survives at this level although a lower level of the motion overturns it",
+        ),
     }
 
 
@@ -244,18 +251,20 @@ def _answer(seen: Stripes, fits: dict[str, Lognormal], name: str, unit: str, wor
 
     motions, n = seen.outcome.shape
     whole = int(seen.valid.all(axis=1).sum())
-    whose = f"{motions} motions" if whole == motions else f"{whole} of {motions} motions (the rest has no result at some level)"
+    whose = f"{motions} motions" if whole == motions else f"{whole} of {motions} motions (the others have no result at some level)"
     said = [
         f"{whose} at {n} level{'s' if n > 1 else ''} of {name}: "
-        + (f"the probability of collapse has the median {told('')}" if "" in fits else "no curve of collapse could be fitted")
+        + (f"the probability of collapse has the median {told('')}" if "" in fits else "no fragility curve of collapse could be fitted")
     ]
     if "first_collapse_" in fits:
-        said.append(f"Raised level by level, a motion first brings the {word} down at the median {told('first_collapse_')}")
+        said.append(
+            f"If a motion is scaled up level by level, it first causes collapse of the {word} at the median {told('first_collapse_')}"
+        )
     known = [p for p in r["collapse_probability"] if p is not None]
     if known:
-        said.append(f"Collapse: {100 * known[0]:.1f} % of the motions at the lowest, {100 * known[-1]:.1f} % at the highest level")
+        said.append(f"Collapse: {100 * known[0]:.1f} % of the motions at the lowest level, {100 * known[-1]:.1f} % at the highest level")
     said.append(
         f"{r['resurrections']} motion{' leaves' if r['resurrections'] == 1 else 's leave'} the {word} standing at a level "
-        "above one that overturns it"
+        "although a lower level overturns it"
     )
     return ". ".join(said) + "."

@@ -117,20 +117,20 @@ def fit(seen: Capacities) -> Lognormal:
     used = seen.weight > 0.0
     low, high, weight = seen.low[used], seen.high[used], seen.weight[used]
     if len(seen.ends) < 2:
-        raise NoFit("a curve needs two or more intensities")
+        raise NoFit("a curve requires at least two intensities")
     if not len(low) or not np.isfinite(high).any():
         raise NoFit("nothing happened at any intensity")
     if not low.any():
-        raise NoFit("it happened in every run at every intensity")
+        raise NoFit("the event occurred in every run at every intensity")
     if low.max() <= high.min():
         raise NoFit(
-            f"a step between {low.max():.4g} and {high.min():.4g} explains all runs: the dispersion cannot be estimated"
+            f"a step between {low.max():.4g} and {high.min():.4g} explains all runs, so the dispersion cannot be estimated"
             if low.max() < high.min()
-            else f"a step at {low.max():.4g} explains all runs: the dispersion cannot be estimated"
+            else f"a step at {low.max():.4g} explains all runs, so the dispersion cannot be estimated"
         )
     a, b = _greatest(low, high, weight[None, :])
     if not b[0] > 1e-9:
-        raise NoFit("the probability does not grow with the intensity")
+        raise NoFit("the probability does not increase with the intensity")
     return Lognormal(float(np.exp(a[0] / b[0])), float(1.0 / b[0]))
 
 

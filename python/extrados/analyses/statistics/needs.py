@@ -42,9 +42,13 @@ def needs(context: Context, options: RockingTable) -> Iterator[Need]:
 
 def _refuse_of_spectra(building: Building) -> None:
     if building.joints.energy_ratio is not None:
-        raise Refused("spectra take restitution, of these blocks the square root of the energy ratio", ("joints", "energy_ratio"))
+        raise Refused(
+            "for these blocks the spectrum uses restitution, which is the square root of the energy ratio", ("joints", "energy_ratio")
+        )
     if building.supports.stiffness is not None:
-        raise Refused("spectra are those of structures on rigid ground: remove it, or use `rocking` of a block", ("supports", "stiffness"))
+        raise Refused(
+            "spectra are calculated for structures on rigid ground: remove it, or use `rocking` of a block", ("supports", "stiffness")
+        )
 
 
 def _foretell(context: Context, options: tables.Fragility) -> None:
@@ -60,11 +64,12 @@ def _foretell(context: Context, options: tables.Fragility) -> None:
     of = f"{count:,} motions or buildings" + (f" at {levels} level{'s' if levels > 1 else ''}" if options.levels else "")
     key = "count" if options.count or not options.levels else "levels"
     refuse_memory(
-        cell * runs, f"{of}, {runs:.3g} runs,", f"at most {int(SHARE * room.total() / cell * count / runs)} fit", ("analysis", key)
+        cell * runs, f"{of}, {runs:.3g} runs,", f"at most {int(SHARE * room.total() / cell * count / runs)} runs fit", ("analysis", key)
     )
     disk = f", {CELL_ON_DISK * runs / 1e9:.2g} GB of disk" if on_disk else ""
     context.tell(
-        f"fragility: {of}, {runs:.3g} runs: about {cell * runs / 1e9:.2g} GB of memory{disk} and {_time_of(context, options, runs)}"
+        f"fragility of {of} requires {runs:.3g} runs: about {cell * runs / 1e9:.2g} GB of memory{disk} and "
+        f"{_time_of(context, options, runs)}"
     )
 
 
@@ -92,7 +97,7 @@ def _refuse_motions(context: Context, options: tables.Fragility) -> None:
     from extrados.motions.tables import Generated
 
     if options.durations is not None and not isinstance(context.deck.motion, Generated):
-        raise Refused("needs a [motion] of kind 'generated'", ("analysis", "durations"))
+        raise Refused("this requires a [motion] of kind 'generated'", ("analysis", "durations"))
     there = how_many(context)
     if there is not None and options.count is not None and options.count > there and not options.uncertain:
         raise Refused(

@@ -123,7 +123,7 @@ def cap_for_collapse_within(model: BlockModel, ratio: float, half_cycles: int) -
 def run(context: Context, options: Resonance) -> Result:
     """Fig. 6-2 for a block or an arch; Figs 6-3 and 6-4 for a block."""
     model = rocker_of(context, options)
-    cap = options.cap or _default_cap(context, options, model)
+    cap = options.cap or _default_cap(context, model)
     optimum = optimal_motion(model, cap, _start(context), options.half_cycles)
     r = optimum.response
     result = Result("resonance")
@@ -156,14 +156,21 @@ def run(context: Context, options: Resonance) -> Result:
         {"switch": optimum.switches, "peak_rotation": np.abs(optimum.peaks[1:])}, {"switch": "s", "peak_rotation": "rad"}
     )
     fate = (
-        f"overturned after {len(optimum.switches)} half cycles, {r.stop_time:.2f} s"
+        f"overturned after {len(optimum.switches)} half cycles, at {r.stop_time:.2f} s"
         if collapse
-        else f"not overturned within {len(optimum.switches)} half cycles (greatest rotation {abs(optimum.peaks).max() / model.critical[0]:.2f} of the critical one)"
+        else (
+            f"not overturned within {len(optimum.switches)} half cycles (greatest rotation "
+            f"{abs(optimum.peaks).max() / model.critical[0]:.2f} times the critical rotation)"
+        )
     )
     result.answer = (
-        f"Pushed by +-{cap / GRAVITY:.3f} g ({cap / GRAVITY / model.uplift:.2f} of uplift) always against its motion, from "
-        f"{_start(context):g} of the critical rotation, the {model.word} is {fate}"
-        + (f"; between the changes of sign lie {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last." if len(spacing) > 1 else ".")
+        f"The ground acceleration is +-{cap / GRAVITY:.3f} g ({cap / GRAVITY / model.uplift:.2f} times the uplift "
+        f"acceleration), always against the motion of the {model.word}. From {_start(context):g} times the critical "
+        f"rotation, the {model.word} is {fate}"
+    ) + (
+        f"; the time between the changes of sign is {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last."
+        if len(spacing) > 1
+        else "."
     )
     if isinstance(model.model, BlockModel):
         numbers |= _block_figures(context, options, model, result)
@@ -178,7 +185,7 @@ def _start(context: Context) -> float:
     return abs(context.building.initial.rotation_ratio) or START
 
 
-def _default_cap(context: Context, options: Resonance, model: Rocker) -> float:
+def _default_cap(context: Context, model: Rocker) -> float:
     """A little above the least cap, so that the growth is seen; half of uplift where that is not known."""
     if not isinstance(model.model, BlockModel):
         return 0.5 * model.uplift * GRAVITY
@@ -218,15 +225,19 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     by_rotation = np.array([[_energy_change(own, model, x, amplitude, 0.5, s) for s in STARTS] for x in INITIAL_ROTATIONS])
     result.arrays |= {
         "aspect": Array(ASPECTS, ("aspect",), "", "B/H"),
-        "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "initial rotation over the critical one"),
+        "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "ratio of the initial rotation to the critical rotation"),
         "least_cap_ratio": Array(table, ("aspect", "initial_ratio"), "", "least acceleration over uplift"),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
-        "impulse_rotation": Array(np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "initial rotation over the critical one"),
+        "impulse_rotation": Array(
+            np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "ratio of the initial rotation to the critical rotation"
+        ),
         "impulse_start": Array(STARTS, ("impulse_start",), "", "t_start/T_n"),
         "energy_by_period": Array(
-            by_period, ("impulse_period_ratio", "impulse_start"), "", "energy supplied over that at the start, theta_cr/4"
+            by_period, ("impulse_period_ratio", "impulse_start"), "", "supplied energy divided by the energy at the start, theta_cr/4"
         ),
-        "energy_by_rotation": Array(by_rotation, ("impulse_rotation", "impulse_start"), "", "the same for T_p = T_n/2"),
+        "energy_by_rotation": Array(
+            by_rotation, ("impulse_rotation", "impulse_start"), "", "supplied energy divided by the energy at the start, for T_p = T_n/2"
+        ),
     }
     numbers |= {
         "impulse_amplitude_g": amplitude / GRAVITY,
@@ -234,8 +245,8 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     }
     if least is not None:
         result.answer += (
-            f" From that start any cap above {least:.3f} g, {least / model.uplift:.2f} of uplift, makes the rotation grow "
-            "until it overturns."
+            f" From this start, any cap above {least:.3f} g ({least / model.uplift:.2f} times the uplift acceleration) makes the "
+            f"rotation grow until the {model.word} overturns."
         )
     return numbers
 

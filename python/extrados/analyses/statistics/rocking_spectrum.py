@@ -88,9 +88,11 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         {"period": "s", "size": "m", "peak_rotation": "rad"},
     )
     result.arrays |= {
-        "period": Array(periods, ("period",), "s", "2 pi/p, or 2 pi times the natural time of an arch"),
-        "size": Array(sizes, ("period",), "m", "half-diagonal of the block, radius of the arch"),
-        "peak_ratio": Array(ratio, ("family", "period"), "", "greatest rotation over the critical one; NaN where overturned"),
+        "period": Array(periods, ("period",), "s", "2 pi/p for a block, 2 pi times the natural time for an arch"),
+        "size": Array(sizes, ("period",), "m", "half-diagonal of the block, or radius of the arch"),
+        "peak_ratio": Array(
+            ratio, ("family", "period"), "", "ratio of the greatest rotation to the critical rotation; NaN if the structure overturns"
+        ),
         "overturned": Array(overturned.astype(np.int8), ("family", "period")),
     }
     words = []
@@ -118,13 +120,13 @@ def _by_rule(context: Context, rockers: list[Rocker], job_of: Callable[[list[Bod
     least, most = np.min(ratios, axis=0), np.max(ratios, axis=0)
     decided = int((np.isinf(least) != np.isinf(most)).sum())
     result.arrays |= {
-        "rule_least": Array(least, ("period",), "", "least peak rotation ratio of the impact rules; infinite: collapse"),
-        "rule_most": Array(most, ("period",), "", "greatest peak rotation ratio of the impact rules; infinite: collapse"),
+        "rule_least": Array(least, ("period",), "", "least ratio of peak to critical rotation among the impact rules; infinite: collapse"),
+        "rule_most": Array(most, ("period",), "", "greatest ratio of peak to critical rotation among the impact rules; infinite: collapse"),
     }
     told_rules = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.overturned}' for one in rows)
     result.warnings.append(
-        f"The impact rules differ by more than {DIFFER:g} for this shape. Sizes that overturn, of {len(rockers)}: {told_rules}. The rule "
-        f"decides the outcome of {decided}."
+        f"The impact rules differ by more than {DIFFER:g} for this shape. Number of sizes that overturn, of "
+        f"{len(rockers)}: {told_rules}. The rule decides the outcome of {decided} sizes."
     )
     return {"by_rule": rows, "decided_by_rule": decided}
 

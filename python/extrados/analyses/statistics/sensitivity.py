@@ -58,8 +58,10 @@ def sensitivity(
     without = [body for body in made.bodies if isinstance(body, str)] + ["cannot stand"] * int(made.fallen.sum())
     if without:
         raise Refused(
-            f"{len(without)} of {len(made.bodies)} buildings of the sample do not rock ({without[0]}): the indices of the "
-            "sensitivity need all of them; smaller scatters may help",
+            (
+                f"{len(without)} of {len(made.bodies)} sampled buildings do not rock ({without[0]}), but sensitivity indices "
+                "require all of them. Try smaller scatters"
+            ),
             ("analysis", "uncertain"),
         )
     bodies = [body for body in made.bodies if not isinstance(body, str)]
@@ -70,7 +72,9 @@ def sensitivity(
     job = runs_job(bodies, usable, body, chosen, 1.0, end, start, tolerance=tolerance, strict=False)
     swept = sweep(context, "sensitivity", job, len(points), "sensitivity").whole()
     if (failed := int((swept["outcome"] == FAILED).sum())) > 0:
-        raise Refused(f"{failed} of {len(points)} runs of the sensitivity fail: its indices need all of them", ("analysis", "uncertain"))
+        raise Refused(
+            f"{failed} of {len(points)} runs for the sensitivity indices fail, but the indices require all runs", ("analysis", "uncertain")
+        )
     answers = np.stack([np.minimum(swept["peak_ratio"], 1.0), swept["outcome"] == COLLAPSE]).astype(float)
     whole = answers.reshape(2, d + 2, samples)
     found = [_indices(rows[None], d) for rows in whole]
@@ -110,7 +114,7 @@ def spoken(sensitivity: dict[str, out.Sensitivity]) -> str:
     """Which value the rotation depends on most, in words."""
     known = {name: row.rotation_total for name, row in sensitivity.items() if row.rotation_total is not None}
     if not known:
-        return "No value matters: the rotation is the same in all runs."
+        return "No uncertain value matters: the greatest rotation is the same in all runs."
     order = sorted(known, key=lambda name: -known[name])
     said = ", ".join(f"{name} {100 * known[name]:.0f} %" for name in order)
-    return f"Of the variance of the greatest rotation these are involved in (total Sobol indices): {said}."
+    return f"Share of each value in the variance of the greatest rotation (total Sobol indices): {said}."

@@ -35,20 +35,23 @@ class Hazard(Table):
     """Seismic hazard of the site: how often a year each intensity is exceeded, in the measure of the levels."""
 
     intensities: list[Level] | None = key(
-        None, "ascending intensities, numbers in the unit of the measure or text", min_length=2, max_length=1000
+        None, "intensities in increasing order: numbers in the unit of the measure, or text", min_length=2, max_length=1000
     )
     annual_rates: list[Rate] | None = key(
-        None, "mean annual rates at which they are exceeded, descending; lines between the logarithms", min_length=2, max_length=1000
+        None,
+        ("mean annual rates at which these intensities are exceeded, in decreasing order; interpolated linearly between logarithms"),
+        min_length=2,
+        max_length=1000,
     )
-    file: str | None = key(None, "CSV with both as columns, instead of the lists; lines that begin with # are skipped")
-    years: float = key(50.0, "time for which the probability of collapse is given", gt=0, le=1e5)
-    acceptable_rate: Rate | None = key(None, "annual rate of collapse that is accepted: the demand of the verdict")
+    file: str | None = key(None, "CSV file with both columns, instead of the lists; lines that begin with # are ignored")
+    years: float = key(50.0, "number of years for which the probability of collapse is given", gt=0, le=1e5)
+    acceptable_rate: Rate | None = key(None, "annual rate of collapse that is acceptable: the demand of the verdict")
 
     @model_validator(mode="after")
     def _curve(self) -> "Hazard":
         lists = (self.intensities, self.annual_rates)
         if (self.file is None) == (None in lists) or (self.file is not None and lists != (None, None)):
-            raise ValueError("give intensities and annual_rates, or a file, one of the two")
+            raise ValueError("give either intensities and annual_rates, or a file")
         if self.intensities is not None and self.annual_rates is not None:
             check_hazard(self.intensities, self.annual_rates)
         return self
@@ -57,11 +60,11 @@ class Hazard(Table):
 def check_hazard(intensities: list[float], rates: list[float]) -> None:
     """ValueError where these are no hazard curve."""
     if len(intensities) != len(rates):
-        raise ValueError(f"{len(intensities)} intensities and {len(rates)} annual_rates; expected as many")
+        raise ValueError(f"{len(intensities)} intensities and {len(rates)} annual_rates were given; expected equal numbers")
     if min(intensities) <= 0.0 or any(b <= a for a, b in pairwise(intensities)):
-        raise ValueError("intensities must be above zero and ascend")
+        raise ValueError("intensities must be above zero and increase")
     if min(rates) <= 0.0 or any(b >= a for a, b in pairwise(rates)):
-        raise ValueError("annual_rates must be above zero and descend: a stronger motion is rarer")
+        raise ValueError("annual_rates must be above zero and decrease, because stronger motions are rarer")
 
 
 class Fragility(RockingTable):
@@ -73,53 +76,66 @@ class Fragility(RockingTable):
     soft_base: ClassVar = True
     needs_motion: ClassVar = True
     starter_motion: ClassVar = "generated"
-    count: int | None = key(None, "number of motions; default 1000, or the whole suite", ge=1, le=10_000_000)
-    seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
+    count: int | None = key(None, "number of motions; default 1000, or the whole set", ge=1, le=10_000_000)
+    seed: int | None = key(
+        None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
+    )
     durations: list[Time] | None = key(
-        None, "repeat for these t_d of a generated set", source="thesis Fig. 6-8", min_length=1, max_length=100
+        None, "repeat the analysis for these durations t_d of a generated set", source="thesis Fig. 6-8", min_length=1, max_length=100
     )
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
         "pga",
-        "measure of levels, cloud and hazard: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) [g], Arias intensity "
-        "[m/s], or the factor itself",
+        (
+            "intensity measure of levels, cloud and hazard: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) "
+            "[g], Arias intensity [m/s], or the scale factor itself"
+        ),
         source="Dimitrakopoulos and Paraskeva 2015",
     )
     levels: list[Level] | None = key(
         None,
-        'intensities to which every motion is scaled, numbers in the unit of the measure or text such as "0.1 g"',
+        'intensities to which every motion is scaled: numbers in the unit of the measure, or text such as "0.1 g"',
         min_length=1,
         max_length=500,
     )
-    cloud: bool = key(
-        False, "fit curves over the intensities that the motions have of themselves, unscaled", source="Jalayer and others 2017"
-    )
+    cloud: bool = key(False, "fit fragility curves over the intensities of the unscaled motions", source="Jalayer and others 2017")
     rotation_limits: list[Annotated[float, Field(gt=0, le=1)]] = key(
-        [], "of a cloud: also the curves of a rotation beyond these shares of the critical one", max_length=20
+        [], "for a cloud: also fit the curves of exceeding these ratios of rotation to critical rotation", max_length=20
     )
-    hazard: Hazard | None = key(None, "hazard curve of the site, for the annual rate of collapse")
-    histories: int = key(0, "draw the first so many motions with the responses", ge=0, le=12, source="thesis Fig. 6-6")
+    hazard: Hazard | None = key(None, "hazard curve of the site, from which the annual rate of collapse is calculated")
+    histories: int = key(0, "number of motions that are drawn with their responses", ge=0, le=12, source="thesis Fig. 6-6")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
         {},
-        "coefficients of variation of width, height, thickness, restitution, of the thickness lost at worn `corners`, of "
-        "the `density` from stone to stone, of the `friction` of all joints alike; `imperfection`: how far corners and joints of stones stray, over the shortest "
-        "joint; `stiffness` and `damping_ratio` of a compliant base; sampled by a Sobol sequence",
+        (
+            "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; "
+            "of the `density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of "
+            "a compliant base. `imperfection`: deviation of corners and joints of blocks, divided by the shortest joint. "
+            "Sampled by a Sobol sequence"
+        ),
     )
     sensitivity: int | None = key(
         None,
-        "samples, a power of 2, for Sobol indices of `uncertain` and of the motion: samples times (values + 2) runs",
+        (
+            "number of samples (a power of 2) for Sobol indices of `uncertain` values and of the motion; this requires "
+            "samples times (values + 2) runs"
+        ),
         ge=16,
         le=2**20,
         source="Saltelli and others 2010",
     )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
-    bootstrap: int = key(500, "draws for the band of the fitted curve", ge=0, le=100_000)
-    bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
-    settle: Time | None = key(None, "time after the motion; default 40 natural time units", ge=0)
+    bootstrap: int = key(500, "number of bootstrap samples for the band of the fitted curve", ge=0, le=100_000)
+    bins: int = key(20, "number of bins of the histogram up to the critical rotation", ge=2, le=1000)
+    settle: Time | None = key(
+        None, "time after the motion in which the structure must come to rest or collapse; default: 40 natural times", ge=0
+    )
     hand_over: bool = key(
         False,
-        "rigid contacts decide each run in which joints slide or hinges form elsewhere; false leaves the share of these runs as a warning",
+        (
+            "if joints slide or hinges form at other joints, decide this run with rigid contacts; false gives the share of "
+            "these runs as a warning"
+        ),
         source="Moreau 1988",
     )
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
@@ -145,32 +161,32 @@ class Fragility(RockingTable):
     @model_validator(mode="after")
     def _sensible(self) -> "Fragility":
         if self.hand_over and {"density", "imperfection"} & set(self.uncertain):
-            raise ValueError("hand_over follows the nominal blocks: remove uncertain.density and uncertain.imperfection")
+            raise ValueError("hand_over uses the nominal blocks: remove uncertain.density and uncertain.imperfection")
         if self.hand_over and self.sensitivity is not None:
-            raise ValueError("sensitivity counts runs of the mechanism alone: remove sensitivity or hand_over")
+            raise ValueError("sensitivity uses only runs of the mechanism: remove sensitivity or hand_over")
         if "friction" in self.uncertain and self.sensitivity is not None:
             raise ValueError(
-                "friction changes no outcome of the mechanism, so its Sobol index is zero: remove uncertain.friction or sensitivity"
+                "friction does not change an outcome of the mechanism, so its Sobol index is zero: remove uncertain.friction or sensitivity"
             )
         if self.levels is not None and min(self.levels) <= 0.0:
             raise ValueError("levels must be above zero")
         if self.levels is not None and self.durations is not None:
-            raise ValueError("give levels or durations, not both")
+            raise ValueError("give either levels or durations, not both")
         if (self.levels is not None or self.cloud) and (self.intensity == "sa") != (self.sa_period is not None):
-            raise ValueError('intensity = "sa" and sa_period go together')
+            raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
         if self.cloud and (self.levels is not None or self.durations is not None):
-            raise ValueError("a cloud takes the motions as they are: without levels and durations")
+            raise ValueError("a cloud uses unscaled motions: remove levels and durations")
         if self.cloud and self.intensity == "scale":
-            raise ValueError('the motions of a cloud are not scaled: intensity = "scale" is the same for all')
+            raise ValueError('the motions of a cloud are not scaled, so intensity = "scale" would be the same for all of them')
         if self.rotation_limits and not self.cloud:
             raise ValueError("rotation_limits belong to a cloud")
         if self.histories and (self.levels is not None or self.durations is not None):
-            raise ValueError("histories show the motions as they are: without levels and durations")
+            raise ValueError("histories shows the unscaled motions: remove levels and durations")
         if self.hazard is not None and (self.intensity == "scale" or not (self.cloud or self.levels)):
-            raise ValueError("a hazard curve needs levels or a cloud of an intensity measure")
+            raise ValueError("a hazard curve requires levels, or a cloud with an intensity measure")
         if self.sensitivity is not None:
             if not self.uncertain or self.levels is not None or self.durations is not None:
-                raise ValueError("sensitivity needs uncertain values, and neither levels nor durations")
+                raise ValueError("sensitivity requires uncertain values, and allows neither levels nor durations")
             if self.sensitivity & (self.sensitivity - 1):
                 raise ValueError(f"sensitivity is {self.sensitivity}, expected a power of 2")
         known = sorted({name for names in (*UNCERTAIN.values(), STONES, BASE) for name in names})
@@ -187,7 +203,7 @@ def _numbers(values: Any, intensity: Any, key: str) -> Any:
     if not isinstance(values, list) or not any(isinstance(v, str) for v in values):
         return values
     if intensity in WITHOUT_UNIT:
-        raise ValueError(f"{key}: those of intensity = {intensity!r} are numbers without a unit")
+        raise ValueError(f"{key}: for intensity = {intensity!r} expected numbers without a unit")
     # A measure that is none is complained of by itself.
     si, unit = LEVELS[intensity if intensity in list(LEVELS) else "pga"]
     try:
@@ -201,10 +217,12 @@ class Resonance(RockingTable):
 
     kind: Literal["resonance"]
     bears: ClassVar = ()
-    cap: Acceleration | None = key(None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5")
+    cap: Acceleration | None = key(
+        None, "cap of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
+    )
     half_cycles: int = key(40, "at most so many", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
-        None, "amplitude of the impulses of Fig. 6-4; default half of uplift", gt=0, source="thesis 6.2.3"
+        None, "amplitude of the impulses of Fig. 6-4; default: half of the uplift acceleration", gt=0, source="thesis 6.2.3"
     )
 
 
@@ -216,7 +234,10 @@ class RockingSpectrum(RockingTable):
     view: ClassVar = ""
     needs_motion: ClassVar = True
     periods: list[Time] | None = key(
-        None, "2 pi/p (for arches 2 pi times their natural time); default 60 values from 0.2 to 8 s", min_length=1, max_length=5000
+        None,
+        "periods 2 pi/p (for arches, 2 pi times their natural time); default: 60 values from 0.2 to 8 s",
+        min_length=1,
+        max_length=5000,
     )
     slenderness: list[Angle] = key([10.0, 15.0, 20.0, 25.0], "alpha", min_length=1, max_length=50)
 
@@ -243,7 +264,10 @@ class HarmonicMap(RockingTable):
     starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(
         None,
-        "in Hz; default 40 values of omega/p from 1 to 12, p: frequency parameter of rocking, omega: 2 pi times the frequency",
+        (
+            "frequencies in Hz; default: 40 values of omega/p from 1 to 12 (p: frequency parameter of rocking, omega: 2 pi "
+            "times the frequency)"
+        ),
         min_length=1,
         max_length=1000,
     )

@@ -125,22 +125,25 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
     for name in names:
         key = ("analysis", "uncertain", name)
         if name == "density" and what == "block" and name not in known:
-            raise Refused("densities of stones cannot vary: the structure is modelled as one rigid block; remove density", key)
+            raise Refused("the densities of blocks cannot vary, because the structure is modelled as one rigid block: remove density", key)
         sized = name not in (*STONES, *BASE, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
-            raise Refused(f"does not belong to this {structure.word}; it has {', '.join(known) or 'none'}", key)
+            raise Refused(f"this value does not belong to this {structure.word}; its values are {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
-            "uncertain stones make an arch unsymmetric, where the balance of the thesis says nothing: give another joints.restitution",
+            (
+                "uncertain blocks make an arch unsymmetric, and the momentum balance of the thesis does not cover this: give "
+                "another joints.restitution"
+            ),
             ("analysis", "uncertain"),
         )
     if "friction" in names and (building.joints.coefficient is None or any(t.friction is not None for t in building.joints.types)):
         raise Refused(
-            "friction varies for all joints alike: give [joints] friction as a number, and no friction of joint types",
+            "friction varies for all joints together: give [joints] friction as one number, and no friction of joint types",
             ("analysis", "uncertain", "friction"),
         )
     if "corners" in names and getattr(structure, "thickness_factor", 1.0) == 1.0:
-        raise Refused("thickness_factor is 1, so no thickness is lost that could vary", ("analysis", "uncertain", "corners"))
+        raise Refused("thickness_factor is 1, so there is no lost thickness that could vary", ("analysis", "uncertain", "corners"))
 
 
 def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> tuple[Rocker, Building]:

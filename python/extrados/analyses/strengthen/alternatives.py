@@ -178,7 +178,7 @@ def usual_ties(building: Building) -> list[TieAlternative]:
     found = []
     for name, ties in (
         ("horizontal tie", spans),
-        ("anchor, in tension and compression, to an existing structure behind", [] if spans else anchors),
+        ("anchor to an existing structure behind, in tension and compression", [] if spans else anchors),
     ):
         placed = [tie for tie in ties if _holds(building, tie)]
         if placed:
@@ -247,17 +247,19 @@ def _change(context: Context, options: Strengthen, k: int, one: Change) -> Chang
         way = one.vary.removeprefix("options.")
         base, unit = _option(options.options, way), unit_at(kinds.load(kinds.ANALYSES[options.by].table), way)
         if base is None and one.start is None:
-            raise Refused(f"{one.vary}: the options hold no plain number there; write it in SI, or give start", (*at, "vary"))
+            raise Refused(
+                f"{one.vary}: this key of the options has no plain number. Give it as a number in SI units, or give start", (*at, "vary")
+            )
         start = base if one.start is None else number_of(one.start, unit, (*at, "start"))
         return ChangeAlternative(name, one.vary, unit, float(start or 0.0), number_of(one.stop, unit, (*at, "stop")), one.count, False)
     there = varied(context.building, {one.vary: 0.1}, None)
     if not there and one.start is None:
-        raise Refused(f"{one.vary}: the building has no such number above 0; give start", (*at, "vary"))
+        raise Refused(f"{one.vary}: the building has no value above 0 for this key; give start", (*at, "vary"))
     unit = there[0].unit if there else ""
     start = there[0].base if one.start is None else number_of(one.start, unit, (*at, "start"))
     stop = number_of(one.stop, unit, (*at, "stop"))
     if start == stop:
-        raise Refused(f"{one.vary}: start and stop are both {start:g}", (*at, "stop"))
+        raise Refused(f"{one.vary}: start and stop have the same value, {start:g}", (*at, "stop"))
     return ChangeAlternative(name, one.vary, unit, start, stop, one.count, bool(there) and there[0].whole)
 
 

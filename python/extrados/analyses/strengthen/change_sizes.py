@@ -50,7 +50,7 @@ def size_change(work: Sizing, one: ChangeAlternative) -> Sized:
             worth = work.measure.of_data(changed_to[0], picture=True)
     spent = None if required is None else _spent_on(work, one, required)
     force, volume = spent or (0.0, 0.0)
-    reason = "" if required is not None else worth.reason or "no value up to the greatest one considered suffices"
+    reason = "" if required is not None else worth.reason or "no value up to the greatest one considered is sufficient"
     place = f"from {one.start:.4g} {one.unit}".rstrip()
     means = Means(one.name, "change", place, one.unit, force=force, volume=volume, priced=spent is not None, key=one.key)
     row = row_of(work, means, Found(required, greatest, worth, ranges, reason))

@@ -44,7 +44,7 @@ def combine_ties(work: Sizing, ties: list[TieAlternative]) -> dict[str, Any]:
     building = work.context.building
     worth = statics.of(building.having(ties=(*building.ties, *added)), picture=True)
     if unmet := unmet_reason(statics, worth):
-        work.context.warnings.append(f"The combination of ties is not shown to meet the target: {unmet.rstrip('.')}.")
+        work.context.warnings.append(f"The combination of ties may not meet the target: {unmet.rstrip('.')}.")
     return {"combination": rows, "combination_cost": cost, "combination_meets_target": not unmet}
 
 
@@ -71,10 +71,11 @@ def assess_all(work: Sizing, sized: list[Sized]) -> None:
             worse = was.outcome == "stands" and row.outcome in ("collapses", "cannot-stand")
             if worse or (low is not None and high is not None and high < low * (1.0 - NAMED)):
                 adverse.append(
-                    f"By {row.label} the margin drops from {_number(low)} to {_number(high)} (verdict {was.outcome}, then {row.outcome})."
+                    f"By {row.label} the critical scale factor decreases from {_number(low)} to {_number(high)} (verdict "
+                    f"{was.outcome}, then {row.outcome})."
                 )
             elif row.outcome in ("collapses", "cannot-stand"):
-                adverse.append(f"By {row.label} the strengthened building still collapses (margin {_number(high)}).")
+                adverse.append(f"By {row.label} the strengthened building still collapses (critical scale factor {_number(high)}).")
         one.row = one.row.model_copy(update={"verdicts": verdicts, "adverse": [*one.row.adverse, *adverse]})
 
 

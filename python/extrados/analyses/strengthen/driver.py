@@ -64,12 +64,13 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
         **more,
     )
     if before.value is None:
-        result.warnings.append(f"The existing building has no value: {before.reason}")
+        result.warnings.append(f"The existing building has no value of the target quantity: {before.reason}")
     if before.unfound:
         result.warnings.append(f"Existing building: {before.unfound}.")
     if before.bound == "upper":
         result.warnings.append(
-            "Pressed joints slide in the mechanism of the existing building: its capacity is an upper bound, or the least of the states found without dilatancy. Curves over sizes are upper bounds."
+            "Joints in compression slide in the mechanism of the existing building. Its capacity is therefore an upper "
+            "bound, or the least of the states found without dilatancy. The curves of capacity over size are upper bounds."
         )
     if isinstance(measure, Statics) and len(measure.senses) == 1 and building.supports.abutting_wall is None:
         result.warnings.append(measure.other_sense_told(building))

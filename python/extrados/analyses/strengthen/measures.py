@@ -76,7 +76,8 @@ class Statics:
         self.senses: tuple[float, ...] = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
         if not self.senses:
             raise Refused(
-                f"direction: the abutting wall is on that side ({wall}): the building cannot collapse towards it", ("analysis", "direction")
+                f"direction: the abutting wall is on that side ({wall}), so the building cannot collapse towards it",
+                ("analysis", "direction"),
             )
 
     def of(self, building: Building, picture: bool = False) -> Worth:
@@ -131,8 +132,9 @@ class Statics:
         except (NoEquilibrium, NoAnswer) as error:
             carried = f"no load: {error}"
         return (
-            f"The target is sought for a load to {_word(int(self.senses[0]))} alone. To {_word(sense)} the existing building carries {carried}. "
-            'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
+            f"The target refers only to a load towards {_word(int(self.senses[0]))}. Towards {_word(sense)} the existing "
+            f'building carries {carried}. An earthquake acts in both senses: give direction = "both", unless that side is '
+            "restrained."
         )
 
     def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool) -> tuple[float, Bound, str]:
@@ -147,7 +149,7 @@ class Statics:
         try:
             state, _ = collapse_beside(limit.without_dilatancy(), sense)
         except (NoAnswer, NoEquilibrium) as error:
-            return value, "upper", f"friction governs: no state without dilatancy was found to {_word(sense)}: {error}"
+            return value, "upper", f"friction governs, and no state without dilatancy was found towards {_word(sense)}: {error}"
         return min(value, sense * state.gamma), "upper", ""
 
     def _fallen(self, limit: LimitAnalysis) -> Worth:
@@ -294,7 +296,7 @@ class Runs:
             return Worth(1.0 if self.by_probability else 0.0, "collapse under self-weight")
         if self.by_probability:
             if not isinstance(result.results, Ensemble):
-                raise Refused("options: levels belong to the key levels of this table", ("analysis", "options"))
+                raise Refused("levels of the options: use the key levels of this table instead", ("analysis", "options"))
             share = result.results.collapse_probability
             return Worth(share, "rocking until it overturns", reason="" if share is not None else "no motion could be run")
         verdict = result.results.judged(MotionDemand(context))
@@ -327,13 +329,13 @@ def unmet_reason(measure: Measure, worth: Worth) -> str:
         return worth.reason or "no value was found"
     if not reached(measure, worth):
         least = ", an upper bound or the least state found without dilatancy," if worth.bound == "upper" else ""
-        return f"the value is {worth.value:.3g}{least} and the target {measure.target:.3g}"
+        return f"the value is {worth.value:.3g}{least} and the target is {measure.target:.3g}"
     if worth.unfound:
         return worth.unfound
     if worth.beside is not None and worth.beside <= (1.0 - SLACK) * measure.target:
         return (
-            "the target is met only by the upper bound of limit analysis (dilatant friction); the least state found without dilatancy carries "
-            f"{worth.beside:.3g} g"
+            "only the upper bound of limit analysis (dilatant friction) meets the target. The least state found without "
+            f"dilatancy carries {worth.beside:.3g} g"
         )
     return ""
 
@@ -381,7 +383,7 @@ def mechanism_told(assembly: Assembly, mechanism: Mechanism, sense: int) -> str:
     if mechanism.sliding:
         names = [assembly.joint_names[j] for j in mechanism.sliding[:MOST_NAMED]]
         more = len(mechanism.sliding) - MOST_NAMED
-        parts.append(f"sliding or parting of {', '.join(names)}{f' and {more} more' if more > 0 else ''}")
+        parts.append(f"sliding or opening of {', '.join(names)}{f' and {more} more' if more > 0 else ''}")
     return f"load to {_word(sense)}: {'; '.join(parts)}"
 
 

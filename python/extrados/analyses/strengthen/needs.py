@@ -24,7 +24,7 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
     if options.by == "tilt":
         for what, key in building.special_keys.items():
             if what not in STATICS:
-                yield partial(_refuse, f'by = "tilt" neglects {what}: take by = "fragility", or leave it out', key)
+                yield partial(_refuse, f'by = "tilt" neglects {what}: use by = "fragility", or remove it', key)
         if is_spatial(building):
             if "[supports] abutting_wall" in building.special_keys:
                 yield partial(_refuse, "limit analysis in space neglects an abutting wall: remove it", ("supports", "abutting_wall"))
@@ -46,7 +46,7 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
     if kinds.load(kinds.ANALYSES[options.by].table).needs_motion or options.fragility or options.assess:
         yield partial(_refuse_still, context)
     if (options.fragility or options.by == "fragility") and motion is not None and not is_set(motion):
-        yield partial(_refuse, "a fragility needs many motions: a [motion] of kind suite, generated or compatible", ("motion",))
+        yield partial(_refuse, "a fragility requires many motions: give a [motion] of kind suite, generated or compatible", ("motion",))
     if building.structure is not None or options.ties:
         yield lambda: tie_alternatives(building, options)
     yield lambda: _refuse_idle(context, options)
@@ -58,13 +58,13 @@ def _refuse(text: str, key: tuple[str | int, ...]) -> None:
 
 def _refuse_directions(options: Strengthen) -> None:
     if options.directions:
-        raise Refused("directions: belong to blocks in space; give direction", ("analysis", "directions"))
+        raise Refused("directions belongs to blocks in space: give direction", ("analysis", "directions"))
 
 
 def _refuse_without_peak(context: Context) -> None:
     if context.deck.motion is None or is_set(context.deck.motion):
         raise Refused(
-            'safety_factor with by = "tilt" refers to the peak of one motion: give a [motion] that is one, or an acceleration',
+            'safety_factor with by = "tilt" refers to the peak of one motion: give a single [motion], or an acceleration',
             ("analysis", "safety_factor"),
         )
     context.refuse_motion()
@@ -82,13 +82,14 @@ def _refuse_unlimited(options: Strengthen) -> None:
     """Refused where ties are sought by runs without a range of forces, or over a range of places."""
     for k, tie in enumerate(options.ties):
         if tie.beam_weight is not None:
-            raise Refused('the weight of a ring beam is for by = "tilt": remove beam_weight', ("analysis", "ties", k))
+            raise Refused('beam_weight, the weight of a ring beam, requires by = "tilt": remove beam_weight', ("analysis", "ties", k))
         if not np.isfinite(tie.greatest):
             raise Refused(
-                f'by = "{options.by}" searches the force by runs: give yield_force, the greatest one considered', ("analysis", "ties", k)
+                f'by = "{options.by}" finds the force by repeated runs: give yield_force, the greatest force considered',
+                ("analysis", "ties", k),
             )
         if tie.start_to is not None or tie.far_to is not None:
-            raise Refused('a range of places is for by = "tilt"; give one place, or one table for each', ("analysis", "ties", k))
+            raise Refused('a range of places requires by = "tilt": give one place, or one table for each place', ("analysis", "ties", k))
 
 
 def _refuse_still(context: Context) -> None:
@@ -104,6 +105,6 @@ def _refuse_idle(context: Context, options: Strengthen) -> None:
     if options.ties or options.changes:
         return
     if options.by != "tilt":
-        raise Refused(f'by = "{options.by}" needs ties or changes: the interventions to compare', ("analysis",))
+        raise Refused(f'by = "{options.by}" requires ties or changes: give the interventions to compare', ("analysis",))
     if not changes and not tie_alternatives(building, options):
-        raise Refused("no intervention is known for this structure: give ties or changes", ("analysis",))
+        raise Refused("this structure has no default interventions: give ties or changes", ("analysis",))

@@ -29,15 +29,18 @@ def arrays_of(context: Context, before: Worth, sized: list[Sized]) -> dict[str, 
             rest[f"{name}/{i}"] = outline
             moved[f"{name}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
     found = {
-        **_pack("curve", curves, 3, "size, value and cost along the curve of each alternative"),
+        **_pack("curve", curves, 3, "size, value and cost along the curve of each alternative intervention"),
         **_pack(
             "range",
             places,
             3,
-            "each possible place of each tie: x, y of its middle [m] and required force [N]; infinite: no force is sufficient there",
+            (
+                "x, y of the middle of each tie at each possible place [m], and required force [N]; infinite: no force is "
+                "sufficient at this place"
+            ),
         ),
-        **packed("stones", rest, "m", "blocks of the existing building (0/block) and of the alternatives (number/block)"),
-        **packed("stones_moved", moved, "m", "the same, moved by the mechanism that governs"),
+        **packed("stones", rest, "m", "blocks of the existing building (0/block) and of each alternative (number/block)"),
+        **packed("stones_moved", moved, "m", "the same blocks, moved by the governing mechanism"),
     }
     for name, worth in drawn:
         if worth is not None and worth.in_space is not None:
@@ -53,7 +56,7 @@ def arrays_of(context: Context, before: Worth, sized: list[Sized]) -> dict[str, 
                 strands = context.building.having(ties=(tie,)).strands()
                 ends = np.array([s.point[[i, j]] for s in strands for i, j in s.segments])
                 found[f"solid_strand_{name}"] = Array(
-                    ends, (f"segment_{name}", "tie_end", "axis3"), "m", "both ends of the segments of the tie"
+                    ends, (f"segment_{name}", "tie_end", "axis3"), "m", "both ends of each segment of the tie"
                 )
     if context.building.structure is not None and rest:
         found |= geometry_arrays(context.building.blocks())
@@ -66,7 +69,7 @@ def _pack(name: str, paths: dict[str, np.ndarray], width: int, about: str) -> di
     start = np.cumsum([0, *map(len, paths.values())])
     return {
         name: Array(rows, (f"{name}_row", f"{name}_column"), "", about),
-        f"{name}_start": Array(start, (f"{name}_edge",), "", f"first row of each path of {name}, and the end"),
+        f"{name}_start": Array(start, (f"{name}_edge",), "", f"index of the first row of each path of {name}; the last value is the end"),
         f"{name}_of": Array(np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"),
     }
 
@@ -109,6 +112,6 @@ def words(r: out.Strengthen) -> str:
         said += [f"  {text}" for text in one.adverse]
     if r.combination:
         told = ", ".join(f"{row.force_N / 1e3:.3g} kN of {row.name}" for row in r.combination)
-        shown = "" if r.combination_meets_target else ", not shown to meet the target (see the warnings)"
+        shown = "" if r.combination_meets_target else ", which may not meet the target (see the warnings)"
         said.append(f"- Combination of ties of least total force{shown}: {told}; relative cost {r.combination_cost:.3g}.")
     return "\n".join(said)

@@ -77,8 +77,10 @@ def row_of(work: Sizing, means: Means, found: Found) -> out.Intervention:
     if met and means.anchorage is not None:
         more["anchorage"] = check_anchorage(means.force, means.anchorage)
         adverse += [
-            f"The {c.part} carries {c.capacity_N / 1e3:.3g} kN, less than {means.force / 1e3:.3g} kN: {c.size.partition(' [')[0]} "
-            f"{1e3 * c.needed:.0f} mm is needed."
+            (
+                f"The {c.part} carries {c.capacity_N / 1e3:.3g} kN, less than {means.force / 1e3:.3g} kN: "
+                f"{c.size.partition(' [')[0]} must be {1e3 * c.needed:.0f} mm."
+            )
             for c in more["anchorage"]
             if c.capacity_N is not None and c.capacity_N < means.force
         ]
@@ -111,28 +113,31 @@ def _adverse_of(work: Sizing, worth: Worth, volume: float, met: bool) -> list[st
     found = []
     before, building = work.before, work.context.building
     if met and worth.shape and before.shape and worth.shape != before.shape:
-        found.append("Another mechanism governs than before: the intervention moves the collapse elsewhere.")
+        found.append("The governing mechanism changes: the intervention moves the collapse to another part.")
     if met and worth.beside is not None and worth.beside < work.measure.target:
         found.append(
-            f"Pressed joints slide: without dilatancy the least state found of the strengthened building carries {worth.beside:.3g} g, "
-            "less than the target. Increase the force, or the friction."
+            "Joints in compression slide. Without dilatancy, the least state found of the strengthened building carries "
+            f"{worth.beside:.3g} g, less than the target. Increase the force, or the friction."
         )
     statics = work.measure if isinstance(work.measure, Statics) else None
     for sense, was, now in zip(statics.senses if statics else (), before.by_sense, worth.by_sense, strict=False):
         if statics is not None and now < was * (1.0 - NAMED):
-            found.append(f"The capacity to {statics.word(sense)} drops from {was:.3g} to {now:.3g} g.")
+            found.append(f"The capacity towards {statics.word(sense)} decreases from {was:.3g} to {now:.3g} g.")
     if volume > 0.0:
         whole = volume_of(building)
         if volume > NAMED * whole:
             density = building.material.density
             found.append(
-                f"The weight grows by {volume * density * GRAVITY / 1e3:.3g} kN ({100.0 * volume / whole:.0f} %): check the foundation."
+                f"The weight increases by {volume * density * GRAVITY / 1e3:.3g} kN ({100.0 * volume / whole:.0f} %): check the foundation."
             )
         if building.supports.stiffness is not None and not is_spatial(building):
             stones = building.blocks()
             base = float(stones.length[(stones.a < 0) | (stones.b < 0)].sum()) * stones.depth
             sinks = volume * building.material.density * GRAVITY / (building.supports.stiffness * base)
-            found.append(f"The base is compliant: the added weight settles by about {1e3 * sinks:.2g} mm, spread over the present base.")
+            found.append(
+                f"The base is compliant: the added weight causes a settlement of about {1e3 * sinks:.2g} mm, if it is spread over "
+                "the present base."
+            )
     return found
 
 
@@ -148,18 +153,18 @@ def with_lapses(work: Sizing, row: out.Intervention, curve: tuple[list[float], l
     ]
     if not beyond:
         return row
-    text = f"The target is not met at {len(beyond)} greater sizes that were tried, for instance {beyond[0]:.4g} {row.unit}"
-    return row.model_copy(update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not grow with the size."]})
+    text = f"The target is not met at {len(beyond)} greater sizes that were calculated, for instance {beyond[0]:.4g} {row.unit}"
+    return row.model_copy(update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not increase with the size."]})
 
 
 def with_debonding(row: out.Intervention, one: TieAlternative) -> out.Intervention:
     """The row of a bonded strip, with its share of the debonding force and the source of that."""
     if not one.debonds_by:
         return row
-    share = "" if row.required_N is None else f"The required force is {100.0 * row.required_N / one.most:.0f} % of it. "
+    share = "" if row.required_N is None else f"The required force is {100.0 * row.required_N / one.most:.0f} % of this debonding force. "
     told = (
-        f"Debonding force of the strip: {engineering(one.most, 'N')} ({one.debonds_by}). {share}Debonding is brittle, and a strip that has "
-        "debonded carries nothing: limit analysis relies on a tie that yields."
+        f"Debonding force of the strip: {engineering(one.most, 'N')} ({one.debonds_by}). {share}Debonding is brittle: a "
+        "strip that has debonded carries no force. Limit analysis, however, assumes a tie that yields."
     )
     return row.model_copy(update={"adverse": [*row.adverse, told]})
 

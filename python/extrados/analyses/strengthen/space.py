@@ -60,7 +60,7 @@ class SpaceStatics(Statics):
         k = int(np.argmin(values))
         governs = found[k]
         if governs is None:
-            return Worth(np.inf, "none: the contacts restrain the blocks from all sides", bound="exact", by_sense=tuple(values))
+            return Worth(np.inf, "none: the contacts restrain the blocks on all sides", bound="exact", by_sense=tuple(values))
         slides = [one is not None and dilating_contacts(limit, one) > 0 for one in found]
         beside, unfound = self._without_dilatancy(limit, found, slides) if picture and any(slides) else (None, "")
         # blocks are counted, as mechanisms of a round structure along several directions differ by their names alone
@@ -81,9 +81,9 @@ class SpaceStatics(Statics):
     def _without_dilatancy(self, limit: SolidLimit, found: list[Programme | None], slides: list[bool]) -> tuple[float | None, str]:
         """The least design value over the directions [g], of those without sliding the value itself, and why it is None: a large
         structure, or a direction along which contacts slide and no state is certified."""
-        none = "friction governs: no state without dilatancy was found"
+        none = "friction governs, and no state without dilatancy was found"
         if len(limit.assembly.a) > MOST_BESIDE:
-            return None, f"{none}, as none is sought of more than {MOST_BESIDE} contacts"
+            return None, f"{none}, because such states are not calculated for more than {MOST_BESIDE} contacts"
         values: list[float] = []
         for sense, one, sliding in zip(self.senses, found, slides, strict=True):
             if one is None:
@@ -91,7 +91,7 @@ class SpaceStatics(Statics):
             row = slide(limit, sense, one.gamma, self.options.starts, patient=False)[0] if sliding else None
             states = [one.gamma] if row is None else [v for v in (row.load_path_g, row.least_g) if v is not None]
             if not states:
-                return None, f"{none} along {self.word(sense)}, as none is certified"
+                return None, f"{none} along {self.word(sense)}, because none is certified"
             values += states
         return min(values), ""
 
@@ -165,8 +165,8 @@ class SpaceStatics(Statics):
     def other_sense_told(self, building: Building) -> str:
         """That one direction alone was asked for."""
         return (
-            f"The target is sought for a load along {self.word(self.senses[0])} alone. An earthquake acts in all directions: remove the key "
-            "directions, unless something else holds the other sides."
+            f"The target refers only to a load along {self.word(self.senses[0])}. An earthquake acts in all directions: "
+            "remove the key directions, unless the other sides are restrained."
         )
 
     @property
@@ -184,7 +184,7 @@ class SpaceStatics(Statics):
         if isinstance(found, Falls) or found.gamma < 0.0:
             falls = found if isinstance(found, Falls) else limit.falls()
             name = "" if falls is None else limit.assembly.block_names[int(np.linalg.norm(falls.motion[:, :3], axis=1).argmax())]
-            raise NoEquilibrium(f"certificate: a motion in which the weights do work, fastest at {name}")
+            raise NoEquilibrium(f"certificate: a mechanism, fastest at {name}, in which the weights do positive work")
         return found
 
     def _told(self, limit: SolidLimit, found: Programme, sense: float) -> str:
@@ -194,8 +194,8 @@ class SpaceStatics(Statics):
 def refuse_in_space(context: Context, options: Strengthen) -> None:
     """Refused where a deck asks in space for what is known in a plane section alone."""
     wrong: dict[str, tuple[bool, Any]] = {
-        "direction: belongs to a plane section; give directions": (options.direction != "both", ("analysis", "direction")),
-        "friction_rule: in space ties are sized for dilatant sliding": (
+        "direction belongs to a plane section; give directions": (options.direction != "both", ("analysis", "direction")),
+        "friction_rule: in space, ties are sized for dilatant sliding only": (
             options.friction_rule != "associated",
             ("analysis", "friction_rule"),
         ),

@@ -48,10 +48,10 @@ def _size_by_programme(work: Sizing, one: TieAlternative, statics: Statics) -> S
     if worth is None and points is not None:
         worth = statics.of(one.having(work.context.building, place, points[-1].force), picture=True)
     tie, length = one.places[place], one.lengths[place]
-    no_force = "no force of the tie suffices" if np.isinf(one.most) else "no force up to the greatest one considered suffices"
+    no_force = "no force of the tie is sufficient" if np.isinf(one.most) else "no force up to the greatest one considered is sufficient"
     reason = no_result or ("" if required is not None else no_force)
     if bound_by_friction and required is None:
-        reason = "the upper bound (dilatant friction) meets the target; the state without dilatancy does not"
+        reason = "the upper bound (dilatant friction) meets the target, but the state without dilatancy does not"
     curve = ([], []) if points is None else _polyline(points)
     row = row_of(
         work,
@@ -60,7 +60,10 @@ def _size_by_programme(work: Sizing, one: TieAlternative, statics: Statics) -> S
     )
     row = with_debonding(row, one)
     if one.beam_weight:
-        told = f"The ring beam weighs {engineering(one.beam_weight, 'N')}, with its force for limit analysis alone: other strategies are not run with it."
+        told = (
+            f"The ring beam weighs {engineering(one.beam_weight, 'N')}. Its force is valid for limit analysis only: the other "
+            "strategies are not run with the ring beam."
+        )
         row = row.model_copy(update={"adverse": [*row.adverse, told]})
     middles = [middle_of(t) for t in one.places]
     # a deck holds loads in tables of analyses, so that no other strategy considers the beam
@@ -82,7 +85,7 @@ def _size_by_runs(work: Sizing, one: TieAlternative, runs: Runs) -> Sized:
 
     required, worth, curve = work.bracket(at, 0.0, one.most, FORCES_OF_RUNS, False)
     tie = one.places[0]
-    reason = "" if required is not None else worth.reason or "no force up to the greatest one considered suffices"
+    reason = "" if required is not None else worth.reason or "no force up to the greatest one considered is sufficient"
     row = row_of(work, _means(one, 0, required, word_of(tie)), Found(required, safest(runs, curve[1]), worth, [], reason))
     row = with_debonding(with_lapses(work, row, curve, True), one)
     sized = Sized(row, curve, None, None if required is None else one.data(data, 0, required), worth, tie)
@@ -119,7 +122,7 @@ def _check_force(work: Sizing, one: TieAlternative, place: int, force: float, st
         return force, worth, False
     if worth.bound != "upper":
         raise NoAnswer(
-            f"{one.name}: the least force {force:.6g} N and the collapse load at it, {worth.value} g, do not agree: {worth.reason}"
+            f"{one.name}: the least force {force:.6g} N and the collapse load at it, {worth.value} g, are not consistent: {worth.reason}"
         )
     low, high = force, min(2.0 * force, one.most)
     while not reached(statics, at(high)):

@@ -1,1 +1,1 @@
-"""What a page may ask of its session, by purpose: each answer takes the desk and a message, and gives replies."""
+"""Requests of a page to its session, by purpose: each function takes the desk and a message, and yields replies."""

@@ -1,4 +1,4 @@
-"""Changes by hands: handles that are dragged, stepped or typed, keys that are set; and what is told when a hand rests."""
+"""Changes by the user: handles that are dragged, stepped or typed, keys that are set; and the reply when a drag ends."""
 
 import math
 import re
@@ -27,7 +27,7 @@ def drag(desk: Desk, message: Message) -> Iterator[Reply]:
     """A handle led to a place (`to`), moved by steps, or given a value as text; `ends` lets go of it."""
     handle = desk.handles.get(str(message.get("handle")))
     if handle is None:
-        raise BadMessage("there is no such handle")
+        raise BadMessage("the drawing has no handle of this name")
     if handle.holds and desk.held is None:
         desk.held = desk.anchor
     if "to" in message:
@@ -44,13 +44,13 @@ def drag(desk: Desk, message: Message) -> Iterator[Reply]:
 
 
 def set_keys(desk: Desk, message: Message) -> Iterator[Reply]:
-    """Keys of the deck given values: numbers, words, or text with units as it would stand in the deck. `rocking`: the
-    response comes with the same reply, for a hand that draws a pulse."""
+    """Set keys of the deck: numbers, words, or text with units as in a deck. `rocking`: the same reply contains the response,
+    for a pulse that is dragged."""
     changes = message.get("changes")
     if not isinstance(changes, dict) or not 0 < len(changes) <= 50:
-        raise BadMessage("expected up to 50 changes")
+        raise BadMessage("a message may change 1 to 50 keys of the deck")
     if not all(KEY.fullmatch(key) for key in changes):
-        raise BadMessage("that is no key")
+        raise BadMessage("the name of a changed key is not valid in a deck")
     reply = _change(desk, changes)
     if message.get("rocking") is True and desk.there().deck.motion is not None:
         for response in motion.response(desk, {}):
@@ -60,7 +60,7 @@ def set_keys(desk: Desk, message: Message) -> Iterator[Reply]:
 
 
 def rest(desk: Desk, _: Message) -> Iterator[Reply]:
-    """What is told when the hand rests: the text of the deck, its forms, then mechanisms and safety."""
+    """The reply at the end of a drag: the text of the deck, its forms, then mechanisms and safety."""
     desk.held = None
     yield Reply({"text": desk.document.text, "forms": forms.forms_of(desk.there().deck), "name": desk.name})
     if desk.picture is not None:
@@ -150,7 +150,7 @@ def _typed(handle: Handle, text: Any) -> Any:
 
 
 def _change(desk: Desk, changes: dict[str, Any]) -> Reply:
-    """Values into live deck and text: as they stand in the text, so that both give the same numbers."""
+    """Set values in the live deck and in the text, in the form of the text, so that both give the same numbers."""
     live = desk.there()
     written = {key: _written(desk, key, value) for key, value in changes.items()}
     before = live.deck
@@ -168,7 +168,7 @@ def _change(desk: Desk, changes: dict[str, Any]) -> Reply:
 
 
 def _way(desk: Desk, key: str) -> list[str]:
-    """Where a key of the live deck stands in its text."""
+    """The place of a key of the live deck in the text."""
     way, live = key.split("."), desk.there()
     if way[0] == "analysis" and len(way) > 1:
         index = live.names.index(way[1])
@@ -177,7 +177,7 @@ def _way(desk: Desk, key: str) -> list[str]:
 
 
 def _before(desk: Desk, key: str) -> Any:
-    """What stands in the deck at a key, None where nothing does."""
+    """The value of a key in the deck, None if it is not given."""
     place: Any = desk.there().deck.data
     try:
         for part in _way(desk, key):
@@ -188,7 +188,7 @@ def _before(desk: Desk, key: str) -> Any:
 
 
 def _written(desk: Desk, key: str, value: Any) -> Any:
-    """A value as it stands in the text of the deck."""
+    """A value in the form of the text of the deck."""
     if isinstance(value, list):
         return [float(tidy(v)) if isinstance(v, float) else v for v in value]
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -198,7 +198,7 @@ def _written(desk: Desk, key: str, value: Any) -> Any:
 
 
 def _unit(desk: Desk, key: str) -> tuple[str, bool]:
-    """The unit of a key and whether a number may stand without it."""
+    """The unit of a key, and whether a number without a unit is permitted."""
     live = desk.there()
     deck, way = live.deck, key.split(".")
     table = {"structure": deck.structure, "motion": deck.motion}.get(way[0], getattr(deck.building, way[0], None))

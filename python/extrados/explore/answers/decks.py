@@ -52,7 +52,7 @@ def hello(desk: Desk, message: Message) -> Iterator[Reply]:
     if isinstance(kept, dict) and isinstance(kept.get("text"), str):
         drops = kept.get("drops", [])
         if not isinstance(drops, list) or not all(isinstance(drop, dict) for drop in drops):
-            raise BadMessage("expected a list of files that were dropped")
+            raise BadMessage("expected a list of the dropped files")
         for drop in drops[:20]:
             _keep(desk, drop)
         yield from open_deck(desk, {**kept, "do": "open"})
@@ -90,7 +90,7 @@ def open_deck(desk: Desk, message: Message) -> Iterator[Reply]:
         if same:
             place, name = desk.place, desk.name
     if len(raw) > LARGEST:
-        raise NotThere(f"{name}: is too large for a deck")
+        raise NotThere(f"{name} is too large for a deck")
     live = Live(read_text(raw, Path(name).name, place))
     before = desk.live, desk.place, desk.name, desk.document, desk.view
     desk.live, desk.place, desk.name = live, place, Path(name).name
@@ -128,15 +128,15 @@ def _keep(desk: Desk, message: Message) -> Path:
     """Where a dropped file now lies."""
     name, data = message.get("name"), message.get("data")
     if not isinstance(name, str) or not isinstance(data, str) or not NAME.fullmatch(name) or ".." in name:
-        raise NotThere("the name of the file may hold letters, digits, blanks, dots, - and _ only")
+        raise NotThere("the name of a file may contain only letters, digits, blanks, dots, - and _")
     if Path(name).suffix.lower() not in DROPS:
-        raise NotThere(f"{name}: expected one of {', '.join(sorted(DROPS))}")
+        raise NotThere(f"{name}: the page does not open files of this ending; expected {', '.join(sorted(DROPS))}")
     if len(data) > LARGEST_DROP * 4 // 3 + 4:
-        raise NotThere(f"{name}: is larger than {LARGEST_DROP / 1e6:g} MB")
+        raise NotThere(f"{name} is larger than the allowed {LARGEST_DROP / 1e6:g} MB")
     try:
         content = base64.b64decode(data, validate=True)
     except (binascii.Error, ValueError):
-        raise BadMessage("the file is not sent as base64") from None
+        raise BadMessage("the content of the file was not sent as base64") from None
     target = desk.drops() / name
     target.write_bytes(content)
     return target
@@ -158,14 +158,13 @@ def _under(desk: Desk, record: Path) -> Iterator[Reply]:
 
 
 def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
-    """The stones of any building as free blocks, whose vertices hands can move: as heavy, as deep and as rough as they were.
-    What rests on them and what holds them stays behind, and so do joints of their own, whose names are gone: the new deck's
-    note says which."""
+    """Turn the blocks of any building into free blocks with vertices that can be dragged. Mass, depth and friction are kept.
+    Loads, restraints and special joints are not carried over; the note of the new deck lists them."""
     deck = desk.there().deck
     assembly = deck.building.blocks()
     count = sum(map(len, assembly.outlines))
     if count > MOST_VERTICES * 3:
-        raise Refused(f"{len(assembly.mass)} stones of {count} vertices are too many to move by hand")
+        raise Refused(f"{len(assembly.mass)} stones with {count} vertices together are too many to be moved by hand")
     areas = [abs(signed_area(outline)) for outline in assembly.outlines]
     density = assembly.mass / (np.array(areas) * assembly.depth)
     # an outline is a little smaller than the arcs that it stands for
@@ -178,10 +177,10 @@ def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
     ground = [[round(float(v), 6) for v in (*assembly.p[j], *assembly.q[j])] for j in grounded]
     left = [name for name in ("ties", "dampers", "hinges", "supports", "initial", "motion") if deck.data.get(name)]
     left += ["joints.types"] * bool(deck.data.get("joints", {}).get("types"))
-    note = f"note = {json.dumps('Ignored when its stones were set free: ' + ', '.join(left))}\n" if left else ""
+    note = f"note = {json.dumps('These parts of the deck were not carried over to the free stones: ' + ', '.join(left))}\n" if left else ""
     title = deck.title or deck.building.require_structure().word
     text = (
-        f'title = {json.dumps(f"{title}, its stones free")}\n{note}\n[structure]\nkind = "blocks"\n'
+        f'title = {json.dumps(f"{title}, with free stones")}\n{note}\n[structure]\nkind = "blocks"\n'
         + f"depth = {assembly.depth!r}\n" * (assembly.depth != 1.0)
         + f'ground = {ground}\ncontact_tolerance = "1 mm"\n\n{chr(10).join(rows)}\n[[analysis]]\nkind = "tilt"\n'
     )
@@ -202,7 +201,7 @@ def analysis(desk: Desk, message: Message) -> Iterator[Reply]:
     else:
         name = message.get("remove")
         if name not in live.names:
-            raise BadMessage("there is no such analysis")
+            raise BadMessage("the deck has no analysis of this name")
         del rows[live.names.index(name)]
     document = Document(desk.document.text)
     document.put(["analysis"], None)

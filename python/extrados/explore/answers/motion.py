@@ -31,7 +31,7 @@ def response(desk: Desk, message: Message) -> Iterator[Reply]:
 
 
 def impulse(desk: Desk, _: Message) -> Iterator[Reply]:
-    """The primary impulse of the motion, and what it says of the building."""
+    """The primary impulse of the motion, and the prediction for the building."""
     live = desk.there()
     if live.deck.motion is None:
         raise Refused("the deck has no [motion]")

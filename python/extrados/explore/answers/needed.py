@@ -1,4 +1,4 @@
-"""What is needed: the least interventions with which the structure carries an acceleration, by limit analysis."""
+"""Sizing of interventions: the least interventions with which the structure carries an acceleration, by limit analysis."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -23,7 +23,7 @@ def needed(desk: Desk, message: Message) -> Iterator[Reply]:
     """Interventions for a constant horizontal acceleration [g], with the changes of the deck that each of them is."""
     target = message.get("acceleration")
     if isinstance(target, bool) or not isinstance(target, int | float) or not 0.0 < target <= MOST:
-        raise BadMessage(f"expected an acceleration above 0 and up to {MOST:g} g")
+        raise BadMessage(f"the required acceleration must be above 0 and at most {MOST:g} g")
     deck = desk.there().deck
     options, _, _ = desk.analysis(LimitAnalysisTable, lambda: None)
     own = {} if options is None else options.model_dump(exclude_unset=True, include=set(LimitAnalysisTable.model_fields))

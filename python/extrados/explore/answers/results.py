@@ -21,7 +21,7 @@ def figures(desk: Desk, message: Message) -> Iterator[Reply]:
     """The figures of one analysis of a stored run, as its report has them."""
     name = message.get("analysis")
     if not isinstance(name, str):
-        raise BadMessage("expected the name of an analysis")
+        raise BadMessage("the request must name an analysis of the deck")
     found = desk.folder.figures(path(message), name)
     yield Reply({"figures": [{"name": name, "svg": svg} for name, svg in found]})
 

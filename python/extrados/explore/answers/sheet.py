@@ -58,17 +58,17 @@ def _shapes(message: Message) -> tuple[list[tuple[str, list[list[float]]]], list
     """Blocks and supports of a message, within their bounds."""
     blocks, ground = message.get("blocks"), message.get("ground")
     if not isinstance(blocks, list) or not isinstance(ground, list):
-        raise BadMessage("expected lists of blocks and supports")
+        raise BadMessage("the sheet must contain a list of blocks and a list of supports")
     if len(blocks) > MOST_BLOCKS or len(ground) > MOST_SUPPORTS:
-        raise BadMessage(f"a sheet has at most {MOST_BLOCKS} blocks and {MOST_SUPPORTS} supports")
+        raise BadMessage(f"a sheet may have at most {MOST_BLOCKS} blocks and {MOST_SUPPORTS} supports")
     found: list[tuple[str, list[list[float]]]] = []
     vertices = 0
     for block in blocks:
         name, points = (block.get("name"), block.get("points")) if isinstance(block, dict) else (None, None)
         if not isinstance(name, str) or not name.isprintable() or not 0 < len(name) <= LONGEST_NAME:
-            raise BadMessage("expected a name for each block")
+            raise BadMessage("every block of the sheet needs a name")
         if not isinstance(points, list) or (vertices := vertices + len(points)) > MOST_VERTICES:
-            raise BadMessage(f"expected at most {MOST_VERTICES} vertices")
+            raise BadMessage(f"a block or support of the sheet may have at most {MOST_VERTICES} vertices")
         found.append((name, [numbers(point, 2) for point in points]))
     return found, [numbers(row, 4) for row in ground]
 

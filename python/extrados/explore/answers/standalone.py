@@ -1,7 +1,7 @@
-"""A page without a server: one HTML file with a structure, computed beforehand over a size and the tilt of the ground.
+"""A page without a server: one HTML file with a structure, calculated in advance for values of a dimension and of the tilt.
 
-The file holds the modules of the page that draw (static/), and for each pair of values what the session replied. Nothing in it
-asks a network.
+The file contains the modules of the page that draw (static/), and the reply of the session for each pair of values. It uses
+no network.
 """
 
 import base64
@@ -81,7 +81,7 @@ def compute_grid(desk: Desk) -> Iterator[tuple[float, Grid | None]]:
     Refused if the structure is no plane section of blocks.
     """
     if desk.picture is None:
-        raise Refused("a page without a server shows plane sections of blocks")
+        raise Refused("a page without a server can show only plane sections of blocks")
     capacity = desk.picture.words.get("capacity") or {"plus_g": 0.0, "minus_g": 0.0}
     work = Desk(desk.place)
     work.place = desk.place
@@ -102,7 +102,7 @@ def compute_grid(desk: Desk) -> Iterator[tuple[float, Grid | None]]:
         frames.append([_frame(next(views.show(work, {"gamma": tilt, "lines": LINES}))) for tilt in tilts])
         yield (k + 1) / len(wanted), None
     if not sizes:
-        raise DeckError(["no size of the structure can be drawn"])
+        raise DeckError(["the structure cannot be drawn with any of the sizes tried"])
     title = desk.there().deck.title or desk.name
     yield 1.0, Grid(title, "" if handle is None else handle.label, sizes, tilts, frames)
 
@@ -119,7 +119,7 @@ def _around(value: float) -> np.ndarray:
 
 
 def _frame(reply: Reply) -> bytes:
-    """A reply without what the file does not show."""
+    """A reply without the arrays that the file does not show."""
     arrays = {name: array for name, array in reply.arrays.items() if not name.endswith("velocity") and name != "polygon"}
     return Reply({"scene": reply.words["scene"]}, arrays).pack()
 
@@ -135,7 +135,9 @@ def make_page(grid: Grid, words: dict[str, str] | None = None) -> str:
     page = _PAGE.replace("{title}", html.escape(grid.title)).replace("{style}", style)
     page = page.replace("{sources}", sources).replace("{data}", told)
     if len(page.encode()) > LARGEST:
-        raise Refused(f"the file would have {len(page) / 1e6:.1f} MB, more than {LARGEST / 1e6:g}: a structure of fewer blocks fits")
+        raise Refused(
+            f"the file would have {len(page) / 1e6:.1f} MB, more than the {LARGEST / 1e6:g} MB allowed: use a structure of fewer blocks"
+        )
     return page
 
 

@@ -1,4 +1,4 @@
-"""The picture: what is drawn of the building, other views of it, and the push of what no hand moves."""
+"""The picture: the drawing of the building, other views, and limit analysis of structures that are not plane sections."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -24,11 +24,11 @@ MOST_TILT = 2.5
 
 
 def scene(desk: Desk) -> Reply:
-    """The building as it stands on the desk, with handles; picture and handles of the desk are then these."""
+    """The present building with its handles; both become picture and handles of the desk."""
     desk.check()
     structure = desk.there().deck.structure
     if structure is None:
-        why = "The deck has no [structure]: there is nothing to draw."
+        why = "The deck has no [structure], so nothing can be drawn."
         return _seen(desk, None, [], {"empty": why}, {})
     options, building, name = desk.analysis(LimitAnalysisTable, lambda: Tilt(kind="tilt"))
     try:
@@ -78,7 +78,7 @@ def _body(desk: Desk, why: str) -> Reply:
 
 
 def _seen(desk: Desk, made: statics.Picture | None, handles: list[Handle], words: dict[str, Any], arrays: dict[str, np.ndarray]) -> Reply:
-    """The reply that shows a picture, which is now that of the desk; places of handles are told from the anchor [m]."""
+    """The reply that shows a picture, which becomes that of the desk; places of handles are relative to the anchor [m]."""
     desk.picture, desk.handles = made, {h.name: h for h in handles}
     x, y = desk.anchor.tolist()
     told = [
@@ -111,14 +111,14 @@ def show(desk: Desk, message: Message) -> Iterator[Reply]:
 
 
 def _through(desk: Desk, wanted: Any, chain: str | None) -> tuple[int, float]:
-    """The joint and the share of it that a line shall pass: told, or nearest to a place of the drawing."""
+    """The joint, and the position on the joint, through which a line shall pass: given, or nearest to a point of the drawing."""
     assembly = desk.there().deck.building.blocks()
     if not isinstance(wanted, dict):
         place = np.array(numbers(wanted, 2)) + desk.anchor
         return statics.nearest(assembly, place, chain or statics.first_chain(assembly))
     joint, (share,) = wanted.get("joint"), numbers([wanted.get("share")], 1)
     if not isinstance(joint, int) or isinstance(joint, bool) or not 0 <= joint < len(assembly.a):
-        raise BadMessage("there is no such joint")
+        raise BadMessage("the structure has no joint of this number")
     return joint, min(max(share, 0.0), 1.0)
 
 
@@ -128,9 +128,9 @@ def _thrust(wanted: Any) -> float:
 
 
 def push(desk: Desk, _: Message) -> Iterator[Reply]:
-    """Limit analysis of what no hand moves: blocks in space, along the deck's directions or all around."""
+    """Limit analysis of blocks in space, along the directions of the deck or in all directions."""
     if desk.picture is not None:
-        raise BadMessage("a section follows the hand unchanged")
+        raise BadMessage("a plane section is calculated with every drag; this request is for blocks in space")
     options, building, _name = desk.analysis(Tilt, lambda: Tilt(kind="tilt"))
     result = run_one(desk.there().context(), options, building)
     if result.status != "ok":
@@ -142,7 +142,7 @@ def push(desk: Desk, _: Message) -> Iterator[Reply]:
 
 
 def fall(desk: Desk, _: Message) -> Iterator[Reply]:
-    """The collapse of what is drawn, a piece with each reply; ends early when the drawing has changed meanwhile."""
+    """The collapse of the drawn structure, one piece with each reply; ends early if the drawing has changed."""
     made = desk.picture
     if made is None or "falls" not in made.words:
         raise BadMessage("the structure does not collapse")

@@ -107,7 +107,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       } else if (name === "through") { const t = app.scene.through; if (t) show({ through: { joint: t.joint, share: Number(text.split(" ")[0]) } }); }
       else ask({ do: "drag", handle: name, text });
       e.target.closest("dialog").close();
-    } }, h("p", {}, name === "tilt" ? tr`In g, or in degrees with deg.` : Array.isArray(data.value) ? tr`x; y in metres, or with units.` : tr`A number, or a number with its unit, such as 75 cm.`), field, h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Set`))));
+    } }, h("p", {}, name === "tilt" ? tr`A number in g, or in degrees with its unit, such as 5 deg.` : Array.isArray(data.value) ? tr`Two coordinates x; y in metres, or with their units.` : tr`A number, or a number with its unit, such as 75 cm.`), field, h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Set`))));
     field.select();
   }
 
@@ -157,10 +157,10 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const kept = wasOpen && app.text ? { text: app.text, name: app.name, ...app.source, drops: app.drops } : null;
       ask({ do: "hello", kept });
       if (kept && (app.view.gamma || app.view.through || app.view.thrust !== null)) ask({ do: "show", gamma: app.view.gamma, lines: app.view.lines, thrust: app.view.thrust, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
-      if (wasOpen) say(tr`The server is back; this page has its state again.`);
+      if (wasOpen) say(tr`The server runs again. This page has kept its state.`);
     } else {
       banner.hidden = false;
-      banner.textContent = reason ? tr`The server has ended the connection: ${reason}` : tr`The server does not answer. Your deck is kept in this page; trying again … (${tries})`;
+      banner.textContent = reason ? tr`The server has ended the connection: ${reason}` : tr`The server does not answer. This page keeps your deck and tries to connect again … (${tries})`;
     }
     root.dataset.connected = connected;
   };
@@ -364,7 +364,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const text = await deckOf(link);
       if (text !== null) open({ text, name: "shared.toml" });
       return text !== null;
-    } catch (error) { say(tr`The link holds no deck that can be read: ${error.message}`, true); return false; }
+    } catch (error) { say(tr`The deck in the link cannot be read: ${error.message}`, true); return false; }
   }
   app.openLink = openLink;
 
@@ -372,7 +372,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   function dropped(fileGiven) {
     if (!fileGiven) return;
-    if (root.dataset.role === "pupil") { say(tr`A class has no files.`, true); return; }
+    if (root.dataset.role === "pupil") { say(tr`Pupils of a class cannot open files.`, true); return; }
     if (fileGiven.size > 8e6) { say(tr`${fileGiven.name} is larger than 8 MB`, true); return; }
     const reader = new FileReader();
     reader.onload = () => {
@@ -387,7 +387,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     reader.readAsDataURL(fileGiven);
   }
   function askUnit(name, data) {
-    const box = dialog(tr`The unit of the drawing`, h("p", {}, tr`${name} does not say its unit. It is in`), h("div", { class: "row" }, ["m", "cm", "mm", "in", "ft"].map((unit) => h("button", { onclick: () => { ask({ do: "drop", name, data, unit }); box.close(); } }, unit))));
+    const box = dialog(tr`The unit of the drawing`, h("p", {}, tr`${name} states no length unit. The unit is`), h("div", { class: "row" }, ["m", "cm", "mm", "in", "ft"].map((unit) => h("button", { onclick: () => { ask({ do: "drop", name, data, unit }); box.close(); } }, unit))));
   }
   root.addEventListener("dragover", (e) => { e.preventDefault(); root.classList.add("dropping"); });
   root.addEventListener("dragleave", (e) => { if (!root.contains(e.relatedTarget)) root.classList.remove("dropping"); });
@@ -406,12 +406,12 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   function help() {
     dialog(tr`How to use this page`, h("ul", { class: "help" },
       h("li", {}, tr`Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground.`),
-      h("li", {}, tr`Tab goes from handle to handle; arrow keys move one, with Shift ten times as far; Enter or a double click lets you type its value, with a unit if you like.`),
-      h("li", {}, tr`Click into the stones, or drag there: the thrust line that passes there is drawn. Or drag the thrust itself, below the drawing, from the least to the greatest (keys Home and End).`),
+      h("li", {}, tr`Tab selects the next handle. Arrow keys move the handle, with Shift ten times as far. Enter or a double click opens a field for its value, with or without a unit.`),
+      h("li", {}, tr`Click into the stones, or drag in them, to draw the thrust line through that point. The slider below the drawing sets the thrust itself, from the least to the greatest (keys Home and End).`),
       h("li", {}, tr`Two fingers, the wheel, or the keys + and − enlarge the drawing; 0 fits it into its frame.`),
-      h("li", {}, tr`Ctrl+Z undoes, Ctrl+Shift+Z does again, Ctrl+S saves the deck, Space plays a motion.`),
+      h("li", {}, tr`Ctrl+Z undoes a change, Ctrl+Shift+Z repeats it, Ctrl+S saves the deck, Space plays a motion.`),
       h("li", {}, tr`Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page.`),
-      h("li", {}, tr`The page is served by this machine to this machine; nothing leaves it.`)),
+      h("li", {}, tr`A program on this machine serves the page. No data leaves this machine.`)),
       embedded ? null : h("label", { class: "field" }, tr`Language`, " ", h("select", { onchange: (e) => translate(e.target.value) }, Object.entries(LANGUAGES).map(([key, name]) => h("option", { value: key, lang: key, selected: key === language() }, name)))));
   }
   /** The page anew in another language, with its deck. */

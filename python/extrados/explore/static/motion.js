@@ -99,7 +99,7 @@ export function motionPanel(app, lower, frame) {
     if (told.refused) { none(told.refused, arrays); return; }
     it.words = told; it.arrays = it.ground = arrays;
     const open = told.violated.length > 0;
-    const verdict = open ? tr`Open: an assumption does not hold. ` : { "no-hinging": tr`No rocking. `, recovery: tr`Rocking, then recovery. `, collapse: tr`Collapse. ` }[told.outcome] ?? "";
+    const verdict = open ? tr`Outcome open: an assumption does not hold. ` : { "no-hinging": tr`No rocking. `, recovery: tr`Rocking, then recovery. `, collapse: tr`Collapse. ` }[told.outcome] ?? "";
     words.replaceChildren(h("b", { class: open ? "" : told.outcome === "collapse" ? "bad" : "good" }, verdict), told.answer, ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${w}`)));
     it.end = told.active_s || 1;
     const end = it.end;
@@ -134,7 +134,7 @@ export function motionPanel(app, lower, frame) {
           ...(showLimit ? [{ array: level.y, x: level.x, label: "critical", dashed: true, colour: 1, unnamed: true }, { array: under.y, x: under.x, label: "critical", dashed: true, colour: 1, unnamed: true }] : [])] }, arrays);
       const axis = { array: "time", label: "time", unit: "s" }, span = [0, it.end];
       const big = Math.max(...[...arrays.potential, ...arrays.kinetic].map(Math.abs), 1e-12), kilo = big > 2000 ? [1e-3, "kJ"] : [1, "J"];
-      if (shownThird === "energy") charts.energy.draw({ title: tr`Energy`, span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: tr`supplied less lost`, dashed: true, factor: kilo[0] }] }, arrays);
+      if (shownThird === "energy") charts.energy.draw({ title: tr`Energy`, span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: tr`energy supplied less energy lost`, dashed: true, factor: kilo[0] }] }, arrays);
     }
     if (map || !it.map || it.map.why) drawMap(); else dot(charts.map);
     cursors();

@@ -60,10 +60,10 @@ export function outMenu(app) {
   /** Every picture of what moves, drawn in turn at 1280 x 720 and sent to be filmed. */
   async function film(kind, slow) {
     const moves = movement();
-    if (!moves) { app.say(tr`Nothing moves here: a mechanism, a motion or a stored run that moves can be filmed.`, true); return; }
+    if (!moves) { app.say(tr`Nothing moves in this view. A film can show a mechanism, a motion or a stored run.`, true); return; }
     const rate = kind === "gif" ? 15 : 30, length = Math.min(moves.real ? (moves.end - moves.start) / slow : 6, 40);
     const count = Math.max(2, Math.round(length * rate)), canvas = document.createElement("canvas"), parts = [new TextEncoder().encode(kind), Uint8Array.of(rate)];
-    if (count > 1200) { app.say(tr`That film would be too long.`, true); return; }
+    if (count > 1200) { app.say(tr`The film would be too long.`, true); return; }
     for (let k = 0; k < count; k += 1) {
       moves.seek(moves.start + ((moves.end - moves.start) * k) / (count - 1));
       app.say(tr`drawing picture ${k + 1} of ${count}`);
@@ -100,7 +100,7 @@ export function outMenu(app) {
     const text = (app.root.dataset.role === "pupil" ? location.href.split("#")[0] : "extrados:") + await fragmentOf(app.text);
     const field = h("textarea", { readonly: true, rows: 5, "aria-label": tr`Link that holds the deck` });
     field.value = text;
-    app.dialog(tr`Share the deck`, h("p", {}, tr`The link holds the whole deck. Paste it under Open… of any page of extrados, or append it, from the sign # on, to the address of a page.`), field,
+    app.dialog(tr`Share the deck`, h("p", {}, tr`The link contains the whole deck. Paste the link under Open… of any page of extrados. Or append the part that begins with # to the address of a page.`), field,
       h("div", { class: "row" }, h("button", { class: "first", onclick: async () => { field.select(); try { await navigator.clipboard.writeText(text); } catch { document.execCommand("copy"); } app.say(tr`The link is copied.`); } }, tr`Copy`)));
     field.select();
   }

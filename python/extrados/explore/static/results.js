@@ -11,7 +11,7 @@ export function resultsPanel(app, wide) {
   const linked = h("label", { hidden: true }, h("input", { type: "checkbox", checked: true }), tr` move both together`);
   const compute = h("button", { class: "first", onclick: () => computing() }, tr`Run the deck…`);
   const log = h("pre", { class: "log", hidden: true, "aria-live": "polite" });
-  const bar = h("div", { class: "row wrap results-bar" }, compute, second, linked, h("button", { onclick: () => app.ask({ do: "list" }) }, tr`Look again`));
+  const bar = h("div", { class: "row wrap results-bar" }, compute, second, linked, h("button", { onclick: () => app.ask({ do: "list" }) }, tr`Refresh the list of runs`));
   const pair = h("div", { class: "columns" }, columns.map((c) => c.box));
   const apart = h("section", { class: "apart", hidden: true, "aria-label": tr`Differences of the two runs` });
   wide.append(bar, log, apart, pair);
@@ -21,7 +21,7 @@ export function resultsPanel(app, wide) {
     const rows = [...a].filter(([key, v]) => b.has(key) && b.get(key) !== v);
     apart.hidden = columns[1].box.hidden || !a.size || columns[0].words.kind !== columns[1].words?.kind;
     const said = (v) => (Number.isInteger(v) ? String(v) : typeof v === "number" ? number(v, 4) : v === null ? "–" : String(v));
-    apart.replaceChildren(h("h3", {}, rows.length ? tr`What differs` : tr`No number differs.`), rows.length ? h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", { scope: "col" }, "A"), h("th", { scope: "col" }, "B"), h("th", { scope: "col" }, "B / A"))),
+    apart.replaceChildren(h("h3", {}, rows.length ? tr`Numbers that differ` : tr`No number differs.`), rows.length ? h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", { scope: "col" }, "A"), h("th", { scope: "col" }, "B"), h("th", { scope: "col" }, "B / A"))),
       h("tbody", {}, rows.map(([key, v]) => { const w = b.get(key), both = typeof v === "number" && typeof w === "number" && v !== 0; return h("tr", {}, h("th", { scope: "row" }, key.replaceAll("_", " ")), h("td", {}, said(v)), h("td", {}, said(w)), h("td", {}, both ? number(w / v, 4) : "")); }))) : "");
   }
   columns[1].box.hidden = true;
@@ -43,7 +43,7 @@ export function resultsPanel(app, wide) {
       app.ask({ do: "compute", path: field.value, replace: replace.checked });
       stopping = true;
       box.close();
-    } }, h("p", {}, tr("The deck is saved and all its analyses are run, as the command `extrados run` does. It is saved as")), field, h("label", {}, replace, tr` replace what is there`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Run`))));
+    } }, h("p", {}, tr("The page saves the deck and runs all its analyses, as the command `extrados run` does. The deck is saved as")), field, h("label", {}, replace, tr` replace an existing file`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Run`))));
   }
   app.on("computing", (line, _, words) => {
     if (words.saved) app.source = { path: words.saved };
@@ -114,7 +114,7 @@ export function resultsPanel(app, wide) {
           const url = URL.createObjectURL(new Blob([one.svg], { type: "image/svg+xml" })), label = one.name.replaceAll("-", " ");
           pictures.push(url);
           return h("figure", {}, h("img", { src: url, alt: `${it.words.title}: ${name}, ${label}` }), h("figcaption", {}, label, " ", h("button", { onclick: () => download(new Blob([one.svg], { type: "image/svg+xml" }), `${name}-${one.name}.svg`) }, tr`Download`)));
-        }), words.figures.length ? "" : h("p", { class: "hint" }, tr`The run has no figures: it was run with --no-figures.`));
+        }), words.figures.length ? "" : h("p", { class: "hint" }, tr`This run has no figures, since the option --no-figures was given.`));
       } });
     }
     /** Nothing of an earlier run stands below the words of another. */

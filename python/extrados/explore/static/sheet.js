@@ -8,7 +8,7 @@ import { tr } from "./words.js";
 const NEAR = 14, TAP = 8; // px: of a vertex that is taken, and of a press that is no drag
 const TOOLS = { select: tr`Select`, block: tr`Block`, pier: tr`Pier`, wall: tr`Wall`, arch: tr`Arch`, support: tr`Support` };
 const HINTS = {
-  select: tr`Tap a shape, drag it. Delete removes it.`, block: tr`Tap the vertices; the first one again closes the block.`,
+  select: tr`Tap a shape, drag it. Delete removes it.`, block: tr`Tap the vertices. Tap the first vertex again to close the block.`,
   pier: tr`Drag from one corner to the opposite one.`, wall: tr`Drag from one corner to the opposite one.`,
   arch: tr`Drag from springing to springing, then tap the crown of the intrados.`, support: tr`Drag along a face that the ground supports. Without supports the lowest level is the ground.`,
   scale: tr`Tap two points of the photograph whose distance you know.`, photo: tr`Drag the photograph to its place.`,
@@ -28,7 +28,7 @@ export function sheetPanel(app, frame, box) {
   const grid = s("path", { class: "grid" }), zero = s("path", { class: "ground" }), image = s("image", { preserveAspectRatio: "none" });
   const drawn = s("g"), lines = s("g", { class: "marks" }), draft = s("g");
   const words = s("text", { class: "sheet-words", x: 12, y: 20 });
-  const svg = s("svg", { class: "sheet", tabindex: "0", role: "application", "aria-label": tr`Sheet. Arrow keys move the cross, Enter takes a point, Escape drops it, Delete removes.` }, image, grid, zero, drawn, lines, draft, words);
+  const svg = s("svg", { class: "sheet", tabindex: "0", role: "application", "aria-label": tr`Sheet. Arrow keys move the cross, Enter sets a point, Escape cancels the shape, Delete removes the selected shape.` }, image, grid, zero, drawn, lines, draft, words);
   svg.toggleAttribute("hidden", true);
   box.append(svg);
   const file = h("input", { type: "file", accept: "image/*", "aria-label": tr`Photograph as background`, onchange: () => { photograph(file.files[0]); file.value = ""; } });
@@ -175,7 +175,7 @@ export function sheetPanel(app, frame, box) {
     } else if (it.tool === "scale") scale(...points);
     else {
       const outlines = made(points);
-      if (outlines) add(it.tool, outlines); else { app.say(tr`These points make no shape.`, true); draw(); }
+      if (outlines) add(it.tool, outlines); else { app.say(tr`These points do not define a shape.`, true); draw(); }
     }
   }
   function choose(p, more = false) {
@@ -254,7 +254,7 @@ export function sheetPanel(app, frame, box) {
       setTool("scale");
       fit();
     };
-    picture.onerror = () => { URL.revokeObjectURL(url); app.say(tr`${given.name} is no picture that this browser shows.`, true); };
+    picture.onerror = () => { URL.revokeObjectURL(url); app.say(tr`This browser cannot show ${given.name} as a picture.`, true); };
     picture.src = url;
   }
   function scale(a, b) {
@@ -278,7 +278,7 @@ export function sheetPanel(app, frame, box) {
     const shown = app.dialog(title, h("form", { onsubmit: (e) => {
       e.preventDefault();
       const values = Object.fromEntries(inputs.map(([key, input]) => [key, Number(input.value.trim().replaceAll("−", "-").replace(",", ".").replace(/\s*m$/, "") || NaN)]));
-      if (Object.values(values).every(Number.isFinite) && done(values)) shown.close(); else app.say(tr`These numbers make no shape.`, true);
+      if (Object.values(values).every(Number.isFinite) && done(values)) shown.close(); else app.say(tr`These numbers do not define a shape.`, true);
     } }, ...inputs.map(([, input, label]) => h("label", { class: "line" }, label, " ", input)), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Draw it`))));
     inputs[0][1].select();
   }

@@ -30,13 +30,13 @@ export function sidebar(app, box) {
     if (!scene) return;
     late = pressed;
     if (pressed) return;
-    if (app.draft) { pages.answer.replaceChildren(h("p", { class: "verdict" }, h("b", {}, tr`The drawing is no structure yet. `), app.draft.trouble.join(" "))); return; }
+    if (app.draft) { pages.answer.replaceChildren(h("p", { class: "verdict" }, h("b", {}, tr`The drawing is not a structure yet. `), app.draft.trouble.join(" "))); return; }
     if (scene.seen) { pages.answer.replaceChildren(...app.solid.page(scene.seen, scene.empty)); return; }
     if (scene.empty) { pages.answer.replaceChildren(h("p", { class: "verdict" }, scene.empty)); return; }
     const parts = [];
     const c = scene.capacity, way = scene.way ?? "plus", side = way === "plus" ? "+x" : "−x";
     if (scene.immovable) parts.push(h("p", { class: "verdict good" }, scene.immovable));
-    else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, tr`Limit analysis has no answer: `), scene.unknown));
+    else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, tr`Limit analysis gives no result: `), scene.unknown));
     else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Cannot stand. `), capital(app.detail?.why ?? tr`no thrust line stays within the blocks`), "."));
     else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Collapses towards ${side}. `), capital(scene.why), "."));
     else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? tr`Stands when tilted. ` : tr`Stands. `), scene.gamma ? tr`Collapse towards ${side} at ${number(c[`${way}_g`], 4)} g.` : tr`Collapse at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
@@ -50,9 +50,9 @@ export function sidebar(app, box) {
       rows.push(row(tr`Least thrust`, h("span", { "data-number": "least" }, quantity(scene.least_N, "N")), tr`horizontal thrust of the chain at the present tilt`));
       rows.push(row(tr`Greatest thrust`, h("span", { "data-number": "most" }, quantity(scene.most_N, "N"))));
     }
-    if (scene.chosen) rows.push(row(tr`Chosen line`, quantity(scene.chosen.thrust_N, "N"), tr`the line between those of least and greatest thrust that has this one`));
+    if (scene.chosen) rows.push(row(tr`Chosen line`, quantity(scene.chosen.thrust_N, "N"), tr`thrust of the chosen line, between the least and the greatest`));
     if (scene.through) rows.push(row(tr`Through the point`, quantity(scene.through.thrust_N, "N")));
-    if (app.detail && "safety" in app.detail) rows.push(row(tr`Geometric safety`, app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), tr`one over the least part of the joints that holds a thrust line upright`));
+    if (app.detail && "safety" in app.detail) rows.push(row(tr`Geometric safety`, app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), tr`inverse of the smallest part of every joint that still contains a thrust line under self-weight`));
     if (scene.required_friction !== undefined) rows.push(row(tr`Required friction`, number(scene.required_friction, 3), tr`coefficient of friction required at collapse to ${side}`));
     for (const tie of scene.ties ?? []) rows.push(row(tr`${tie.name}, at collapse`, quantity(tie.force_N, "N"), tr`tension of the tie at collapse to ${side}`));
     rows.push(row(tr`Weight`, tr`${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));
@@ -60,7 +60,7 @@ export function sidebar(app, box) {
     for (const [key, value] of Object.entries(scene.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
     parts.push(h("table", { class: "numbers" }, h("tbody", {}, rows)));
     if (scene.chains?.length > 1) {
-      parts.push(h("label", { class: "field" }, tr`Thrust of the `, h("select", { "aria-label": tr`Whose thrust`, onchange: (e) => app.show({ chain: e.target.value, through: null }) }, scene.chains.map((name) => h("option", { value: name, selected: name === scene.chain }, name)))));
+      parts.push(h("label", { class: "field" }, tr`Thrust of the `, h("select", { "aria-label": tr`Chain whose thrust is shown`, onchange: (e) => app.show({ chain: e.target.value, through: null }) }, scene.chains.map((name) => h("option", { value: name, selected: name === scene.chain }, name)))));
     }
     for (const [name, text] of [["plus", tr`Hinges, load to +x`], ["minus", tr`Hinges, load to −x`]]) {
       if (!scene[`${name}_hinges`]?.length || !app.drawn(name)) continue;
@@ -88,7 +88,7 @@ export function sidebar(app, box) {
     return h("div", { class: "row wrap" },
       h("button", { onclick: add, disabled: !simple }, name ? tr`Add a load` : tr`Add limit analysis`),
       there.length && simple ? h("button", { onclick: () => app.change({ [`analysis.${name}.load`]: there.length > 1 ? there.slice(0, -1).map(raw) : null }) }, tr`Remove the last load`) : null,
-      app.deck?.structure?.kind !== "blocks" ? h("button", { title: tr`Every stone as a block whose vertices can be dragged`, onclick: () => app.ask({ do: "blocks" }) }, tr`Free the stones`) : null);
+      app.deck?.structure?.kind !== "blocks" ? h("button", { title: tr`Turn every stone into a block whose vertices can be dragged`, onclick: () => app.ask({ do: "blocks" }) }, tr`Free the stones`) : null);
   }
 
   /** What is needed for an acceleration: the least interventions, each with a button that puts it into the deck. */
@@ -109,15 +109,15 @@ export function sidebar(app, box) {
   }
   function needs() {
     const field = h("input", { type: "text", id: "needed-g", value: target, inputmode: "decimal", placeholder: "0.2", "aria-label": tr`Acceleration that the structure is to carry, in g`, oninput: (e) => { target = e.target.value; } });
-    const form = h("form", { class: "row wrap", onsubmit: ask }, h("label", { for: "needed-g" }, tr`To carry `), field, " g ", h("button", { type: "submit", disabled: asking }, asking ? tr`Sizing…` : tr`What is needed`));
+    const form = h("form", { class: "row wrap", onsubmit: ask }, h("label", { for: "needed-g" }, tr`Required acceleration `), field, " g ", h("button", { type: "submit", disabled: asking }, asking ? tr`Sizing…` : tr`Find the interventions`));
     const parts = [h("h3", {}, tr`Strengthening`), form];
     if (needed && needed.mark === mark()) {
       if (needed.trouble) parts.push(h("p", { class: "remark" }, needed.trouble));
-      else parts.push(h("p", { class: "answer-text" }, needed.statement), needed.bound ? h("p", { class: "remark" }, tr`Joints slide: these sizes hold for dilatant friction, an upper bound of the capacity. The analysis strengthen of a deck takes the least state without dilatancy.`) : null, h("ul", { class: "plain" }, needed.interventions.map((one) => h("li", { "data-intervention": one.name },
+      else parts.push(h("p", { class: "answer-text" }, needed.statement), needed.bound ? h("p", { class: "remark" }, tr`Joints slide: these sizes are based on dilatant friction, an upper bound of the capacity. The analysis strengthen of a deck uses the least capacity without dilatancy.`) : null, h("ul", { class: "plain" }, needed.interventions.map((one) => h("li", { "data-intervention": one.name },
         h("b", {}, `${capital(one.name)}: `), `${one.met ? one.size : one.reason}.`, one.met && one.next ? tr` Afterwards: ${one.next}. ` : " ",
-        one.changes ? h("button", { onclick: () => app.change(one.changes) }, tr`Put it in`) : null))));
+        one.changes ? h("button", { onclick: () => app.change(one.changes) }, tr`Add to the deck`) : null))));
     }
-    return h("section", { class: "needed", "aria-label": tr`What is needed` }, parts);
+    return h("section", { class: "needed", "aria-label": tr`Find the interventions` }, parts);
   }
 
   // Sizes
@@ -127,7 +127,7 @@ export function sidebar(app, box) {
     if (pages.sizes.contains(active) && active.matches("input, select")) return;
     const groups = new Map();
     for (const form of app.forms) { if (!groups.has(form.section)) groups.set(form.section, []); groups.get(form.section).push(form); }
-    pages.sizes.replaceChildren(h("p", { class: "hint" }, tr`A number, or a number with its unit. Grey values are defaults; an emptied field becomes one.`), ...[...groups].map(([section, forms]) => h("details", { open: section === "structure" || section === "motion" }, h("summary", {}, NAMES[section]), h("div", { class: "fields" }, forms.map((form) => field(section, form))))));
+    pages.sizes.replaceChildren(h("p", { class: "hint" }, tr`A number, or a number with its unit. Grey values are defaults. Clear a field to restore its default.`), ...[...groups].map(([section, forms]) => h("details", { open: section === "structure" || section === "motion" }, h("summary", {}, NAMES[section]), h("div", { class: "fields" }, forms.map((form) => field(section, form))))));
   }
   function field(section, form) {
     const key = `${section}.${form.key}`, id = `field-${key}`.replaceAll(".", "-");
@@ -162,13 +162,13 @@ export function sidebar(app, box) {
     try { await navigator.clipboard.writeText(shown()); app.say(tr`The deck is copied.`); } catch { text.select(); document.execCommand("copy"); app.say(tr`The deck is copied.`); }
   };
   app.save = () => {
-    if (app.draft) { app.say(tr`The drawing is no structure yet: download it, or complete it.`, true); return; }
+    if (app.draft) { app.say(tr`The drawing is not a structure yet: complete it, or download it as it is.`, true); return; }
     const field = h("input", { type: "text", value: app.source.path ?? app.name, "aria-label": tr`Path within the folder` });
     const replace = h("input", { type: "checkbox", checked: Boolean(app.source.path) });
     const box = app.dialog(tr`Save the deck`, h("form", { onsubmit: (e) => {
       e.preventDefault();
       app.ask({ do: "save", path: field.value, replace: replace.checked }, { reply: (words) => { if (words.saved) { app.source = { path: words.saved }; app.say(tr`Saved as ${words.saved}`); box.close(); } } });
-    } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, tr` replace what is there`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Save`))));
+    } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, tr` replace an existing file`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Save`))));
   };
   const adder = h("select", { "aria-label": tr`Add an analysis`, onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
   pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, tr`Copy`), h("button", { class: "keeps", onclick: () => app.save() }, tr`Save…`), h("button", { onclick: () => download(new Blob([shown()], { type: "application/toml" }), app.draft ? "drawing.toml" : app.name) }, tr`Download`), h("button", { onclick: () => app.chooser() }, tr`Open…`), adder), complaints, h("div", { class: "editor" }, numbersBox, text));

@@ -4,9 +4,9 @@ import { carried, space } from "./space.js";
 import { tr } from "./words.js";
 
 const OF = {
-  solids: tr`Blocks in space. Drag the drawing, or use the arrow keys, to turn it. A push of all of it takes longer than a hand moves: it is computed when asked for.`,
-  walls: tr`Walls and floors on a plan, by the elements that a pushover takes. Drag the drawing, or use the arrow keys, to turn it. Its capacity and cracks are those of a run: see Results.`,
-  elements: tr`The wall by its finite elements. Its cracks and its load curve are those of a run: see Results.`,
+  solids: tr`Blocks in space. Drag the drawing, or use the arrow keys, to turn it. The capacity takes longer than the other results: a button starts its calculation.`,
+  walls: tr`Walls and floors of a building, with the elements of a pushover. Drag the drawing, or use the arrow keys, to turn it. A run gives the capacity and the cracks: see Results.`,
+  elements: tr`The finite elements of the wall. A run gives the cracks and the capacity curve: see Results.`,
 };
 
 export function solidPanel(app, stageBox) {
@@ -20,7 +20,7 @@ export function solidPanel(app, stageBox) {
     body = { ...app.arrays, both: seen.of === "walls" };
     view.label = `${app.deck.title || app.name}.`;
     view.show(body, !opened);
-    if (!opened && it.push) { it.push = null; app.say(tr`The sizes have changed: push it again.`); }
+    if (!opened && it.push) { it.push = null; app.say(tr`The sizes have changed: calculate the capacity again.`); }
   });
   app.on("theme", () => view.redraw());
   app.on("tab", (name) => { if (name !== "structure") stop(); });
@@ -46,19 +46,19 @@ export function solidPanel(app, stageBox) {
     for (const text of seen.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
     if (seen.of === "walls") parts.push(h("div", { class: "row" }, h("button", { class: "first", "data-plan": true, onclick: () => app.plan.begin() }, tr`✎ Draw the plan`)));
     if (seen.of === "solids") {
-      parts.push(h("div", { class: "row" }, h("button", { class: "first", onclick: () => { app.say(tr`pushing it …`); app.ask({ do: "push" }); } }, tr`Push it`), it.push ? h("button", { onclick: () => mechanism() }, tr`▶ Mechanism`) : null));
+      parts.push(h("div", { class: "row" }, h("button", { class: "first", onclick: () => { app.say(tr`calculating the capacity …`); app.ask({ do: "push" }); } }, tr`Calculate the capacity`), it.push ? h("button", { onclick: () => mechanism() }, tr`▶ Mechanism`) : null));
       if (it.push) parts.push(h("p", { class: "verdict good", "data-number": "push" }, it.push.answer), ...it.push.warnings.map((text) => h("p", { class: "remark" }, text)), rose());
     }
     return parts;
   }
-  /** Capacity over the direction of the push, from above. */
+  /** Capacity over the direction of the acceleration, from above. */
   function rose() {
     const { rose_direction: angle, rose_capacity: capacity } = it.push.arrays;
     if (!(angle?.length > 2)) return null;
     const most = Math.max(...capacity.filter(Number.isFinite)), c = 110, r = 84, at = (k, share) => { const t = (angle[k % angle.length] * Math.PI) / 180; return [c + r * share * Math.cos(t), c - r * share * Math.sin(t)]; };
     const share = (k) => Math.min(1, capacity[k % angle.length] / most);
     const d = `M${Array.from(angle, (_, k) => at(k, share(k)).map((v) => v.toFixed(1)).join(" ")).join("L")}Z`;
-    return h("div", { class: "rose" }, h("h3", {}, tr`Capacity over the direction of the push [g]`), s("svg", { viewBox: "0 0 220 224", width: 220, height: 224, class: "chart", role: "img", "aria-label": tr`Capacity over direction: at most ${number(most, 3)} g.` },
+    return h("div", { class: "rose" }, h("h3", {}, tr`Capacity over the direction of the acceleration [g]`), s("svg", { viewBox: "0 0 220 224", width: 220, height: 224, class: "chart", role: "img", "aria-label": tr`Capacity over direction: at most ${number(most, 3)} g.` },
       [0.5, 1].map((v) => s("circle", { class: "grid", cx: c, cy: c, r: r * v, fill: "none" })), [0.5, 1].map((v) => s("text", { x: c + 3, y: c - r * v - 3, text: `${number(v * most, 3)} g` })),
       s("line", { class: "grid", x1: c - r, x2: c + r, y1: c, y2: c }), s("line", { class: "grid", x1: c, x2: c, y1: c - r, y2: c + r }), s("text", { x: c + r + 6, y: c + 4, text: "x" }), s("text", { x: c - 3, y: c - r - 16, text: "y" }),
       s("path", { class: "line", d, fill: "none", stroke: "var(--c0)" })));

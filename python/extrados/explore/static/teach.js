@@ -6,7 +6,7 @@ import { tr } from "./words.js";
 export function teachPanel(app, box) {
   const list = h("ol", { class: "exercises" });
   const text = h("div", { class: "exercise", "aria-live": "polite" });
-  box.append(h("p", {}, tr`Ten lessons of five minutes: predict, try, check, and read who asked first.`), list, text);
+  box.append(h("p", {}, tr`Ten lessons of five minutes: predict, try, check, and read who first asked the question.`), list, text);
   const done = new Set(JSON.parse(read("extrados-lessons") ?? "[]"));
   let current = null;
   function read(key) { try { return localStorage.getItem(key); } catch { return null; } }
@@ -26,7 +26,7 @@ export function teachPanel(app, box) {
       told.className = `told ${good ? "good" : "bad"}`;
       told.textContent = words;
       if (!good) return;
-      history.replaceChildren(h("b", {}, predicted === x.right ? tr`Your prediction was right. ` : tr`You predicted otherwise; right is: ${x.choices[x.right]}. `.replace("..", ".")), x.history);
+      history.replaceChildren(h("b", {}, predicted === x.right ? tr`Your prediction was right. ` : tr`Your prediction was wrong. The right answer: ${x.choices[x.right]}. `.replace("..", ".")), x.history);
       done.add(k);
       try { localStorage.setItem("extrados-lessons", JSON.stringify([...done])); } catch { /* a browser without storage */ }
       items();

@@ -38,21 +38,32 @@ def stone_at(assembly: Assembly, point: np.ndarray, name: str | None, what: str,
 
     key: the table of the deck whose `end` ("start", "end") and stone of that end are meant.
     """
-    names = assembly.block_names
     if name is not None:
-        if name not in names:
-            more = ", ..." if len(names) > 8 else ""
-            raise BadGeometry(f"{what}: there is no stone '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
-        return names.index(name)
-    found = stones_at(assembly, point)
-    place = f"x = {point[0]:.4g}, y = {point[1]:.4g} m"
+        return named_stone(assembly.block_names, name, what, key, end)
+    return only_stone(assembly.block_names, assembly.centroid, stones_at(assembly, point), point, what, key, end)
+
+
+def named_stone(names: Sequence[str], name: str, what: str, key: Key, end: str) -> int:
+    """The block of a name; BadGeometry, see `stone_at`, where there is none."""
+    if name not in names:
+        more = ", ..." if len(names) > 8 else ""
+        raise BadGeometry(f"{what}: block '{name}' does not exist; the blocks are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
+    return names.index(name)
+
+
+def only_stone(names: Sequence[str], centroid: np.ndarray, found: Sequence[int], point: np.ndarray, what: str, key: Key, end: str) -> int:
+    """The one block of those `found` at a point (2 or 3) [m]; BadGeometry, see `stone_at`, of none, with the nearest of the
+    centroids (blocks, 2 or 3) [m], or of several."""
+    place = ", ".join(f"{axis} = {value:.4g}" for axis, value in zip("xyz", point, strict=False)) + " m"
     if not found:
-        away = np.hypot(*(assembly.centroid - point).T)
-        near = names[int(away.argmin())]
-        raise BadGeometry(f"{what}: no stone is at {place}; name it if it is anchored outside of one, '{near}' is near", (*key, end))
+        near = names[int(np.linalg.norm(centroid - point, axis=1).argmin())]
+        raise BadGeometry(
+            f"{what}: no block is at {place}. If this end is anchored outside its block, give the name of the block by {end}_stone; '{near}' is the nearest",
+            (*key, end),
+        )
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
-        raise BadGeometry(f"{what}: {place} lies between {said}; name the one that it is anchored in", (*key, end))
+        raise BadGeometry(f"{what}: {place} lies between {said}; give the name of the block in which this end is anchored", (*key, end))
     return found[0]
 
 
@@ -64,7 +75,7 @@ def moved_joints(assembly: Assembly, names: Sequence[str]) -> list[int]:
         key = ("initial", "movements", k, "joint")
         if name not in assembly.joint_names:
             there = [n for n, on in zip(assembly.joint_names, grounded, strict=True) if on]
-            raise BadGeometry(f"names no joint '{name}'; on the ground there are {', '.join(there[:8])}", key)
+            raise BadGeometry(f"joint '{name}' does not exist; the joints on the ground are {', '.join(there[:8])}", key)
         found.append(assembly.joint_names.index(name))
         if not grounded[found[-1]]:
             raise BadGeometry(f"joint '{name}' is not on the ground", key)

@@ -121,14 +121,14 @@ def springing_path(
     slack = 1e-9 * outer
     if not low - slack <= reach <= high + slack:
         raise BadGeometry(
-            f"{part}: the face stands {reach:.4g} m from the arch's centre line; it must lie between the intrados "
+            f"{part}: the face is {reach:.4g} m from the centre line of the arch. This distance must lie between the intrados "
             f"springing ({low:.4g} m) and the intrados radius ({high:.4g} m)"
         )
     if outer * sin(half) < reach - slack:
         raise BadGeometry(f"{part}: the extrados of the springing lies outside the pier")
     crown = y + outer * cos(half)
     if top < crown - slack:
-        raise BadGeometry(f"{part}: the top at {top:.4g} m lies below the extrados of the springing at {crown:.4g} m")
+        raise BadGeometry(f"{part}: the top at {top:.4g} m is below the extrados of the springing, which is at {crown:.4g} m")
 
     def arc(radius: float, start: float, end: float) -> np.ndarray:
         phi = start + STEPS * ((end - start) / (ARC - 1))  # np.linspace, at a fifth of its time

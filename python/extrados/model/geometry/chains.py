@@ -47,8 +47,8 @@ def in_order(assembly: Assembly) -> Assembly:
     whole = len(assembly.chains) == 1 and len(joints) == len(assembly.a) == count + 1
     if not whole or not (GROUND in ends[0] and GROUND in ends[-1]):
         raise BadGeometry(
-            f"expected a single arch between two supports; here are {count} stones, {len(assembly.a)} joints and "
-            f"{len(assembly.chains)} rows of stones"
+            f"expected a single arch between two supports; the structure has {count} blocks, {len(assembly.a)} joints and "
+            f"{len(assembly.chains)} rows of blocks"
         )
     order = [next(iter((one & two) - {GROUND})) for one, two in itertools.pairwise(ends)]
     a, b = np.array([*order, GROUND]), np.array([GROUND, *order])

@@ -32,7 +32,7 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     scale = UNITS[unit or "m"]
     nodes = nodes_of(value, name)
     if len(nodes) > MOST_BLOCKS:
-        raise BadGeometry(f"{name}: {len(nodes)} blocks, at most {MOST_BLOCKS}")
+        raise BadGeometry(f"{name}: this file has {len(nodes)} blocks; at most {MOST_BLOCKS} are allowed")
     meshes = {key: mesh_of(node, f"{name}: block {key}") for key, node in nodes.items()}
     for axis in (1, 0, 2):
         sections = {key: _section(xyz, faces, axis) for key, (xyz, faces) in meshes.items()}
@@ -41,7 +41,9 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     else:
         faults = {AXES[a]: next(k for k, m in meshes.items() if _section(*m, a) is None) for a in (1, 0, 2)}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
-        raise NoView(f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms", ("structure", "file"))
+        raise NoView(
+            f"{name}: a plane section requires blocks that are prisms across one plane, and these are not ({told})", ("structure", "file")
+        )
     blocks, ground, depths = [], [], []
     for key, found in sections.items():
         assert found is not None
@@ -57,8 +59,8 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     notes = [f"{name}: {len(blocks)} blocks and {len(ground)} supports, section across {AXES[axis]}"]
     if one_depth is None:
         notes.append(
-            f"{name}: the blocks are {min(depths):.4g} to {max(depths):.4g} m deep across the section; all are taken as "
-            "deep as `depth` says"
+            f"{name}: the blocks have depths of {min(depths):.4g} to {max(depths):.4g} m across the section; the value of "
+            "`depth` is used for all of them"
         )
     return Drawing(blocks, np.concatenate(ground) if ground else None, notes=tuple(notes)), one_depth
 
@@ -80,7 +82,7 @@ def nodes_of(value: Any, name: str) -> dict[str, dict[str, Any]]:
         inner = _inner(inner["graph"])
     nodes = inner.get("node") if isinstance(inner, dict) else None
     if not isinstance(nodes, dict) or not nodes or not all(isinstance(n, dict) for n in nodes.values()):
-        raise BadGeometry(f"{name}: an assembly of COMPAS without nodes")
+        raise BadGeometry(f"{name}: this assembly of COMPAS has no nodes")
     return dict(sorted(nodes.items(), key=lambda item: (len(item[0]), item[0])))
 
 
@@ -93,9 +95,11 @@ def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int
         xyz = np.array([[float(v.get(a, 0.0)) for a in AXES] for v in vertices.values()])
         faces = [[order[str(k)] for k in face] for face in mesh["face"].values()]
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
-        raise BadGeometry(f"{where}: expected a mesh with vertex and face") from None
+        raise BadGeometry(f"{where}: expected a mesh with the keys vertex and face") from None
     if xyz.ndim != 2 or len(xyz) < 6 or not (np.abs(xyz) <= FARTHEST).all():  # NaN too
-        raise BadGeometry(f"{where}: its mesh has {len(xyz)} vertices, expected those of a solid, of finite numbers within {FARTHEST:g}")
+        raise BadGeometry(
+            f"{where}: the mesh has {len(xyz)} vertices; expected the vertices of a solid, with finite coordinates up to {FARTHEST:g}"
+        )
     return xyz, faces
 
 

@@ -173,8 +173,8 @@ class _Near:
         self._compared += int(count.sum())
         if self._compared > MOST_COMPARED:
             raise BadGeometry(
-                f"the edges of {len(self.size)} outlines are near each other in more than {MOST_COMPARED:,} pairs, the greatest "
-                "number considered: give them fewer points, and the ground fewer segments"
+                f"too many edges are near each other: the {len(self.size)} outlines have more than {MOST_COMPARED:,} such pairs, "
+                "the greatest number considered. Give the outlines fewer points, and the ground fewer segments"
             )
         return _spread(numbers, count)
 
@@ -185,7 +185,7 @@ class _Near:
         pairs.append(np.stack([one, two]))
         if sum(len(p[0]) for p in pairs) > max(MOST_KEPT, 10 * len(self.first)):
             raise BadGeometry(
-                f"more than {MOST_KEPT:,} pairs of edges of the outlines or the ground run beside each other: much of it lies over itself"
+                f"more than {MOST_KEPT:,} pairs of edges of outlines or ground are parallel and adjacent: much of the drawing is doubled"
             )
 
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
@@ -247,8 +247,8 @@ def box_pairs(low: np.ndarray, high: np.ndarray, most: int) -> tuple[np.ndarray,
         total += int(meet.sum())
         if total > most:
             raise BadGeometry(
-                f"the boxes around {len(order)} outlines or lines meet in more than {most:,} pairs, the greatest number "
-                f"considered: much of it lies over itself"
+                f"the boxes around {len(order)} outlines or lines intersect in more than {most:,} pairs, the greatest number "
+                "considered: much of the drawing is doubled"
             )
     return tuple(np.concatenate(found, axis=1))
 

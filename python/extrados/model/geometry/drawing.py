@@ -67,21 +67,21 @@ def read_json(file: File) -> Drawing:
     if not isinstance(value, dict) or not isinstance(value.get("blocks"), list):
         raise BadGeometry(f'{name}: expected an object with a list "blocks", or an assembly of COMPAS')
     if unknown := set(value) - {"unit", "blocks", "ground", "title"}:
-        raise BadGeometry(f"{name}: unknown key {_shown(min(unknown))}; known are unit, title, blocks, ground")
+        raise BadGeometry(f"{name}: unknown key {_shown(min(unknown))}; the keys are unit, title, blocks and ground")
     unit = value.get("unit", "m")
     if not isinstance(unit, str) or unit not in UNITS:
-        raise BadGeometry(f"{name}: unit {_shown(unit)}; expected one of {', '.join(UNITS)}")
+        raise BadGeometry(f"{name}: unit {_shown(unit)} is unknown; expected one of {', '.join(UNITS)}")
     scale = UNITS[unit]
     if len(value["blocks"]) > MOST_BLOCKS:
-        raise BadGeometry(f"{name}: {len(value['blocks'])} blocks, at most {MOST_BLOCKS}")
+        raise BadGeometry(f"{name}: this file has {len(value['blocks'])} blocks; at most {MOST_BLOCKS} are allowed")
     polygons = []
     for i, entry in enumerate(value["blocks"]):
         title = entry.get("name", f"block {i + 1}") if isinstance(entry, dict) else None
         if not isinstance(entry, dict) or not isinstance(title, str) or set(entry) - {"name", "points", "density"}:
-            raise BadGeometry(f"{name}: blocks[{i}]: expected an object with points and, if wished, name and density")
+            raise BadGeometry(f"{name}: blocks[{i}]: expected an object with points, and optionally name and density")
         density = entry.get("density")
         if density is not None and (isinstance(density, bool) or not isinstance(density, int | float) or not 0.0 < density < 3e4):
-            raise BadGeometry(f"{name}: block '{title}': density {_shown(density)}, expected kg/m^3 above 0")
+            raise BadGeometry(f"{name}: block '{title}': the density is {_shown(density)}, expected kg/m^3 above 0")
         points = numbers(entry.get("points"), 2, f"{name}: block '{title}': points")
         polygons.append(Polygon(title, scale * points, density))
     ground = value.get("ground")

@@ -144,7 +144,7 @@ def drawing_of(
         else:
             found.other_layers[layer] += 1
     for missing in [one for one in (*(layers or []), *(meaning or {})) if one.upper() not in {s.upper() for s in seen}]:
-        raise BadGeometry(f"{name}: no layer '{missing}'; there are {', '.join(sorted(seen)) or 'none'}")
+        raise BadGeometry(f"{name}: layer '{missing}' does not exist; the layers are {', '.join(sorted(seen)) or 'none'}")
     return _drawing(found, known, name, scale, join_tolerance, layers != [])
 
 
@@ -179,20 +179,20 @@ def _document(data: bytes, name: str) -> Any:
         from ezdxf.filemanagement import dxf_stream_info, read
         from ezdxf.lldxf.const import DXFError
     except ImportError:
-        raise BadGeometry("reading DXF needs ezdxf: pip install 'extrados[dxf]'") from None
+        raise BadGeometry("reading DXF requires ezdxf. Install it by pip install 'extrados[dxf]'") from None
     if data.startswith(b"AutoCAD Binary DXF"):
-        raise BadGeometry(f"{name}: is a binary DXF file; save it as text (ASCII DXF)")
+        raise BadGeometry(f"{name}: this is a binary DXF file: save it as text (ASCII DXF)")
     try:
         head = dxf_stream_info(io.StringIO(data[:100_000].decode("latin-1")))
         return read(io.StringIO(data.decode(head.encoding, errors="surrogateescape"), newline=None))
     except (DXFError, UnicodeError, LookupError, ValueError, ArithmeticError, OSError, StopIteration) as error:
-        raise BadGeometry(f"{name}: is not a sound DXF file: {error or 'it ends too early'}") from None
+        raise BadGeometry(f"{name}: this is not a valid DXF file: {error or 'it ends too early'}") from None
 
 
 def _unit(name: str, code: int) -> str:
     if code not in INSUNITS:
-        what = "has no unit ($INSUNITS = 0)" if code == 0 else f"has a unit not known here ($INSUNITS = {code})"
-        raise BadGeometry(f'{name}: {what}; say which with  unit = "mm"  (one of {", ".join(UNITS)})')
+        what = "the drawing has no unit ($INSUNITS = 0)" if code == 0 else f"the drawing has an unknown unit ($INSUNITS = {code})"
+        raise BadGeometry(f'{name}: {what}; give it with  unit = "mm"  (one of {", ".join(UNITS)})')
     return INSUNITS[code]
 
 
@@ -220,7 +220,7 @@ def _refuse_many(document: Any, name: str) -> None:
 
 
 def _too_many(name: str) -> str:
-    return f"{name}: more than {MOST_ENTITIES:,} entities, those of its references to blocks counted in their places"
+    return f"{name}: the drawing has more than {MOST_ENTITIES:,} entities, including those of inserted blocks"
 
 
 def _entities(document: Any, name: str, hides: _Hiding) -> Iterator[tuple[Any, str]]:
@@ -232,15 +232,15 @@ def _entities(document: Any, name: str, hides: _Hiding) -> Iterator[tuple[Any, s
             yield entity, layer
             return
         if depth > DEEPEST:
-            raise BadGeometry(f"{name}: block '{entity.dxf.name}' lies within more than {DEEPEST} others, or in itself")
+            raise BadGeometry(f"{name}: block '{entity.dxf.name}' is nested more than {DEEPEST} levels deep, or contains itself")
         if entity.dxf.name not in document.blocks:
-            raise BadGeometry(f"{name}: layer '{layer}': a reference to block '{entity.dxf.name}', which is not there")
+            raise BadGeometry(f"{name}: layer '{layer}': the inserted block '{entity.dxf.name}' does not exist")
         try:
             placed = [list(one.virtual_entities()) for one in (entity.multi_insert() if entity.mcount > 1 else (entity,))]
         except MemoryError:
             raise
         except Exception as error:  # whatever ezdxf raises, at an axis of no length or a dimension without its parts
-            raise BadGeometry(f"{name}: layer '{layer}': block '{entity.dxf.name}' cannot be put in its place: {error}") from None
+            raise BadGeometry(f"{name}: layer '{layer}': block '{entity.dxf.name}' cannot be inserted: {error}") from None
         for parts in placed:
             for part in parts:
                 yield from within(part, layer if _layer(part) == "0" else _layer(part), depth + 1)
@@ -264,13 +264,13 @@ def _take(entity: Any, layer: str, means: Layer, found: _Read, name: str, sagitt
     if kind not in CURVES:
         if kind not in LEFT_OUT:
             raise BadGeometry(
-                f"{name}: layer '{layer}', {kind}{_handle(entity)}: is neither line nor arc; explode it, or name the layers to read "
-                "(layers = [...])"
+                f"{name}: layer '{layer}', {kind}{_handle(entity)}: this entity is neither a line nor an arc. Explode it, or give "
+                "the layers to read (layers = [...])"
             )
         found.left_out[LEFT_OUT[kind]] += 1
         return
     if kind == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
-        raise BadGeometry(f"{name}: layer '{layer}', POLYLINE: is a mesh; a section is drawn with lines")
+        raise BadGeometry(f"{name}: layer '{layer}', POLYLINE: this entity is a mesh; draw a section with lines")
     try:
         points = _flattened(entity, kind, sagitta)
     except BadGeometry as error:
@@ -279,7 +279,7 @@ def _take(entity: Any, layer: str, means: Layer, found: _Read, name: str, sagitt
         return
     found.vertices += len(points)
     if found.vertices > MOST_VERTICES:
-        raise BadGeometry(f"{name}: its lines and the chords of its curves have more than {MOST_VERTICES:,} vertices")
+        raise BadGeometry(f"{name}: the lines, and the chords of the curves, have more than {MOST_VERTICES:,} vertices")
     if means.role == "ground":
         found.ground.append(points)
     elif means.role == "joints":
@@ -310,7 +310,7 @@ def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
     except BadGeometry:
         raise
     except (ArithmeticError, ValueError, IndexError, RecursionError) as error:  # of ezdxf, at a curve that is none
-        raise BadGeometry(f"is no curve that can be followed: {error}") from None
+        raise BadGeometry(f"this curve cannot be evaluated: {error}") from None
     if len(found) > MOST_LINES:
         raise BadGeometry(_many(sagitta))
     points = np.array(found).reshape(-1, 2)
@@ -322,7 +322,9 @@ def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
 
 
 def _many(sagitta: float) -> str:
-    return f"takes more than {MOST_LINES:,} chords that lie within {sagitta:.2g} units of the drawing of it: is it so large?"
+    return (
+        f"this curve requires more than {MOST_LINES:,} chords with a sagitta of {sagitta:.2g} drawing units: check the scale of the drawing"
+    )
 
 
 def _refuse_wide(entity: Any, kind: str, sagitta: float) -> None:
@@ -338,7 +340,7 @@ def _refuse_wide(entity: Any, kind: str, sagitta: float) -> None:
         points = np.array([*entity.control_points, *entity.fit_points], dtype=float).reshape(-1, 3)
         size = np.ptp(points, axis=0) if len(points) else np.zeros(1)
         if not np.isfinite([*entity.knots, *entity.weights]).all():
-            raise BadGeometry("a knot or a weight is not a finite number")
+            raise BadGeometry("a knot or a weight of this curve is not a finite number")
     if not np.isfinite(size).all():
         raise BadGeometry("a coordinate is not a finite number")
     if np.sqrt(np.abs(size).max() / sagitta) > MOST_LINES:  # a circle takes 2.2 times as many
@@ -352,7 +354,7 @@ def _polyline(entity: Any, kind: str, sagitta: float) -> list[Any]:
     else:
         rows = np.array([(*v.dxf.location.vec2, v.dxf.bulge) for v in entity.vertices], dtype=float).reshape(-1, 3)
     if not np.isfinite(rows).all():
-        raise BadGeometry("holds a number that is not finite")
+        raise BadGeometry("this entity contains a number that is not finite")
     if entity.is_closed and len(rows):
         rows = np.concatenate([rows, rows[:1]])
     flat = [rows[:1, :2]]
@@ -405,7 +407,7 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
         pieces = [_segments([line]) for line in lines]
         rims = [_segments([np.concatenate([points, points[:1]])]) for _, _, points in outlines]
         if sum(map(len, [*pieces, *rims])) > MOST_LINES:
-            raise BadGeometry(f"{name}: more than {MOST_LINES} pieces of lines")
+            raise BadGeometry(f"{name}: the drawing has more than {MOST_LINES} pieces of lines")
         of = np.repeat(np.arange(len(pieces) + len(rims)), [len(p) for p in (*pieces, *rims)])
         net = net_of(np.concatenate([*pieces, *rims]), tolerance, NEAR, firm=of >= len(pieces))
         closed = [points for _, _, points in outlines]
@@ -423,22 +425,22 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
             outlines.append((layer, "", face))
         loose = [(end.place, end.gap) for end in net.loose]
         notes.append(
-            f"{len(outlines) - len(closed)} blocks joined from {len(lines)} loose lines and arcs, ends within "
+            f"{len(outlines) - len(closed)} blocks were joined from {len(lines)} loose lines and arcs whose ends are within "
             f"{1e3 * tolerance:g} mm (join_tolerance)"
         )
     if found.hidden:
         told = ", ".join(f"{n} of layer '{layer}' ({why})" for (layer, why), n in sorted(found.hidden.items()))
-        notes.append(f"not read, since the drawing does not show it: {told}")
+        notes.append(f"not read, because the drawing does not display it: {told}")
     if not outlines and stones:
         near = [gap for _, gap in loose if gap is not None]
-        hint = f"; ends of lines are {1e3 * min(near):.3g} mm apart and more (see join_tolerance)" if near else ""
+        hint = f"; ends of lines are at least {1e3 * min(near):.3g} mm apart (see join_tolerance)" if near else ""
         hint += f"; {notes[-1]}" if found.hidden else ""
-        raise BadGeometry(f"{name}: no closed polyline and no lines that close an outline on the layers read{hint}")
+        raise BadGeometry(f"{name}: the layers read contain no closed polyline, and no lines that form a closed outline{hint}")
     if len(outlines) > MOST_BLOCKS:
         raise BadGeometry(f"{name}: more than {MOST_BLOCKS} blocks")
     if found.left_out:
         told = ", ".join(f"{n} of {what}" for what, n in sorted(found.left_out.items()))
-        notes.append(f"ignored, since they are no lines: {told}")
+        notes.append(f"ignored, because these entities are not lines: {told}")
     if found.other_layers:
         notes.append(f"ignored layers: {', '.join(f'{layer} ({n})' for layer, n in sorted(found.other_layers.items()))}")
     polygons, numbers = [], itertools.count(1)

@@ -62,8 +62,11 @@ class Inspection:
 
     def _told(self, flaws: list[Flaw]) -> str:
         shown = "; ".join(
-            f"{self.between(flaw)} {'are' if flaw.kind == 'gap' else 'overlap by'} {length(flaw.depth)}"
-            f"{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = {flaw.place[1]:.4g} m"
+            (
+                f"blocks {self.between(flaw)} {'are' if flaw.kind == 'gap' else 'overlap by'} "
+                f"{length(flaw.depth)}{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = "
+                f"{flaw.place[1]:.4g} m"
+            )
             for flaw in flaws[:SHOWN]
         )
         return shown + (f"; and {len(flaws) - SHOWN} more" if len(flaws) > SHOWN else "")
@@ -74,8 +77,8 @@ class Inspection:
         if len(known) < len(mends):
             worst = next(flaw for flaw, m in zip(flaws, mends, strict=True) if m is None)
             what = "overlap by" if worst.kind == "overlap" else "are apart by"
-            return f"{self.between(worst)} {what} too much for a tolerance: draw them anew"
-        return f'contact_tolerance = "{1e3 * max(known):.3g} mm" would close {"it" if len(flaws) == 1 else "all"}'
+            return f"blocks {self.between(worst)} {what} too much for a tolerance: draw them again"
+        return f'contact_tolerance = "{1e3 * max(known):.3g} mm" would close {"this gap or overlap" if len(flaws) == 1 else "all of them"}'
 
     def complaints(self) -> list[str]:
         """Why it cannot be computed: overlaps, no ground, blocks that nothing holds; empty where it can."""
@@ -84,14 +87,14 @@ class Inspection:
             found.append(f"{_count(overlaps, 'overlap')}: {self._told(overlaps)}; {self._cure(overlaps)}")
         if not (self.contacts.b < 0).any():
             hint = next((f for f in self.flaws if f.second < 0), None)
-            near = f"; the nearest, {self.between(hint)}, are {length(hint.depth)} apart" if hint else ""
-            found.append(f"no block touches the ground: give `ground` segments where the supports are{near}")
+            near = f"; the nearest blocks, {self.between(hint)}, are {length(hint.depth)} apart" if hint else ""
+            found.append(f"no block touches the ground: give `ground` segments at the supports{near}")
         elif self.loose:
             names = ", ".join(f"'{self.names[i]}'" for i in self.loose[:5])
             more = f" and {len(self.loose) - 5} more" if len(self.loose) > 5 else ""
             gaps = [f for f in self.of("open") if f.first in self.loose or f.second in self.loose]
             near = f"; {self._told(gaps)}; {self._cure(gaps)}" if gaps else ""
-            found.append(f"no joint leads from the ground to block{'s' if len(self.loose) > 1 else ''} {names}{more}{near}")
+            found.append(f"no joints connect the ground with block{'s' if len(self.loose) > 1 else ''} {names}{more}{near}")
         return found
 
     def closing(self) -> float | None:
@@ -106,23 +109,23 @@ class Inspection:
         if gaps:
             found.append(
                 f"{_count(gaps, 'gap')} wider than contact_tolerance ({1e3 * self.tolerance:g} mm) "
-                f"{'is' if len(gaps) == 1 else 'are'} taken as open, which changes the forces on the stones: {self._told(gaps)}; "
-                f"{self._cure(gaps)}"
+                f"{'is' if len(gaps) == 1 else 'are'} modelled as open, which changes the forces on the blocks: "
+                f"{self._told(gaps)}; {self._cure(gaps)}"
             )
         if self.drawing.loose:
             (x, y), gap = min(self.drawing.loose, key=lambda end: np.inf if end[1] is None else end[1])
             near = "" if gap is None else f", {length(gap)} from the next line (see join_tolerance)"
             many = len(self.drawing.loose)
             found.append(
-                f"{many} end{'s' if many > 1 else ''} of loose lines lead{'' if many > 1 else 's'} nowhere, so that these "
-                f"lines bound no block: one at x = {x:.4g} m, y = {y:.4g} m{near}"
+                f"{many} end{'s' if many > 1 else ''} of loose lines {'meet' if many > 1 else 'meets'} no other line, so these "
+                f"lines form no block. One end is at x = {x:.4g} m, y = {y:.4g} m{near}"
             )
         if self.levels:
             heights = sorted({round(y, 4) for _, y in self.levels})
             named = ", ".join(f"'{self.names[i]}'" for i, _ in self.levels[:SHOWN])
             found.append(
-                f"nothing supports the level soles of {named}{' and others' if len(self.levels) > SHOWN else ''} at "
-                f"y = {', '.join(f'{y:.4g}' for y in heights)} m: foundation_levels makes supports of them"
+                f"there is no support below the horizontal soles of {named}{' and others' if len(self.levels) > SHOWN else ''} at "
+                f"y = {', '.join(f'{y:.4g}' for y in heights)} m. To make supports of them, give foundation_levels"
             )
         return found
 
@@ -133,8 +136,8 @@ class Inspection:
         if closed:
             worst = closed[0]
             found.append(
-                f"{_count(closed, 'gap or overlap', 'gaps and overlaps')} of up to {length(worst.depth)} closed within contact_tolerance "
-                f"({1e3 * self.tolerance:g} mm), the widest between {self.between(worst)}"
+                f"{_count(closed, 'gap or overlap', 'gaps and overlaps')} of up to {length(worst.depth)} were closed within "
+                f"contact_tolerance ({1e3 * self.tolerance:g} mm). The widest is between {self.between(worst)}"
             )
         return found
 
@@ -193,8 +196,8 @@ def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarra
     if not (np.abs(points) <= FARTHEST).all():  # NaN too
         far = np.abs(points).max()
         near = np.floor((points + shift).min(axis=0)) if far <= 1e12 else None  # what is farther is no place on Earth
-        hint = "" if near is None else f"; origin = [{near[0]:.0f}, {near[1]:.0f}] would bring it near"
-        raise BadGeometry(f"block '{polygon.name}': a vertex lies farther than {FARTHEST:g} m from the origin{hint}")
+        hint = "" if near is None else f"; origin = [{near[0]:.0f}, {near[1]:.0f}] would move it near the origin"
+        raise BadGeometry(f"block '{polygon.name}': a vertex is farther than {FARTHEST:g} m from the origin{hint}")
     # Vertices this near are one; a survey's tolerance is no reason to lose the corners of its stones.
     least = min(tolerance, 1e-4)
     if len(points) > 1 and np.abs(points[0] - points[-1]).max() <= least:
@@ -202,12 +205,12 @@ def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarra
     apart = np.hypot(*(following(points) - points).T) > least if len(points) else np.array([], bool)
     points = points[apart]
     if not 3 <= len(points) <= MOST_POINTS:
-        raise BadGeometry(f"block '{polygon.name}': {len(points)} distinct vertices, expected 3 to {MOST_POINTS}")
+        raise BadGeometry(f"block '{polygon.name}' has {len(points)} distinct vertices, expected 3 to {MOST_POINTS}")
     if crossing_edges(points) is not None:
-        raise BadGeometry(f"block '{polygon.name}': its outline crosses itself")
+        raise BadGeometry(f"block '{polygon.name}': the outline crosses itself")
     area = signed_area(points)
     if abs(area) < tolerance * float(np.ptp(points, axis=0).max()):
-        raise BadGeometry(f"block '{polygon.name}': its area is practically zero ({abs(area):.3g} m^2)")
+        raise BadGeometry(f"block '{polygon.name}': the area is practically zero ({abs(area):.3g} m^2)")
     return points if area > 0.0 else points[::-1]
 
 
@@ -235,7 +238,8 @@ def _soles(outlines: list[np.ndarray], levels: np.ndarray, tolerance: float) -> 
         if not here:
             heights = sorted({round(float(0.5 * (a[1] + b[1])), 3) for _, a, b in soles})
             raise BadGeometry(
-                f"foundation_levels: no stone has a level sole at {level:g} m; there are soles at {', '.join(f'{h:g}' for h in heights[:8])} m"
+                f"foundation_levels: no block has a horizontal sole at {level:g} m; soles are at "
+                f"{', '.join(f'{h:g}' for h in heights[:8])} m"
             )
         rows += [np.concatenate([a, b]) for a, b in here]
     return np.array(rows).reshape(-1, 4)
@@ -274,7 +278,7 @@ def _loose(contacts: Contacts, count: int) -> list[int]:
 def refuse(inspection: Inspection) -> None:
     """Overlap or BadGeometry with all complaints, where there are any."""
     if found := inspection.complaints():
-        hint = " (`extrados check` lists and draws all)" if inspection.flaws else ""
+        hint = " (`extrados check` lists and draws all of them)" if inspection.flaws else ""
         raise (Overlap if inspection.of("overlap") else BadGeometry)("; ".join(found) + hint)
 
 

@@ -14,7 +14,7 @@ from extrados.schema.hdf5 import is_hdf5, refuse_elsewhere
 #: Formats that keep a mesh in several files: meshio would open whatever path the first one names
 IN_PARTS = {".xdmf", ".xmf", ".node", ".ele"}
 _INCLUDE = re.compile(rb"^\s*\*\s*include\b", re.IGNORECASE | re.MULTILINE)
-EXPECTED = "expected a complete file of gmsh, Abaqus, VTU or another format that meshio reads, with the file ending of that format"
+EXPECTED = "expected a complete file of gmsh, Abaqus, VTU or another format that meshio reads, with the file extension of this format"
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,12 @@ def read_mesh_file(file: File) -> ForeignMesh:
     """The mesh in a file; BadGeometry says why there is none."""
     name = file.path.name
     if file.path.suffix.lower() in IN_PARTS or _INCLUDE.search(file.content):
-        raise BadGeometry(f"{name}: the mesh lies in several files; save it as one")
+        raise BadGeometry(f"{name}: the mesh consists of several files; save it as one file")
     try:
         with file.copied() as copy:
             found = read_contained("extrados.model.geometry.mesh_files:parse_mesh_file", copy, ["meshio"])
     except Unreadable as error:
-        raise BadGeometry(f"{name}: is not a mesh that meshio reads: {error}; {EXPECTED}") from None
+        raise BadGeometry(f"{name}: this is not a mesh that meshio can read: {error}; {EXPECTED}") from None
     return ForeignMesh(**{**found, "cells": [Cells(*cells) for cells in found["cells"]]})
 
 
@@ -55,7 +55,7 @@ def parse_mesh_file(path: str) -> dict[str, Any]:
     try:
         import meshio
     except ImportError:
-        raise Unreadable("reading meshes needs meshio: pip install 'extrados[mesh]'") from None
+        raise Unreadable("reading meshes requires meshio. Install it by pip install 'extrados[mesh]'") from None
     if is_hdf5(path):
         refuse_elsewhere(path)
     try:
@@ -81,5 +81,5 @@ def _numbers(values: Any) -> np.ndarray:
     """An array of numbers; Unreadable where it holds anything else."""
     array = np.asarray(values)
     if array.dtype.kind not in "iufb":
-        raise Unreadable(f"holds an array of {array.dtype} where numbers stand")
+        raise Unreadable(f"the file has an array of {array.dtype} instead of numbers")
     return array

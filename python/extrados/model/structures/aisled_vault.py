@@ -137,7 +137,7 @@ def make_church(
     half = 0.5 * np.radians(embrace)
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
     if inner <= 0.0:
-        raise BadGeometry(f"nave: the thickness {thickness:g} m must lie below twice the radius {radius:g} m")
+        raise BadGeometry(f"nave: the thickness {thickness:g} m must be less than twice the radius {radius:g} m")
     centre = np.array([0.0, springing])
     builder = Builder(density, depth)
     piers = [builder.reserve("left pier"), builder.reserve("right pier")]
@@ -175,12 +175,12 @@ def _aisle(
 ) -> tuple[dict[str, list[int]], np.ndarray, int]:
     """Aisle vault, buttress and flyer: their chains, the outer face of the pier, and the buttress."""
     if aisle.span <= 0.0:
-        raise BadGeometry(f"{word} aisle: no width is left for its span ({aisle.span:.4g} m)")
+        raise BadGeometry(f"{word} aisle: no width remains for the aisle (span {aisle.span:.4g} m)")
     inner = 0.5 * aisle.span
     outer, half = inner + aisle.thickness, 0.5 * np.radians(aisle.embrace)
     centre = np.array([back + side * inner, aisle.springing])
     if aisle.springing <= 0.0:
-        raise BadGeometry(f"{word} aisle: its springing must lie above the ground")
+        raise BadGeometry(f"{word} aisle: the springing must be above the ground")
     face = back + side * aisle.span
     rear = face + side * aisle.buttress_width
     top = aisle.springing + outer * np.cos(half) if aisle.buttress_top is None else aisle.buttress_top
@@ -188,7 +188,7 @@ def _aisle(
     ends = (pier, buttress) if side > 0 else (buttress, pier)
     chain = builder.ring(f"{word} aisle ", centre, inner, outer, 2.0 * half, aisle.voussoirs, *ends)
     if pier_top <= aisle.springing + outer * np.cos(half):
-        raise BadGeometry(f"{word} pier: its top at {pier_top:.4g} m lies below the springing of the aisle")
+        raise BadGeometry(f"{word} pier: the top at {pier_top:.4g} m is below the springing of the aisle")
     outside = springing_path(f"{word} pier", -side, back, centre, inner, outer, half, pier_top)
     path = springing_path(f"{word} buttress", side, face, centre, inner, outer, half, top)
     outline = np.concatenate([[[face, 0.0], [rear, 0.0], [rear, top]], path[::-1]])
@@ -221,12 +221,12 @@ def _flyer(
     chord = foot - head
     length = float(np.hypot(*chord))
     if flyer.radius < 0.5 * length:
-        raise BadGeometry(f"{word}: the radius {flyer.radius:g} m is less than half its chord ({length:.4g} m)")
+        raise BadGeometry(f"{word}: the radius {flyer.radius:g} m is less than half of the chord ({length:.4g} m)")
     sag = np.sqrt(flyer.radius**2 - 0.25 * length**2)
     down = np.array([chord[1], -chord[0]]) / length  # to the lower side of the chord
     centre = 0.5 * (head + foot) + sag * down
     if centre[0] > 1e-9 * length or span - centre[0] > 0.97 * flyer.radius:
-        raise BadGeometry(f"{word}: with a radius of {flyer.radius:g} m its crown does not lie at or before the pier")
+        raise BadGeometry(f"{word}: with a radius of {flyer.radius:g} m, the crown is beyond the pier")
     outer = flyer.radius + flyer.thickness
 
     def at(radius: float, u: float) -> float:
@@ -234,7 +234,7 @@ def _flyer(
 
     for what, u, limit in (("pier", 0.0, pier_top), ("buttress", span, top)):
         if at(outer, u) > limit + 1e-9 * outer:
-            raise BadGeometry(f"{word}: its extrados meets the {what} at {at(outer, u):.4g} m, above the top at {limit:.4g} m")
+            raise BadGeometry(f"{word}: the extrados meets the {what} at {at(outer, u):.4g} m, above the top at {limit:.4g} m")
     start = np.arctan2(flyer.head - centre[1], -centre[0])
     end = np.arctan2(flyer.foot - centre[1], span - centre[0])
     angle = np.linspace(start, end, flyer.voussoirs + 1)[1:-1]
@@ -245,7 +245,9 @@ def _flyer(
         np.array([span, at(outer, span)]),
     ]
     if np.any(np.diff([point[0] for point in q]) <= 0.0):
-        raise BadGeometry(f"{word}: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer")
+        raise BadGeometry(
+            f"{word}: {flyer.voussoirs} voussoirs do not fit between the vertical end joints; give a larger radius or fewer voussoirs"
+        )
 
     def place(points: np.ndarray) -> np.ndarray:
         return np.column_stack([back + side * points[:, 0], points[:, 1]])
@@ -269,8 +271,8 @@ def _flyer(
 class FlyerTable(Table):
     """A flying buttress: an arc of voussoirs from the pier down to the outer buttress, end joints vertical."""
 
-    head: Length = key(about="height of its intrados at the pier", gt=0)
-    foot: Length = key(about="height of its intrados at the buttress", gt=0)
+    head: Length = key(about="height of the intrados at the pier", gt=0)
+    foot: Length = key(about="height of the intrados at the buttress", gt=0)
     thickness: Length = key(about="thickness of the flyer", gt=0)
     radius: Length = key(about="radius of its intrados", gt=0)
     voussoirs: int = key(6, "number of voussoirs of the flyer", ge=2, le=500)
@@ -279,10 +281,10 @@ class FlyerTable(Table):
 class AddedTable(Table):
     """A buttress added outside later, that props the outer one by a flyer (thesis Fig. 3-8)."""
 
-    gap: Length = key(about="clear distance from the outer face of the outer buttress", gt=0)
+    gap: Length = key(about="clear distance of the added buttress from the outer face of the outer buttress", gt=0)
     width: Length = key(about="its width", gt=0)
     top: Length = key(about="its height", gt=0)
-    flyer: FlyerTable = key(about="the flyer between them; its head lies on the outer buttress")
+    flyer: FlyerTable = key(about="flyer between the two buttresses; its upper end is on the outer buttress")
 
 
 class RightSide(Table):
@@ -295,7 +297,7 @@ class RightSide(Table):
     buttress_width: Length | None = key(None, "width of the outer buttress", gt=0)
     buttress_top: Length | None = key(None, "height of the outer buttress", gt=0)
     flyer: FlyerTable | None = key(None, "flying buttress over the aisle")
-    added: AddedTable | None = key(None, "a buttress added on this side", source="thesis Fig. 3-8")
+    added: AddedTable | None = key(None, "buttress added on this side", source="thesis Fig. 3-8")
 
 
 class AisledVault(PresetStructure):
@@ -316,29 +318,33 @@ class AisledVault(PresetStructure):
     word: ClassVar = "church section"
     kind: Literal["aisled-vault"]
     preset: Literal["vezelay-like", "colombier-like", "colombier-tall"] | None = key(
-        None, "guessed sizes of a church in the manner of thesis 3.5; other keys overrule it"
+        None, "estimated dimensions of a church in the manner of thesis 3.5; other keys overrule them"
     )
-    radius: Length = key(about="radius of the nave vault's centre line", gt=0)
+    radius: Length = key(about="radius of the centre line of the nave vault", gt=0)
     thickness: Length = key(about="thickness of the nave vault", gt=0)
     embrace: Angle = key(150.0, "angle of embrace of the nave vault", ge=20, le=180)
     voussoirs: int = key(20, "number of voussoirs of the nave vault", ge=4, le=5000)
-    springing: Length = key(about="height of the nave vault's centre above the ground", gt=0)
+    springing: Length = key(about="height of the centre of the nave vault above the ground", gt=0)
     pier_width: Length = key(about="width of the piers", gt=0)
-    pier_top: Length | None = key(None, "height of the piers; default the height of the extrados at the springing of the nave vault", gt=0)
-    aisles: bool = key(True, "false leaves the nave alone on its piers")
+    pier_top: Length | None = key(None, "height of the piers; default: the height of the extrados at the springing of the nave vault", gt=0)
+    aisles: bool = key(True, "false: only the nave on its piers, without aisles")
     aisle_thickness: Length | None = key(None, "thickness of the aisle vaults", gt=0)
     aisle_embrace: Angle = key(150.0, "angle of embrace of the aisle vaults", ge=20, le=180)
     aisle_voussoirs: int = key(14, "number of voussoirs of each aisle vault", ge=4, le=5000)
-    aisle_springing: Length | None = key(None, "height of the aisle vaults' centres above the ground", gt=0)
-    aisle_span: Length | None = key(None, "clear span of the aisles; or give half_width", gt=0)
-    half_width: Length | None = key(None, "from the axis to the outer face of the buttresses; the aisles take the rest", gt=0)
+    aisle_springing: Length | None = key(None, "height of the centres of the aisle vaults above the ground", gt=0)
+    aisle_span: Length | None = key(None, "clear span of the aisles; alternatively give half_width", gt=0)
+    half_width: Length | None = key(
+        None, "distance from the axis to the outer face of the buttresses; the aisles take the remaining width", gt=0
+    )
     buttress_width: Length | None = key(None, "width of the outer buttresses", gt=0)
-    buttress_top: Length | None = key(None, "height of the outer buttresses; default the extrados of the aisle's springing", gt=0)
+    buttress_top: Length | None = key(
+        None, "height of the outer buttresses; default: the height of the extrados at the springing of the aisle vault", gt=0
+    )
     flyer: FlyerTable | None = key(None, "flying buttresses over the aisles")
     added: AddedTable | None = key(None, "buttresses added on both sides", source="thesis Fig. 3-8")
-    right: RightSide | None = key(None, "values that differ on the right-hand side")
-    fill_level: Length | None = key(None, "top of the fill over the nave vault, above the ground", gt=0)
-    aisle_fill_level: Length | None = key(None, "top of the fill over the aisle vaults, above the ground", gt=0)
+    right: RightSide | None = key(None, "values that are different on the right-hand side")
+    fill_level: Length | None = key(None, "height of the top of the fill over the nave vault, above the ground", gt=0)
+    aisle_fill_level: Length | None = key(None, "height of the top of the fill over the aisle vaults, above the ground", gt=0)
     fill_density: Density = key(1600.0, "density of the fill", gt=0, le=30000)
     depth: Length = key(1.0, "depth out of plane", gt=0)
 
@@ -348,7 +354,7 @@ class AisledVault(PresetStructure):
             return self
         missing = [k for k in ("aisle_thickness", "aisle_springing", "buttress_width") if getattr(self, k) is None]
         if missing:
-            raise ValueError(f"{missing[0]} is missing: expected with aisles (or aisles = false)")
+            raise ValueError(f"{missing[0]} is missing: give it, or give aisles = false")
         if (self.aisle_span is None) == (self.half_width is None):
             raise ValueError("expected either aisle_span or half_width")
         return self

@@ -47,8 +47,8 @@ def make_arch(radius: float, thickness: float, embrace: float, voussoirs: int, d
     """Arch of equal voussoirs with radial joints; embrace in degrees, lengths in m, density in kg/m^3."""
     if not (radius > 0.0 and 0.0 < thickness < 2.0 * radius and 0.0 < embrace <= 360.0 and voussoirs >= 1):
         raise ValueError(
-            f"an arch needs 0 < thickness < 2 radius and 0 < embrace <= 360 deg, "
-            f"got thickness {thickness} m, radius {radius} m, embrace {embrace} deg"
+            f"an arch requires 0 < thickness < 2 radius and 0 < embrace <= 360 deg, found thickness {thickness} m, radius "
+            f"{radius} m, embrace {embrace} deg"
         )
     beta = np.radians(embrace)
     delta = beta / voussoirs
@@ -90,13 +90,24 @@ class Arch(Structure):
     radius: Length = key(about="radius of the centre line, R_A", ge=1e-3, le=1e4)
     thickness: Length = key(about="thickness of the ring, t_A", gt=0, le=1e4)
     embrace: Angle = key(about="angle of embrace, beta_A, from springing to springing", ge=20, le=270)
-    voussoirs: int = key(about="number of voussoirs, n_A; they set where hinges can form", ge=4, le=5000)
-    thickness_factor: float = key(1.0, "effective over real thickness; 0.8 for worn corners", source="thesis 5.3.3", gt=0, le=1)
+    voussoirs: int = key(about="number of voussoirs, n_A; it determines the joints at which hinges can form", ge=4, le=5000)
+    thickness_factor: float = key(1.0, "ratio of effective to real thickness; 0.8 for worn corners", source="thesis 5.3.3", gt=0, le=1)
     depth: Length = key(1.0, "depth out of plane", gt=0)
     skew: Angle = key(
-        0.0, "in space: angle in plan of its faces to the square section; the coursing joints stay along the springings", gt=-75, lt=75
+        0.0,
+        (
+            "for an arch in space: skew angle in plan between its faces and the square section; the coursing joints remain "
+            "parallel to the springings"
+        ),
+        gt=-75,
+        lt=75,
     )
-    stones_across: int = key(1, "in space: stones of a course across the depth, set off by half in every other course", ge=1, le=200)
+    stones_across: int = key(
+        1,
+        ("for an arch in space: number of blocks in a course across the depth, offset by half a block in every other course"),
+        ge=1,
+        le=200,
+    )
 
     @model_validator(mode="after")
     def _plausible(self) -> "Arch":
@@ -106,7 +117,7 @@ class Arch(Structure):
 
     def assembly(self, density: float, folder: Path) -> ArchAssembly:
         if self.skew:
-            raise NoView("a skew arch is no plane section; `tilt` and `dem` analyse its solids", ("structure", "skew"))
+            raise NoView("a skew arch has no plane section; its solids can be analysed by `tilt` and `dem`", ("structure", "skew"))
         return self.section(density)
 
     def section(self, density: float) -> ArchAssembly:

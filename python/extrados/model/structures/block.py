@@ -93,9 +93,7 @@ def make_block(
     if width is not None and height is not None:
         mass = density * width * height * depth
         if not mass > 0.0:
-            raise NoView(
-                "the block has no weight, by which blocks stand, rock and overturn: give a density above zero", ("material", "density")
-            )
+            raise NoView("the block has no weight, which the analysis requires: give a density above zero", ("material", "density"))
         inertia = mass * (width**2 + height**2) / 12.0
         centre_height, toe_right, toe_left = 0.5 * height, 0.5 * width, 0.5 * width
         inertia += head_mass * mass / (mass + head_mass) * (0.5 * height) ** 2
@@ -103,9 +101,9 @@ def make_block(
         mass += head_mass
     toe_left = toe_right if toe_left is None else toe_left
     if mass is None or inertia is None or centre_height is None or toe_right is None or toe_left is None:
-        raise ValueError("a block is given by width and height, or by mass, inertia, centre_height and toe_right")
+        raise ValueError("a block requires either width and height, or mass, inertia, centre_height and toe_right")
     if not min(mass, inertia, centre_height, toe_right, toe_left) > 0.0:
-        raise ValueError("mass, inertia, height of the centre and toes of a block must be above zero")
+        raise ValueError("mass, inertia, height of the centre of mass and toes of a block must be above zero")
     top = 2.0 * centre_height if top is None else top
     c, s = np.cos(slope), np.sin(slope)
     turn = np.array([[c, s], [-s, c]])
@@ -141,31 +139,33 @@ class Block(Structure):
     kind: Literal["block"]
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"width": "1.0", "height": "4.0"}
-    width: Length | None = key(None, "full width B of a rectangle", gt=0)
-    height: Length | None = key(None, "full height H of a rectangle", gt=0)
+    width: Length | None = key(None, "full width B of a rectangular block", gt=0)
+    height: Length | None = key(None, "full height H of a rectangular block", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
-    mass: Mass | None = key(None, "mass of a body that is no rectangle", gt=0)
-    inertia: Inertia | None = key(None, "its moment of inertia about the centre of mass", gt=0)
-    centre_height: Length | None = key(None, "height of its centre of mass above the toes", gt=0)
+    mass: Mass | None = key(None, "mass of a body that is not a rectangle", gt=0)
+    inertia: Inertia | None = key(None, "moment of inertia of the body about its centre of mass", gt=0)
+    centre_height: Length | None = key(None, "height of the centre of mass of the body above its toes", gt=0)
     toe_right: Length | None = key(None, "horizontal distance of the right toe from the centre of mass", gt=0)
-    toe_left: Length | None = key(None, "the same of the left toe; default as the right one", gt=0)
+    toe_left: Length | None = key(None, "horizontal distance of the left toe from the centre of mass; default: that of the right toe", gt=0)
     head_mass: Mass = key(
-        0.0, "of a pier with a free head: mass that moves with the middle of its head and rotates freely on it; of a rectangle", ge=0
+        0.0, "for a rectangular pier with a free head: mass that moves with the middle of the head and rotates freely on it", ge=0
     )
-    base_slope: Angle = key(0.0, "slope of the ground below the block, up to the right", gt=-60, lt=60)
+    base_slope: Angle = key(0.0, "slope of the ground below the block; positive if it rises to the right", gt=-60, lt=60)
 
     @model_validator(mode="after")
     def _complete(self) -> "Block":
         body = [name for name in _BODY if getattr(self, name) is not None]
         if self.width is not None or self.height is not None:
             if body:
-                raise ValueError(f"width and height describe a rectangle, {', '.join(body)} another body: give one of the two")
+                raise ValueError(
+                    f"width and height describe a rectangle, but {', '.join(body)} describe another body: give only one of the two"
+                )
             if self.width is None or self.height is None:
-                raise ValueError("a rectangle needs width and height")
+                raise ValueError("a rectangle requires width and height")
         elif missing := [name for name in _BODY[:-1] if getattr(self, name) is None]:
-            raise ValueError(f"give width and height, or {', '.join(_BODY[:-1])} ({', '.join(missing)} missing)")
+            raise ValueError(f"give either width and height, or {', '.join(_BODY[:-1])} ({', '.join(missing)} missing)")
         if self.head_mass and self.width is None:
-            raise ValueError("head_mass is of a rectangle of width and height; of another body count it in its mass")
+            raise ValueError("head_mass belongs to a rectangle with width and height; for another body, include it in mass")
         return self
 
     def assembly(self, density: float, folder: Path) -> BlockAssembly:

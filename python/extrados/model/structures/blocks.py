@@ -84,7 +84,7 @@ def _groups(inspection: Inspection) -> dict[str, list[int]]:
     for layer, lines in inspection.drawing.marks.items():
         marked = _marked(middle, lines, reach)
         if not marked:
-            raise BadGeometry(f"the lines of layer '{layer}' mark no joint: none passes the middle of one within 10 mm")
+            raise BadGeometry(f"the lines of layer '{layer}' mark no joint, because none passes within 10 mm of the middle of a joint")
         found[layer] = marked
     return found
 
@@ -105,26 +105,28 @@ def _marked(places: np.ndarray, lines: np.ndarray, reach: float) -> list[int]:
 class BlockTable(Table):
     """One block of a free assembly."""
 
-    name: str | None = key(None, "name of the block in results and complaints", max_length=80)
-    points: list[list[Length]] = key(about="vertices [x, y], either way round", min_length=3, max_length=2000)
-    density: Density | None = key(None, "density, if it differs from the others", gt=0, le=30000)
+    name: str | None = key(None, "name of the block in results and messages", max_length=80)
+    points: list[list[Length]] = key(about="vertices [x, y], in either sense of rotation", min_length=3, max_length=2000)
+    density: Density | None = key(None, "density of the block, if it differs from [material]", gt=0, le=30000)
 
 
 class LayerTable(Table):
     """A layer of the drawing that is more than plain stones of [material]."""
 
-    name: str = key(about="name of the layer, whatever its case", max_length=255)
+    name: str = key(about="name of the layer, in upper or lower case", max_length=255)
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
-        "stones; lines of the ground, as those of GROUND are; lines drawn along joints, which [[joints.types]] may then name by "
-        "this layer; or nothing to read",
+        (
+            "meaning of the layer: blocks; lines of the ground, like the layer GROUND; lines along joints, which "
+            "[[joints.types]] can then name by this layer; or a layer that is not read"
+        ),
     )
-    material: str | None = key(None, "a name of [materials], for the stones of this layer")
+    material: str | None = key(None, "name in [materials] of the material of the blocks on this layer")
 
     @model_validator(mode="after")
     def _stones(self) -> "LayerTable":
         if self.material is not None and self.role != "stones":
-            raise ValueError(f"material: a layer of role '{self.role}' has none; expected role = \"stones\"")
+            raise ValueError(f"material: a layer with role '{self.role}' has no material; expected role = \"stones\"")
         return self
 
 
@@ -135,66 +137,75 @@ class Blocks(Structure):
     word: ClassVar = "assembly of blocks"
     kind: Literal["blocks"]
     file: str | None = key(
-        None, "JSON, COMPAS JSON or DXF file with the blocks, or solids as OBJ, STL or COMPAS JSON, beside the deck", max_length=500
+        None,
+        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; or solids as OBJ, STL or COMPAS JSON",
+        max_length=500,
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
-        None, "unit of a file that does not say (DXF without $INSUNITS, COMPAS, OBJ, STL)"
+        None, "unit of a file that gives none (DXF without $INSUNITS, COMPAS, OBJ, STL)"
     )
     up: Literal["y", "z"] | None = key(
-        None, "axis of a file of solids that points up; default z. With y the x axis stays and the file's z becomes -y"
+        None, ("axis that points up in a file of solids; default z. With y, the x axis remains and the z axis of the file becomes -y")
     )
-    layers: list[str] | None = key(None, "layers of the drawing to read as stones; default all", max_length=200)
-    layer: list[LayerTable] = key([], "layers of the drawing with a material or another role, [[structure.layer]]", max_length=200)
-    join_tolerance: Length = key(1e-3, "ends of loose lines and arcs of a drawing nearer than this are one point", gt=0, le=0.1)
+    layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
+    layer: list[LayerTable] = key([], "layers of the drawing with a material or another meaning, [[structure.layer]]", max_length=200)
+    join_tolerance: Length = key(1e-3, "distance below which ends of loose lines and arcs of a drawing count as one point", gt=0, le=0.1)
     origin: Annotated[list[Length], Field(min_length=2, max_length=2)] | Literal["lower-left"] | None = key(
-        None, '[x, y] of the file that becomes 0, 0, or "lower-left" of all blocks: for georeferenced surveys'
+        None, '[x, y] of the file that becomes 0, 0, or "lower-left" of all blocks; for georeferenced surveys'
     )
-    block: list[BlockTable] | None = key(None, "the blocks, if no file is given", max_length=20000)
+    block: list[BlockTable] | None = key(None, "blocks of the structure, if no file is given", max_length=20000)
     ground: list[list[Length]] | None = key(
         None,
-        "segments [x1, y1, x2, y2] that support the structure, in the coordinates of the blocks; default the ground of the "
-        "file, or else the lowest level",
+        (
+            "segments [x1, y1, x2, y2] that support the structure, in the coordinates of the blocks; default: the ground of "
+            "the file, otherwise the lowest level"
+        ),
         max_length=2000,
     )
     foundation_levels: list[Length] | None = key(
         None,
-        "heights, in the coordinates of the blocks, at which every level sole without a stone below is a support: "
-        "foundations at different levels",
+        (
+            "heights, in the coordinates of the blocks, at which horizontal soles without a block below are supports "
+            "(foundations at different levels)"
+        ),
         min_length=1,
         max_length=100,
     )
     contact_tolerance: Length = key(
         1e-4,
-        "faces nearer than this touch, overlaps less deep are let pass, contacts of solids that are narrower carry no force; "
-        "`check` says which tolerance closes which gap; the default of solids is at most a ten-thousandth of their size",
+        (
+            "faces closer than this value touch each other; smaller overlaps are ignored; narrower contacts of solids carry "
+            "no force. `check` reports the tolerance that would close each gap. The default for solids is at most 1/10000 of "
+            "their size"
+        ),
         gt=0,
         le=0.1,
     )
-    depth: Length | None = key(None, "depth out of plane; default that of the file, or 1 m", gt=0)
-    fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level over the highest block")
-    surfacing: Surfacing | None = key(None, "road or ballast on the fill")
-    spandrels: Spandrels | None = key(None, "spandrel walls on the edges of the arches; their weight counts")
+    depth: Length | None = key(None, "depth out of plane; default: that of the file, otherwise 1 m", gt=0)
+    fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level above the highest block")
+    surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
+    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, considered by their weight")
 
     @model_validator(mode="after")
     def _source(self) -> "Blocks":
         if (self.file is None) == (self.block is None):
-            raise ValueError("expected either a file or [[structure.block]] tables")
+            raise ValueError("expected either a file, or [[structure.block]] tables")
         for row in self.ground or []:
             if len(row) != 4:
                 raise ValueError(f"ground: a row has {len(row)} numbers, expected 4")
         for i, block in enumerate(self.block or []):
             if any(len(point) != 2 for point in block.points):
-                raise ValueError(f"block {i + 1}: a vertex is not [x, y]")
+                raise ValueError(f"block {i + 1}: a vertex does not have the form [x, y]")
         refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         names = [layer.name.upper() for layer in self.layer]
         if len(set(names)) < len(names):
-            raise ValueError("layer: one layer has two tables")
+            raise ValueError("layer: two tables were given for one layer")
         return self
 
     def _drawing(self, folder: Path) -> tuple[Drawing, float | None]:
         """What the file or the deck says, and the depth where the file has one."""
         if self.up is not None:
-            raise NoView("up is of a file of solids, which are no plane section", ("structure", "up"))
+            raise NoView("up belongs to a file of solids, which has no plane section", ("structure", "up"))
         if self.file is None:
             polygons = [Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density) for i, b in enumerate(self.block or [])]
             return Drawing(polygons), None
@@ -207,12 +218,12 @@ class Blocks(Structure):
             return drawing, None
         if sort in SOLID:
             raise NoView(
-                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` analyse them in space", ("structure", "file")
+                f"{self.file} contains solids, which have no plane section; `tilt` and `dem` analyse them in space", ("structure", "file")
             )
         if sort != ".json":
             raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")
         if self.layers is not None or self.layer:
-            raise BadGeometry(f"{self.file}: has no layers; they belong to drawings (.dxf)")
+            raise BadGeometry(f"{self.file}: this file has no layers; layers belong to drawings (.dxf)")
         if is_compas(value := parsed(file)):
             return read_compas(value, file.path.name, self.unit)
         return read_json(file), None

@@ -63,7 +63,7 @@ def make_brickwork(
     are too many or a lintel has no place.
     """
     if length * height > MOST_UNITS * bond.length * bond.height * (1.0 + 1e-9):
-        raise BadGeometry(f"{length * height / bond.length / bond.height:.0f} units are too many, expected at most {MOST_UNITS}")
+        raise BadGeometry(f"the wall would have {length * height / bond.length / bond.height:.0f} units; at most {MOST_UNITS} are allowed")
     small = min(bond.length, bond.height)
     holes = openings_within(length, height, openings, small)
     beams = lintels_of(bond, length, height, holes) if bond.lintels else {}
@@ -76,11 +76,11 @@ def make_brickwork(
     for i, box in beams.items():
         wall.add(box, f"lintel {i + 1}", -1, i + 1)
     if not wall.boxes:
-        raise BadGeometry("the openings leave nothing of the wall")
+        raise BadGeometry("the openings occupy the whole wall")
     joints = _joints(wall, small)
     if all(b != GROUND for *_, b in joints):
         raise BadGeometry(
-            "the openings take the full width at ground level: no masonry is left there. Make the openings narrower or raise them"
+            "at ground level the openings occupy the full width, so no masonry remains there. Make the openings narrower, or raise them"
         )
     made = stones_and_joints([outline(box) for box in wall.boxes], wall.names, joints, density, depth)
     heads = [j for j, (name, *_) in enumerate(joints) if name.startswith("head ")]
@@ -104,7 +104,7 @@ def lintels_of(bond: Bond, length: float, height: float, holes: list[Box]) -> di
             continue
         over = [o for k, o in enumerate(holes) if k != i and o[0] < right and o[1] > left]
         if any(o[2] <= head < o[3] for o in over):
-            raise BadGeometry(f"opening {i + 1} runs into another one, there is no place for its lintel: lintels = false")
+            raise BadGeometry(f"opening {i + 1} overlaps another opening, so a lintel has no place: give lintels = false")
         top = min([head + tall, height, *(o[2] for o in over if o[2] > head)])
         low, high = max(0.0, left - bearing), min(length, right + bearing)
         for k, (a, b, c, d) in enumerate(holes):
@@ -186,30 +186,35 @@ def _joints(wall: _Units, size: float) -> list[tuple[str, np.ndarray, np.ndarray
     return joints
 
 
-class Laid(Table):
-    """Keys of walls that are laid in running bond."""
+class Bonded(Table):
+    """Keys of walls in running bond, in a plane or around corners."""
 
-    openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
-    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course; courses alternate")
-    lintels: bool = key(True, "a stone over each opening; without it the units above rest on the units beside the opening")
-    lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
-    lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default half a unit", gt=0)
-    least_unit: float = key(0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5)
+    begins: str = "whole"
+    lintels: bool = True
+    lintel_height: float | None = None
+    lintel_bearing: float | None = None
+    least_unit: float = 0.25
 
     def bond(self, unit_length: float, unit_height: float) -> Bond:
         """How this wall is laid, of a unit [m]."""
         return Bond(unit_length, unit_height, self.begins, self.lintels, self.lintel_height, self.lintel_bearing, self.least_unit)
 
+
+class Laid(Bonded):
+    """Keys of plane walls that are laid in running bond."""
+
+    openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
+
     @property
     def holes(self) -> list[Box]:
         """The openings [m]."""
-        return [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in self.openings]
+        return [o.box for o in self.openings]
 
     def check_openings(self, length: float, height: float) -> None:
         """ValueError names an opening that lies beside the wall [m]."""
         for o in self.openings:
-            if o.x[1] <= 0 or o.x[0] >= length or o.y[1] <= 0 or o.y[0] >= height:
-                raise ValueError(f"the opening x {o.x}, y {o.y} lies outside the wall")
+            if o.is_outside(length, height):
+                raise ValueError(f"the opening x {o.x}, y {o.y} is outside the wall")
 
 
 class Brickwork(Laid, Structure):
@@ -228,7 +233,7 @@ class Brickwork(Laid, Structure):
     @model_validator(mode="after")
     def _sensible(self) -> "Brickwork":
         if self.units * self.courses > MOST_UNITS:
-            raise ValueError(f"{self.units * self.courses} units are too many, expected at most {MOST_UNITS}")
+            raise ValueError(f"the wall would have {self.units * self.courses} units; at most {MOST_UNITS} are allowed")
         self.check_openings(*self.size)
         return self
 

@@ -28,23 +28,28 @@ class Span(Table):
     """One arch of a bridge, by its intrados."""
 
     shape: Literal["segmental", "three-centred", "pointed", "elliptical", "parabolic", "surveyed"] = key(
-        "segmental", "curve of the intrados; a segmental one with a rise of half the span is a semicircle; surveyed: `intrados`"
+        "segmental",
+        ("shape of the intrados; a segmental arch with a rise of half the span is a semicircle; for a surveyed shape, give `intrados`"),
     )
     intrados: list[list[Length]] | None = key(
         None,
-        "measured points [x, y] of the intrados from springing to springing, both at y = 0, for shape surveyed; span and rise "
-        "are then those of the points",
+        (
+            'measured points [x, y] of the intrados from springing to springing (both at y = 0), for shape = "surveyed"; the '
+            "points then give span and rise"
+        ),
         min_length=4,
         max_length=2000,
     )
     span: Length = key(about="clear span", gt=0)
     rise: Length = key(about="rise of the intrados", gt=0)
-    thickness: Length = key(about="thickness of the arch at the crown, all rings together", gt=0)
-    springing_thickness: Length | None = key(None, "thickness at the springings, linear along the intrados; default as at the crown", gt=0)
-    haunch_radius: Length | None = key(
-        None, "radius of the side arcs of a three-centred arch; default such that they subtend 60 degrees", gt=0
+    thickness: Length = key(about="thickness of the arch at the crown, including all rings", gt=0)
+    springing_thickness: Length | None = key(
+        None, "thickness at the springings, with linear variation along the intrados; default: as at the crown", gt=0
     )
-    rings: int = key(1, "number of rings of equal thickness, which can slide on each other and part", ge=1, le=10)
+    haunch_radius: Length | None = key(
+        None, "radius of the side arcs of a three-centred arch; default: the radius with which they subtend 60 degrees", gt=0
+    )
+    rings: int = key(1, "number of rings of equal thickness, which can slide on each other and separate", ge=1, le=10)
     voussoirs: int = key(40, "number of voussoirs of each ring; even for a pointed arch", ge=4, le=2000)
 
     @model_validator(mode="before")
@@ -54,7 +59,7 @@ class Span(Table):
         if not isinstance(given, dict) or given.get("shape") != "surveyed" or not isinstance(given.get("intrados"), list):
             return given
         if twice := [name for name in ("span", "rise") if name in given]:
-            raise ValueError(f"{twice[0]}: the points of intrados give it; leave it out")
+            raise ValueError(f"{twice[0]}: the points of intrados determine this value; remove it")
         points = [point for point in given["intrados"] if isinstance(point, list) and len(point) == 2]
         if len(points) < len(given["intrados"]) or not all(isinstance(v, int | float) for point in points for v in point):
             raise ValueError("intrados: expected points [x, y] in metres")
@@ -66,23 +71,23 @@ class Span(Table):
     @model_validator(mode="after")
     def _surveyed(self) -> "Span":
         if (self.shape == "surveyed") != (self.intrados is not None):
-            raise ValueError("intrados: belongs to the shape surveyed, which needs it")
+            raise ValueError('intrados belongs to shape = "surveyed", which requires it')
         for before, after in itertools.pairwise(self.intrados or []):
             if after[0] <= before[0]:
-                raise ValueError(f"intrados: expected x that grows from point to point, found {before[0]:g} before {after[0]:g}")
+                raise ValueError(f"intrados: x must increase from point to point, found {before[0]:g} before {after[0]:g}")
         if self.intrados and (abs(self.intrados[0][1]) > LEVEL or abs(self.intrados[-1][1]) > LEVEL):
-            raise ValueError("intrados: expected both springings at y = 0: all springings of a bridge are at one level")
+            raise ValueError("intrados: both springings must be at y = 0, because all springings of a bridge are at one level")
         return self
 
     @model_validator(mode="after")
     def _shaped(self) -> "Span":
         half = 0.5 * self.span
         if self.shape in ("segmental", "three-centred") and self.rise > half * (1.0 + 1e-12):
-            raise ValueError(f"rise: a {self.shape} arch rises by at most half its span, {half:g} m")
+            raise ValueError(f"rise: the rise of a {self.shape} arch is at most half of the span, {half:g} m")
         if self.shape == "pointed" and self.rise < half:
-            raise ValueError(f"rise: a pointed arch rises by at least half its span, {half:g} m")
+            raise ValueError(f"rise: the rise of a pointed arch is at least half of the span, {half:g} m")
         if self.shape == "pointed" and self.voussoirs % 2:
-            raise ValueError("voussoirs: expected an even number for a pointed arch")
+            raise ValueError("voussoirs: a pointed arch requires an even number")
         if self.haunch_radius is not None and self.shape != "three-centred":
             raise ValueError("haunch_radius belongs to a three-centred arch")
         return self
@@ -92,22 +97,22 @@ class Pier(Table):
     """A pier between two spans, from the springings down to the ground."""
 
     width: Length = key(about="width at the springings", gt=0)
-    height: Length = key(about="height of the springings above its base", gt=0)
-    base_width: Length | None = key(None, "width at the base; default as at the springings", gt=0)
-    courses: int = key(1, "number of stones the shaft is cut into by level joints", ge=1, le=200)
+    height: Length = key(about="height of the springings of the pier above its base", gt=0)
+    base_width: Length | None = key(None, "width at the base; default: as at the springings", gt=0)
+    courses: int = key(1, "number of blocks into which level joints divide the pier", ge=1, le=200)
 
 
 class Abutment(Table):
     """An abutment that is a body of its own on the ground."""
 
-    width: Length = key(about="width, from the springing of the intrados to its back", gt=0)
-    height: Length = key(about="height of the springing above its base", gt=0)
+    width: Length = key(about="width of the abutment, from the springing of the intrados to its back face", gt=0)
+    height: Length = key(about="height of the springing of the abutment above its base", gt=0)
 
 
 class Backing(Table):
     """Masonry over the haunches, one body over each pier and at each end."""
 
-    height: Length = key(about="height of its level top above the springings", gt=0)
+    height: Length = key(about="height of the horizontal top of the backing above the springings", gt=0)
     density: Density | None = key(None, "density; default that of [material]", gt=0, le=30000)
 
 
@@ -177,13 +182,15 @@ def _three_centred(a: float, b: float, side: float | None, share: np.ndarray) ->
         # R - r = (a - r) / c and R - b = (a - r) s / c
         side = (b - a * (1.0 - s) / c) / (1.0 - (1.0 - s) / c)
     if not 0.0 < side <= b:
-        raise BadGeometry(f"three-centred arch: side arcs of radius {side:.4g} m do not fit a rise of {b:g} m over half a span of {a:g} m")
+        raise BadGeometry(
+            f"three-centred arch: side arcs with a radius of {side:.4g} m are not possible for a rise of {b:g} m and a half span of {a:g} m"
+        )
     if abs(side - a) < 1e-12 * a:  # the semicircle
         turn = 0.5 * np.pi * (2.0 * share - 1.0)
         normal = np.column_stack([np.sin(turn), np.cos(turn)])
         return a * normal, normal
     if b - side < 1e-9 * b:
-        raise BadGeometry("three-centred arch: haunch_radius must stay below the rise")
+        raise BadGeometry("three-centred arch: haunch_radius must be less than the rise")
     radius = ((a - side) ** 2 + b * b - side * side) / (2.0 * (b - side))
     angle = float(np.arctan2(radius - b, a - side))  # that the side arcs subtend
     length = side * angle
@@ -272,7 +279,7 @@ class _Bridge:
         back = foot[0] + side * table.width
         if side * (back - head[0]) <= 0.0:
             raise BadGeometry(
-                f"{name}: its width of {table.width:g} m ends before the extrados of the springing, "
+                f"{name}: with a width of {table.width:g} m, the abutment ends before the extrados of the springing, which is "
                 f"{side * (head[0] - foot[0]):.4g} m behind the intrados"
             )
         outline = np.array([[back, -table.height], [foot[0], -table.height], foot, head, [back, head[1]]])
@@ -284,7 +291,7 @@ class _Bridge:
         """Shaft and skewbacks between the last joint line of one span and the first of the next."""
         if left[-1, 0] > right[-1, 0] + 1e-9:
             need = pier.width + left[-1, 0] - right[-1, 0]
-            raise BadGeometry(f"{name}: the arches meet in it; it must be at least {need:.4g} m wide at the springings")
+            raise BadGeometry(f"{name}: the arches overlap in this pier; its width at the springings must be at least {need:.4g} m")
         base = pier.width if pier.base_width is None else pier.base_width
         middle = 0.5 * (left[0, 0] + right[0, 0])
         levels = np.linspace(-pier.height, 0.0, pier.courses + 1)
@@ -317,8 +324,8 @@ class _Bridge:
             heel = line[-1 if from_crown else 0]
             if not heel[1] + 1e-6 < level <= top:
                 raise BadGeometry(
-                    f"backing: its top at {level:g} m must lie between the extrados at the springing ({heel[1]:.4g} m) "
-                    f"and at the crown ({top:.4g} m)"
+                    f"backing: the top at {level:g} m must lie between the extrados at the springing ({heel[1]:.4g} m) and at the "
+                    f"crown ({top:.4g} m)"
                 )
             points, voussoirs = _haunch(line, level, from_crown)
             outline += list(points)
@@ -408,22 +415,22 @@ class Bridge(Structure):
     kind: Literal["bridge"]
     crossed: ClassVar[Crossed] = "top"
     starter_analysis: ClassVar = "moving-load"
-    spans: list[Span] = key(about="the arches from left to right", min_length=1, max_length=50)
-    piers: list[Pier] = key([], "the piers from left to right; one alone applies to all", max_length=49)
-    abutments: Abutment | None = key(None, "abutments as bodies on the ground; default springings that do not move")
+    spans: list[Span] = key(about="arches from left to right", min_length=1, max_length=50)
+    piers: list[Pier] = key([], "piers from left to right; a single pier applies to all", max_length=49)
+    abutments: Abutment | None = key(None, "abutments as bodies on the ground; default: springings that do not move")
     backing: Backing | None = key(None, "masonry over the haunches")
     fill: Fill | None = key(None, "soil over the arches")
-    surfacing: Surfacing | None = key(None, "road or ballast on the fill")
-    spandrels: Spandrels | None = key(None, "spandrel walls on the edges of the arches; their weight counts")
-    depth: Length = key(1.0, "width across that acts together, such as between the spandrel walls", gt=0)
+    surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
+    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, considered by their weight")
+    depth: Length = key(1.0, "width across the bridge that acts together, for instance between the spandrel walls", gt=0)
 
     @model_validator(mode="after")
     def _piers(self) -> "Bridge":
         need = len(self.spans) - 1
         if len(self.piers) != need and not (need > 1 and len(self.piers) == 1):
-            wanted = "1 pier" if need == 1 else f"{need} piers, or one for all"
-            spans = "1 span needs no piers" if need == 0 else f"{need + 1} spans need {wanted}"
-            raise ValueError(f"piers: {spans}; there {'is 1' if len(self.piers) == 1 else f'are {len(self.piers)}'}")
+            wanted = "1 pier" if need == 1 else f"{need} piers, or one pier for all"
+            spans = "1 span needs no piers" if need == 0 else f"{need + 1} spans require {wanted}"
+            raise ValueError(f"piers: {spans}; found {'1' if len(self.piers) == 1 else f'{len(self.piers)}'}")
         refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         return self
 

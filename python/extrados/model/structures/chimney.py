@@ -52,17 +52,17 @@ class Chimney(Spatial):
     starter: ClassVar = {"height": "12.0", "width": "2.0", "thickness": "0.4", "rings": "6"}
     height: Length = key(about="height", gt=0, le=1e4)
     width: Length = key(about="outer diameter at the base, over the corners of the polygon", gt=0, le=1e4)
-    top_width: Length | None = key(None, "outer diameter at the top; default as at the base", gt=0, le=1e4)
+    top_width: Length | None = key(None, "outer diameter at the top; default: as at the base", gt=0, le=1e4)
     thickness: Length = key(about="thickness of the wall at the base", gt=0)
-    top_thickness: Length | None = key(None, "thickness of the wall at the top; default as at the base", gt=0)
-    rings: int = key(about="rings from the ground to the top", ge=1, le=400)
+    top_thickness: Length | None = key(None, "thickness of the wall at the top; default: as at the base", gt=0)
+    rings: int = key(about="number of rings from the ground to the top", ge=1, le=400)
     blocks: int = key(
         1,
-        "blocks in a ring, those of every other ring set off by half a block; 1: each ring is one body, as where bands tie it",
+        ("number of blocks in a ring; every other ring is offset by half a block. 1: each ring is one body, for instance if bands tie it"),
         ge=1,
         le=100,
     )
-    facets: int = key(16, "flat facets around, a multiple of twice the blocks", ge=3, le=200)
+    facets: int = key(16, "number of flat facets of the circumference, a multiple of twice the number of blocks", ge=3, le=200)
 
     @property
     def widths(self) -> tuple[float, float]:
@@ -79,14 +79,15 @@ class Chimney(Spatial):
         for place, width, thickness in zip(("base", "top"), self.widths, self.thicknesses, strict=True):
             if thickness >= 0.5 * width:
                 raise ValueError(
-                    f"thickness {thickness:g} m at the {place} leaves no flue in a width of {width:g} m: give less than half of it"
+                    f"thickness {thickness:g} m at the {place} leaves no space for a flue in a width of {width:g} m: give a thickness "
+                    "below half of the width"
                 )
         if self.blocks == 2:
-            raise ValueError("blocks: 2 half rings do not interlock; expected 1, or 3 and more")
+            raise ValueError("blocks: rings of 2 halves do not interlock; expected 1, or at least 3")
         if self.blocks > 1 and self.facets % (2 * self.blocks):
-            raise ValueError(f"facets: {self.facets} is no multiple of twice the {self.blocks} blocks of a ring")
+            raise ValueError(f"facets: {self.facets} is not a multiple of twice the {self.blocks} blocks of a ring")
         if self.rings * self.blocks > MOST_SOLIDS:
-            raise ValueError(f"rings: {self.rings * self.blocks} blocks are too many, expected at most {MOST_SOLIDS}")
+            raise ValueError(f"rings: the chimney would have {self.rings * self.blocks} blocks; at most {MOST_SOLIDS} are allowed")
         return self
 
     def solids(self, density: float) -> SolidAssembly:

@@ -103,29 +103,29 @@ class CrossVault(Spatial):
     radius: Length = key(about="radius of the centre line of the barrels", gt=0, le=1e4)
     thickness: Length = key(about="thickness of the webs", gt=0, le=1e4)
     embrace: Angle = key(about="angle of embrace of the barrels, from springing to springing", ge=20, le=180)
-    voussoirs: int = key(about="courses of a barrel from springing to springing, an even number", ge=4, le=400)
+    voussoirs: int = key(about="number of courses of a barrel from springing to springing; an even number", ge=4, le=400)
     edge: Length | None = key(
-        None, "how far the webs reach beyond the corner of the extrados at the springing; default the thickness", ge=0
+        None, "distance by which the webs extend beyond the corner of the extrados at the springing; default: the thickness", ge=0
     )
-    stone_length: Length | None = key(None, "length of a stone along the barrel; default whole courses, mitred along the groins", gt=0)
+    stone_length: Length | None = key(None, "length of a block along the barrel; default: whole courses, mitred along the groins", gt=0)
     springers: int = key(
-        1, "courses from the springing that are one stone in each corner; with 0 each web has its own support", ge=0, le=100
+        1, "number of courses from the springing that form one block in each corner; with 0, each web has its own support", ge=0, le=100
     )
-    oblong: float = key(1.0, "length over width of the bay; the barrel across it is an ellipse then", gt=0.2, lt=5)
-    thickness_factor: float = key(1.0, "effective over real thickness; 0.8 for worn corners", gt=0, le=1)
+    oblong: float = key(1.0, "ratio of length to width of the bay; if it is not 1, the barrel across it is an ellipse", gt=0.2, lt=5)
+    thickness_factor: float = key(1.0, "ratio of effective to real thickness; 0.8 for worn corners", gt=0, le=1)
 
     @model_validator(mode="after")
     def _plausible(self) -> "CrossVault":
         if self.thickness >= self.radius:
             raise ValueError(f"thickness {self.thickness:g} m is not below the radius {self.radius:g} m")
         if self.voussoirs % 2:
-            raise ValueError(f"voussoirs: {self.voussoirs} is odd; expected an even number, so that the groins meet in a joint")
+            raise ValueError(f"voussoirs: {self.voussoirs} is odd; expected an even number, so that the groins meet at a joint")
         if self.springers >= self.voussoirs // 2:
-            raise ValueError(f"springers: {self.springers} courses reach the crown; expected less than {self.voussoirs // 2}")
+            raise ValueError(f"springers: {self.springers} courses reach the crown; expected fewer than {self.voussoirs // 2}")
         if self.stone_length is not None:
             count = 8 * self.voussoirs // 2 * 2.0 * self.radius / self.stone_length
             if count > MOST_SOLIDS:
-                raise ValueError(f"stone_length: about {count:.0f} stones are too many, expected at most {MOST_SOLIDS}")
+                raise ValueError(f"stone_length: the vault would have about {count:.0f} blocks; at most {MOST_SOLIDS} are allowed")
         return self
 
     def solids(self, density: float) -> SolidAssembly:

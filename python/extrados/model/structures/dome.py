@@ -70,22 +70,26 @@ class Dome(Spatial):
     radius: Length = key(about="radius of the middle surface", gt=0, le=1e4)
     thickness: Length = key(about="thickness of the shell", gt=0, le=1e4)
     embrace: Angle = key(180.0, "angle of embrace of a meridian section, from springing to springing", ge=20, le=180)
-    oculus: Angle = key(0.0, "angle of embrace of the opening at the crown; 0 closes it by a keystone", ge=0, le=170)
-    rings: int = key(about="rings of stones from the springing to the crown", ge=1, le=400)
+    oculus: Angle = key(0.0, "angle of embrace of the opening (oculus) at the crown; with 0, a keystone closes it", ge=0, le=170)
+    rings: int = key(about="number of rings of blocks from the springing to the crown", ge=1, le=400)
     lunes: int = key(about="stones in a ring", ge=4, le=400)
     bond: Literal["lunes", "running"] = key(
-        "lunes", "head joints above each other, as between the lunes of a cracked dome; or set off by half a stone in every other ring"
+        "lunes",
+        (
+            "position of the head joints: above each other, as between the lunes of a cracked dome; or offset by half a "
+            "block in every other ring"
+        ),
     )
-    thickness_factor: float = key(1.0, "effective over real thickness; 0.8 for worn corners", gt=0, le=1)
+    thickness_factor: float = key(1.0, "ratio of effective to real thickness; 0.8 for worn corners", gt=0, le=1)
 
     @model_validator(mode="after")
     def _plausible(self) -> "Dome":
         if self.thickness >= self.radius:
             raise ValueError(f"thickness {self.thickness:g} m is not below the radius {self.radius:g} m")
         if self.oculus >= self.embrace - 1.0:
-            raise ValueError(f"oculus {self.oculus:g} deg leaves nothing of an embrace of {self.embrace:g} deg")
+            raise ValueError(f"oculus {self.oculus:g} deg leaves nothing of an embrace of {self.embrace:g} deg: give a smaller oculus")
         if self.rings * self.lunes > MOST_SOLIDS:
-            raise ValueError(f"rings: {self.rings * self.lunes} stones are too many, expected at most {MOST_SOLIDS}")
+            raise ValueError(f"rings: the dome would have {self.rings * self.lunes} blocks; at most {MOST_SOLIDS} are allowed")
         return self
 
     def solids(self, density: float) -> SolidAssembly:

@@ -14,21 +14,21 @@ from extrados.schema.table import Table, key
 class Fill(Table):
     """Soil over the arches up to a level formation: weight, dispersal of loads, passive pressure."""
 
-    cover: Length = key(about="its depth over the highest extrados", ge=0)
+    cover: Length = key(about="depth of the fill over the highest extrados", ge=0)
     density: Density = key(2000.0, "density of the soil", gt=0, le=30000)
     friction_angle: Angle = key(30.0, "angle of friction of the soil", ge=0, le=60)
-    cohesion: Stress = key(0.0, "cohesion of the soil; it adds to the passive pressure", ge=0)
+    cohesion: Stress = key(0.0, "cohesion of the soil, which increases the passive pressure", ge=0)
     passive: float = key(
         0.0,
-        "share of Rankine's passive pressure that resists stones moving into the fill; programs for arch bridges take 0.5",
+        ("share of the passive pressure by Rankine that acts on blocks moving into the fill; programs for arch bridges use 0.5"),
         source="Gilbert and Melbourne 1994",
         ge=0,
         le=1,
     )
     dispersal: Literal["boussinesq", "even"] = key(
-        "boussinesq", "how a load spreads to the stones: by Boussinesq's stresses, or evenly, within dispersal_angle"
+        "boussinesq", "spreading of a load to the blocks: by the stresses of Boussinesq, or uniform, within dispersal_angle"
     )
-    dispersal_angle: Angle = key(30.0, "angle to the vertical beyond which a load does not spread; 26.6 is 1 in 2", ge=0, le=70)
+    dispersal_angle: Angle = key(30.0, "angle to the vertical up to which a load spreads; 26.6 is 1 in 2", ge=0, le=70)
 
 
 class Surfacing(Table):
@@ -41,7 +41,7 @@ class Surfacing(Table):
 class Spandrels(Table):
     """Spandrel walls on both edges of the arches, within their depth, up to the formation: weight in place of fill."""
 
-    thickness: Length = key(about="thickness of each of the two walls", gt=0)
+    thickness: Length = key(about="thickness of each of the two spandrel walls", gt=0)
     density: Density | None = key(None, "density; default that of [material]", gt=0, le=30000)
 
 
@@ -49,10 +49,10 @@ def refuse_without_fill(fill: Fill | None, surfacing: Surfacing | None, spandrel
     """ValueError where surfacing or spandrel walls have no fill, or the walls leave no room for it in the depth [m]."""
     for name, given in (("surfacing", surfacing), ("spandrels", spandrels)):
         if given is not None and fill is None:
-            raise ValueError(f"{name}: requires fill; give fill, with a cover of 0 if there is none over the crown")
+            raise ValueError(f"{name} requires fill: give fill, with cover = 0 if there is no fill over the crown")
     if spandrels is not None and depth is not None and 2.0 * spandrels.thickness >= depth:
         raise ValueError(
-            f"spandrels: two walls of {spandrels.thickness:g} m leave no fill between them; the depth is {depth:g} m and includes the walls"
+            f"spandrels: two walls of {spandrels.thickness:g} m leave no space for fill; the depth of {depth:g} m includes the walls"
         )
 
 

@@ -60,7 +60,7 @@ def make_frame(
     """Columns of width x height [m] at a spacing of their middles [m], the first at x = 0; the lintel reaches `overhang` [m]
     beyond the outer columns. lintel_mass [kg]: of the lintel with what rests on it; None by its size."""
     if spacing <= width:
-        raise BadGeometry(f"structure: columns of {width:g} m at a spacing of {spacing:g} m overlap; spacing must exceed width")
+        raise BadGeometry(f"structure: columns of {width:g} m overlap at a spacing of {spacing:g} m; the spacing must exceed the width")
     half, top = 0.5 * width, height + lintel_height
     x = spacing * np.arange(columns)
     left, right = -half - overhang, float(x[-1]) + half + overhang
@@ -87,16 +87,18 @@ class Frame(Structure):
     columns: int = key(2, "number of columns", ge=2, le=100)
     width: Length = key(about="width of a column", gt=0)
     height: Length = key(about="height of a column", gt=0)
-    spacing: Length = key(about="from the middle of a column to that of the next", gt=0)
+    spacing: Length = key(about="distance from the middle of a column to that of the next column", gt=0)
     lintel_height: Length = key(about="height of the lintel", gt=0)
-    overhang: Length = key(0.0, "how far the lintel reaches beyond the outer columns", ge=0)
-    lintel_mass: Mass | None = key(None, "mass of the lintel and its loads; default by its size and the density", gt=0)
+    overhang: Length = key(0.0, "length of the lintel beyond the outer columns", ge=0)
+    lintel_mass: Mass | None = key(None, "mass of the lintel with its loads; default: from its size and density", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
 
     @model_validator(mode="after")
     def _columns_apart(self) -> "Frame":
         if self.spacing <= self.width:
-            raise ValueError(f"spacing of {self.spacing:g} m lets columns of {self.width:g} m overlap; it must exceed their width")
+            raise ValueError(
+                f"spacing: columns of {self.width:g} m overlap at a spacing of {self.spacing:g} m; the spacing must exceed the width"
+            )
         return self
 
     def assembly(self, density: float, folder: Path) -> FrameAssembly:

@@ -64,39 +64,44 @@ class Column(Structure):
     halved: ClassVar = {"drums": 2}
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"height": "4.0"}
-    width: Length = key(about="width at the base; of round drums the diameter, over the corners or arrises", gt=0)
-    height: Length | None = key(None, "total height, shared equally by the drums", gt=0)
+    width: Length = key(about="width at the base; for round drums the diameter, over the corners or arrises", gt=0)
+    height: Length | None = key(None, "total height, divided equally among the drums", gt=0)
     drums: int = key(1, "number of equal drums", ge=1, le=2000)
-    heights: list[Length] = key([], "heights of the drums from below, instead of height and drums", max_length=2000)
-    top_width: Length | None = key(None, "width at the top; default as at the base", gt=0)
+    heights: list[Length] = key([], "heights of the drums from below; replaces height and drums", max_length=2000)
+    top_width: Length | None = key(None, "width at the top; default: as at the base", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
-    section: Literal["rectangle", "round"] = key("rectangle", "of the drums: rectangles of width and depth, or round")
-    sides: int = key(24, "round: flat facets, or flutes, around", ge=3, le=96)
-    flute_depth: Length = key(0.0, "round: how deep the flutes are cut at the base, each by two flat facets", ge=0)
+    section: Literal["rectangle", "round"] = key("rectangle", "cross-section of the drums: rectangle of width and depth, or round")
+    sides: int = key(24, "for round drums: number of flat facets, or of flutes, in the circumference", ge=3, le=96)
+    flute_depth: Length = key(0.0, "for round drums: depth of the flutes at the base, each cut by two flat facets", ge=0)
     dowels: Annotated[Force, Field(gt=0)] | Literal["unbroken"] | None = key(
-        None, 'dowels in the axis between the drums: the shear strength of each, or "unbroken"'
+        None, 'shear strength of each dowel in the axis between the drums, or "unbroken"'
     )
     dowel_reach: Length | None = key(
-        None, "`dem`: length of each dowel within the drum above; the dowel is lost if the drums part by more; default: never lost", gt=0
+        None,
+        (
+            "for `dem`: length of each dowel in the drum above. A dowel is lost if the drums separate by more than this "
+            "length; default: never lost"
+        ),
+        gt=0,
     )
 
     @model_validator(mode="after")
     def _one_height(self) -> "Column":
         if (self.height is None) == (not self.heights):
-            raise ValueError("give height (and drums), or heights, one of the two")
+            raise ValueError("give either height (and drums), or heights")
         if self.heights and self.drums != 1:
-            raise ValueError("heights already states the number of drums")
+            raise ValueError("heights already determines the number of drums: remove drums")
         if any(h <= 0.0 for h in self.heights):
-            raise ValueError("every one of heights must be above zero")
+            raise ValueError("each of heights must be above zero")
         given = self.model_fields_set
         if self.section == "rectangle" and (wrong := given & {"sides", "flute_depth"}):
-            raise ValueError(f'{min(wrong)} is of round drums: section = "round"')
+            raise ValueError(f'{min(wrong)} belongs to round drums: give section = "round", or remove it')
         if self.section == "round" and "depth" in given:
-            raise ValueError("depth is of rectangular drums; round ones have their width as a diameter")
+            raise ValueError("depth belongs to rectangular drums; round drums have width as their diameter")
         if self.dowel_reach is not None and self.dowels is None:
-            raise ValueError("dowel_reach needs dowels: give their shear strength")
+            raise ValueError("dowel_reach requires dowels: give the shear strength of the dowels")
         if self.flute_depth >= 0.25 * self.width:
-            raise ValueError(f"flute_depth {self.flute_depth:g} m is not below a quarter of the width {self.width:g} m")
+            raise ValueError(f"flute_depth {self.flute_depth:g} m is not below 1/4 of the width {self.width:g} m")
         return self
 
     @property
@@ -106,7 +111,9 @@ class Column(Structure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.section == "round":
-            raise NoView("a column of round drums is no plane section; `tilt` and `dem` analyse its solids", ("structure", "section"))
+            raise NoView(
+                "a column of round drums has no plane section; its solids can be analysed by `tilt` and `dem`", ("structure", "section")
+            )
         if self.dowels is not None:
-            raise NoView("dowels exist in space alone: give `tilt` a direction, or remove the dowels", ("structure", "dowels"))
+            raise NoView("dowels exist only in space: give `tilt` a direction, or remove the dowels", ("structure", "dowels"))
         return make_column(self.width, self.drum_heights, self.top_width, density, self.depth)

@@ -43,6 +43,6 @@ def make_piers(length: float, height: float, openings: Sequence[Box], density: f
     ]
     if all(b != GROUND for *_, b in joints):
         raise BadGeometry(
-            "the openings take the full width at ground level: no masonry is left there. Make the openings narrower or raise them"
+            "at ground level the openings occupy the full width, so no masonry remains there. Make the openings narrower, or raise them"
         )
     return stones_and_joints([outline(body) for body in bodies], names, joints, density, depth)

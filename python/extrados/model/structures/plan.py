@@ -25,15 +25,15 @@ class Lintel(Table):
     """A beam over an opening that stays elastic, of the wall's thickness."""
 
     depth: Length = key(about="height of the beam", gt=0)
-    bearing: Length = key(0.0, "length on the wall at each side", ge=0)
-    material: str | None = key(None, "a name of [materials]; default [material], uncracked")
+    bearing: Length = key(0.0, "bearing length of the lintel on the wall at each side", ge=0)
+    material: str | None = key(None, "name in [materials] of the material of the lintel; default: [material] without cracking")
 
 
 class WallOpening(Table):
     """A rectangular door or window."""
 
-    storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
-    x: Range = key(about="[from, to] along the wall from its start")
+    storey: int = key(1, "number of the storey of the opening, from 1 at the ground", ge=1)
+    x: Range = key(about="[from, to] along the wall, from its start")
     z: Range = key(about="[from, to] above the floor of the storey")
     lintel: Lintel | None = key(None, "beam over it")
 
@@ -42,7 +42,7 @@ class WallOpening(Table):
         Opening(x=self.x, y=self.z)
         for name, (low, high) in (("x", self.x), ("z", self.z)):
             if high - low <= 2 * MEETS:
-                raise ValueError(f"{name}: the opening is {high - low:.3g} m wide or high; expected more than {2 * MEETS:g} m")
+                raise ValueError(f"{name}: the width or height of the opening is {high - low:.3g} m; expected more than {2 * MEETS:g} m")
         return self
 
 
@@ -50,19 +50,19 @@ class PlanWall(Table):
     """A plane wall: a line on the plan, of one thickness or one for each storey."""
 
     name: str = key(about="name in results", min_length=1, max_length=40)
-    start: PlanPoint = key(about="[x, y] on the plan where its middle plane starts")
+    start: PlanPoint = key(about="[x, y] in plan of the start of the middle plane of the wall")
     end: PlanPoint = key(about="[x, y] of its end")
     thickness: Length | None = key(None, "thickness; or give thicknesses", gt=0)
-    thicknesses: list[Length] = key([], "one for each of its storeys, from the lowest", max_length=50)
+    thicknesses: list[Length] = key([], "thickness of the wall in each of its storeys, from the lowest", max_length=50)
     storeys: list[int] | None = key(None, "[first, last] storey; default all", min_length=2, max_length=2)
     openings: list[WallOpening] = key([], "doors and windows", max_length=200)
-    material: str | None = key(None, "a name of [materials]; default [material]")
-    materials: list[str] = key([], "names of [materials], one for each of its storeys, from the lowest", max_length=50)
+    material: str | None = key(None, "name in [materials] of the material of the wall; default: [material]")
+    materials: list[str] = key([], "names in [materials], one for each storey of the wall, from the lowest", max_length=50)
 
     @model_validator(mode="after")
     def _long(self) -> "PlanWall":
         if not self.length > MEETS:
-            raise ValueError("start and end are the same point")
+            raise ValueError("start and end have the same position")
         if (self.thickness is None) == (not self.thicknesses):
             raise ValueError("expected either thickness or thicknesses")
         if self.material is not None and self.materials:
@@ -85,60 +85,67 @@ class PlanWall(Table):
 class Corner(Table):
     """How two walls that meet hang together."""
 
-    walls: list[str] = key(about="names of the two walls; the second abuts on the first", min_length=2, max_length=2)
+    walls: list[str] = key(about="names of the two walls; the second wall abuts on the first", min_length=2, max_length=2)
     bond: Literal["bonded", "weak", "joint", "open"] = key(
-        about="bonded: one masonry; weak: the column of elements of the second wall beside the first has less strength; "
-        "joint: one of [joints] between them, which opens, slides up and down, and crushes; open: connected by floors "
-        "alone"
+        about=(
+            "connection of the two walls. bonded: one masonry; weak: the elements of the second wall beside the first have a "
+            "lower strength; joint: a joint of [joints] between the walls, which opens, slides up and down, and crushes; "
+            "open: connected only by floors"
+        )
     )
-    strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
+    strength: float = key(0.5, "for a weak corner: ratio of its tensile strength to that of the wall", gt=0, le=1)
 
     @model_validator(mode="after")
     def _two(self) -> "Corner":
         if self.walls[0] == self.walls[1]:
-            raise ValueError(f"walls: '{self.walls[0]}' stands twice; expected two walls that meet")
+            raise ValueError(f"walls: '{self.walls[0]}' occurs twice; expected two walls that meet")
         return self
 
 
 class Bed(Table):
     """A bed joint of [joints] all along a height of some walls: it opens, slides along the wall, and crushes."""
 
-    name: str | None = key(None, 'name in results and [[joints.types]]; default "bed 1" and so on', max_length=40)
-    storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
-    z: Length = key(0.0, "height above the floor of the storey; 0 in the first is the sole", ge=0)
-    walls: list[str] = key([], "names of the walls that it runs through; default all of the storey", max_length=200)
+    name: str | None = key(None, 'name in the results and in [[joints.types]]; default: "bed 1" and so on', max_length=40)
+    storey: int = key(1, "number of the storey of the bed joint, from 1 at the ground", ge=1)
+    z: Length = key(0.0, "height above the floor of the storey; 0 in the first storey is the sole", ge=0)
+    walls: list[str] = key([], "names of the walls through which the joint runs; default: all walls of the storey", max_length=200)
 
 
 class StoreyFloor(Table):
     """A floor or roof on top of a storey: a membrane between walls, or joists, and what it carries."""
 
-    storey: int = key(about="the storey that it lies on", ge=1)
+    storey: int = key(about="number of the storey below the floor", ge=1)
     kind: Literal["rigid", "flexible", "joists", "none"] = key(
         "flexible",
-        "flexible: a membrane of young times thickness; rigid: a concrete slab's, 30 GPa and 0.2 m, which is as good as "
-        "rigid; joists: bars across it in one direction; none: only its load",
+        (
+            "kind of floor. flexible: membrane with a stiffness of young times thickness; rigid: as a concrete slab of 30 "
+            "GPa and 0.2 m, practically rigid; joists: bars across the floor in one direction; none: only the load of the "
+            "floor"
+        ),
     )
     walls: list[str] | None = key(
-        None, "names of the walls around it, in order; default all of the storey, if they make one ring", min_length=3
+        None, "names of the walls around the floor, in order; default: all walls of the storey, if they form one ring", min_length=3
     )
-    young: Stress | None = key(None, "of a flexible floor: its modulus; of joists: that of their wood", gt=0)
+    young: Stress | None = key(None, "for a flexible floor: its modulus; for joists: the modulus of their wood", gt=0)
     thickness: Length | None = key(None, "of a flexible floor", gt=0)
     poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
-    joist_area: Annotated[float, Field(gt=0)] | None = key(None, "of joists: cross-section of one in m^2")
+    joist_area: Annotated[float, Field(gt=0)] | None = key(None, "for joists: cross-section of one joist in m^2")
     joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
-    load: Stress = key(0.0, "weight of the floor and its loads, per area", ge=0)
-    bears_on: list[str] = key([], "walls that carry the load, by their length; default all around it", max_length=100)
+    load: Stress = key(0.0, "weight per area of the floor and its loads", ge=0)
+    bears_on: list[str] = key(
+        [], "walls that carry the load, in proportion to their length; default: all walls around the floor", max_length=100
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> "StoreyFloor":
         needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(self.kind, ())
         for name in ("young", "thickness", "joist_area", "joist_spacing"):
             if (getattr(self, name) is None) == (name in needed):
-                raise ValueError(f"a floor of kind '{self.kind}' {'needs' if name in needed else 'takes no'} {name}")
+                raise ValueError(f"a floor of kind '{self.kind}' {'requires' if name in needed else 'takes no'} {name}")
         if self.kind == "joists" and len(set(self.bears_on)) != 2:
-            raise ValueError("bears_on: for joists, expected the names of two different walls, between which they span")
+            raise ValueError("bears_on: for joists, expected the names of two different walls, between which the joists span")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
-            raise ValueError(f"walls: wall '{twice[0]}' stands twice")
+            raise ValueError(f"walls: wall '{twice[0]}' occurs twice")
         return self
 
 
@@ -149,7 +156,7 @@ class Rod(Table):
     end: Place = key(about="[x, y, z] of the other end")
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
     material: str = key(about="a name of [materials]")
-    prestress: Force = key(0.0, "force before the building moves, tension", ge=0)
+    prestress: Force = key(0.0, "tensile force in the rod before the building moves", ge=0)
 
 
 class Prop(Table):
@@ -164,17 +171,19 @@ class Prestress(Table):
 
     wall: str = key(about="name of the wall")
     force: Force = key(about="downward, in all, spread evenly", gt=0)
-    x: Range | None = key(None, "[from, to] along the wall from its start, as of the bearing of a beam; default its whole length")
-    level: Annotated[int, Field(ge=1)] | None = key(None, "on top of this storey; default the wall's last")
+    x: Range | None = key(
+        None, "[from, to] along the wall from its start, for instance of the bearing of a beam; default: the whole length"
+    )
+    level: Annotated[int, Field(ge=1)] | None = key(None, "storey on whose top the force acts; default: the highest storey of the wall")
 
 
 class RingBeam(Table):
     """A beam of the wall's thickness along the top of some walls that stays elastic."""
 
-    storey: int = key(about="on top of this storey, its upper edge level with the floor", ge=1)
+    storey: int = key(about="storey on whose top the ring beam is; the upper edge of the beam is level with the floor", ge=1)
     depth: Length = key(about="height of the beam", gt=0)
     material: str = key(about="a name of [materials]")
-    walls: list[str] = key([], "names of the walls; default all of the storey", max_length=200)
+    walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
 
 
 class Plan(Structure):
@@ -193,17 +202,19 @@ class Plan(Structure):
 ]""",
         "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
     }
-    storeys: list[Length] = key(about="heights of the storeys, from the ground up", min_length=1, max_length=50)
+    storeys: list[Length] = key(about="height of each storey, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
-    corners: list[Corner] = key([], "where walls meet and are not one masonry, [[structure.corners]]", max_length=1000)
-    beds: list[Bed] = key([], "bed joints that may slide, [[structure.beds]]", max_length=100)
+    corners: list[Corner] = key([], "corners at which walls meet without forming one masonry, [[structure.corners]]", max_length=1000)
+    beds: list[Bed] = key([], "bed joints that can slide, [[structure.beds]]", max_length=100)
     floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
     prestress: list[Prestress] = key([], "vertical forces on walls, [[structure.prestress]]", max_length=200)
     ring_beams: list[RingBeam] = key([], "[[structure.ring_beams]]", max_length=50)
-    assumed: list[str] = key([], "assumptions of the deck beyond its sources; every result repeats them", max_length=100)
-    foundation_stiffness: Stiffness | None = key(None, "vertical stiffness of the ground per area of the walls' soles; default rigid", gt=0)
+    assumed: list[str] = key([], "assumptions of the deck that its sources do not state; every result repeats them", max_length=100)
+    foundation_stiffness: Stiffness | None = key(
+        None, "vertical stiffness of the ground per area of the soles of the walls; default: rigid", gt=0
+    )
 
     @model_validator(mode="after")
     def _sound(self) -> "Plan":
@@ -212,7 +223,7 @@ class Plan(Structure):
         names = [wall.name for wall in self.walls]
         for w, wall in enumerate(self.walls):
             if wall.name in names[:w]:
-                raise ValueError(f"walls[{w}].name: the name '{wall.name}' stands twice")
+                raise ValueError(f"walls[{w}].name: the name '{wall.name}' occurs twice")
             self._check_wall(w, wall)
         for what, named in (
             *((f"corners[{k}].walls", corner.walls) for k, corner in enumerate(self.corners)),
@@ -224,26 +235,26 @@ class Plan(Structure):
             *((f"props[{k}].wall", [part.wall]) for k, part in enumerate(self.props)),
         ):
             if strange := [name for name in named if name not in names]:
-                raise ValueError(f"{what}: there is no wall '{strange[0]}'; there are {', '.join(names)}")
+                raise ValueError(f"{what}: wall '{strange[0]}' does not exist; the walls are {', '.join(names)}")
         heights: dict[float, int] = {}
         for k, bed in enumerate(self.beds):
             if bed.storey > len(self.storeys):
-                raise ValueError(f"beds[{k}].storey: there is no storey {bed.storey}, there are {len(self.storeys)}")
+                raise ValueError(f"beds[{k}].storey: storey {bed.storey} does not exist; the number of storeys is {len(self.storeys)}")
             if bed.z >= self.storeys[bed.storey - 1]:
                 raise ValueError(
-                    f"beds[{k}].z: {bed.z:g} m is not below the top of a storey of {self.storeys[bed.storey - 1]:g} m; "
-                    "that on top of it is z = 0 of the next"
+                    f"beds[{k}].z: {bed.z:g} m is not below the top of a storey of {self.storeys[bed.storey - 1]:g} m. A bed joint at "
+                    "the top has z = 0 in the next storey"
                 )
             if (first := heights.setdefault(round(self.bed_height(bed), 9), k)) != k:
-                raise ValueError(f"beds[{k}]: bed {first + 1} lies at the same height; name all of its walls there")
+                raise ValueError(f"beds[{k}]: bed {first + 1} has the same height; give all walls of the joint there")
         names_of_joints = self.joint_names
         for k, name in enumerate(names_of_joints):
             if name in names_of_joints[:k]:
-                raise ValueError(f"beds: the name '{name}' of a joint stands twice")
+                raise ValueError(f"beds: the name '{name}' of a joint occurs twice")
         told: dict[frozenset[str], int] = {}
         for k, corner in enumerate(self.corners):
             if (first := told.setdefault(frozenset(corner.walls), k)) != k:
-                raise ValueError(f"corners[{k}].walls: corner {first + 1} is of the same two walls")
+                raise ValueError(f"corners[{k}].walls: corner {first + 1} has the same two walls")
         for k, prop in enumerate(self.props):
             if np.abs(self.wall(prop.wall).direction).max() < 1.0 - 1e-9:
                 raise ValueError(f"props[{k}].wall: wall '{prop.wall}' is oblique on the plan; only a wall along x or y can have a prop")
@@ -254,19 +265,19 @@ class Plan(Structure):
             length = self.wall(part.wall).length
             if part.x is not None and not 0.0 <= part.x[0] < part.x[1] <= length + MEETS:
                 raise ValueError(
-                    f"prestress[{k}].x: {part.x[0]:g} to {part.x[1]:g} m does not lie on wall '{part.wall}', which is {length:g} m long"
+                    f"prestress[{k}].x: {part.x[0]:g} to {part.x[1]:g} m is not on wall '{part.wall}', whose length is {length:g} m"
                 )
         for k, beam in enumerate(self.ring_beams):
             self._check_ring_beam(k, beam)
         for k, floor in enumerate(self.floors):
             if floor.storey > len(self.storeys):
-                raise ValueError(f"floors[{k}].storey: there is no storey {floor.storey}, there are {len(self.storeys)}")
+                raise ValueError(f"floors[{k}].storey: storey {floor.storey} does not exist; the number of storeys is {len(self.storeys)}")
         return self
 
     def _check_storey(self, what: str, wall: str, storey: int) -> None:
         first, last = self.reach(self.wall(wall))
         if not first <= storey <= last:
-            raise ValueError(f"{what}: wall '{wall}' has no storey {storey}, it has {first} to {last}")
+            raise ValueError(f"{what}: wall '{wall}' has no storey {storey}; its storeys are {first} to {last}")
 
     def _check_ring_beam(self, k: int, beam: RingBeam) -> None:
         for wall in self.of_ring_beam(beam):
@@ -279,7 +290,7 @@ class Plan(Structure):
                         f"begins at {low:g} m"
                     )
         if beam.storey > len(self.storeys) or beam.depth >= self.storeys[beam.storey - 1] or not self.of_ring_beam(beam):
-            raise ValueError(f"ring_beams[{k}]: there is no wall as high as the beam in storey {beam.storey}")
+            raise ValueError(f"ring_beams[{k}]: no wall in storey {beam.storey} is as high as the beam")
 
     def of_ring_beam(self, beam: RingBeam) -> list[PlanWall]:
         """The walls that a ring beam runs along."""
@@ -294,24 +305,31 @@ class Plan(Structure):
     def _check_wall(self, w: int, wall: PlanWall) -> None:
         first, last = self.reach(wall)
         if not 1 <= first <= last <= len(self.storeys):
-            raise ValueError(f"walls[{w}].storeys: wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}")
+            raise ValueError(
+                f"walls[{w}].storeys: wall '{wall.name}': storeys {first} to {last} were given; possible are 1 to {len(self.storeys)}"
+            )
         for name, given in (("thicknesses", wall.thicknesses), ("materials", wall.materials)):
             if given and len(given) != last - first + 1:
                 raise ValueError(
-                    f"walls[{w}].{name}: wall '{wall.name}': {len(given)} {name} for {last - first + 1} storeys; expected one for each"
+                    f"walls[{w}].{name}: wall '{wall.name}' has {len(given)} {name} for {last - first + 1} storeys; expected one for "
+                    "each storey"
                 )
         for i, opening in enumerate(wall.openings):
             at, said = f"walls[{w}].openings[{i}]", f"wall '{wall.name}', opening {i + 1}"
             if not first <= opening.storey <= last:
                 raise ValueError(f"{at}: {said}: the wall has no storey {opening.storey}")
             if opening.x[0] < 0.0 or opening.x[1] > wall.length:
-                raise ValueError(f"{at}: {said}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long")
+                raise ValueError(
+                    f"{at}: {said}: x from {opening.x[0]:g} to {opening.x[1]:g} m, but the length of the wall is {wall.length:g} m"
+                )
             tall = self.storeys[opening.storey - 1]
             if opening.z[0] < 0.0 or opening.z[1] >= tall:
                 raise ValueError(f"{at}: {said}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of {tall:g} m")
             above = float(sum(self.storeys[opening.storey - 1 : last])) - opening.z[1]
             if opening.lintel is not None and opening.lintel.depth > above + MEETS:
-                raise ValueError(f"{at}.lintel: {said}: a lintel of {opening.lintel.depth:g} m under {above:g} m of wall")
+                raise ValueError(
+                    f"{at}.lintel: {said}: a lintel with a depth of {opening.lintel.depth:g} m does not fit under {above:g} m of wall"
+                )
 
     def reach(self, wall: PlanWall) -> tuple[int, int]:
         """First and last storey of a wall."""
@@ -410,9 +428,7 @@ def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
         low, high = sorted((float((b - a) @ d), float((np.asarray(two.end) - a) @ d)))
         aside = abs((b - a)[0] * d[1] - (b - a)[1] * d[0])
         if aside < MEETS and min(high, one.length) - max(low, 0.0) > MEETS:
-            raise BadGeometry(
-                f"walls '{one.name}' and '{two.name}' lie on each other on the plan; one wall may have `thicknesses` by storey"
-            )
+            raise BadGeometry(f"walls '{one.name}' and '{two.name}' overlap in plan; give one wall, with `thicknesses` by storey")
         for s, p in ((0.0, one.start), (one.length, one.end)):
             for t, q in ((0.0, two.start), (two.length, two.end)):
                 if np.hypot(*np.subtract(p, q)) < MEETS:
@@ -434,13 +450,13 @@ def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
         met = ", ".join(f"'{plan.walls[b].name}'" for b in meets[odd]) or "none"
         (x0, y0), (x1, y1) = wall.start, wall.end
         raise BadGeometry(
-            f"{what}: the walls of the storey make no simple ring: wall '{wall.name}' from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) m meets "
-            f"{met} of them, expected two; name those around the floor by `walls`"
+            f"{what}: the walls of the storey do not form a simple ring: wall '{wall.name}' from ({x0:g}, {y0:g}) to ({x1:g}, "
+            f"{y1:g}) m meets {met} of them, expected two. Give the walls around the floor by `walls`"
         )
     ring = [walls[0], meets[walls[0]][0]]
     while len(ring) < len(walls):
         after = [b for b in meets[ring[-1]] if b != ring[-2]]
         if after[0] in ring:
-            raise BadGeometry(f"{what}: the walls of the storey make more than one ring; name those around it by `walls`")
+            raise BadGeometry(f"{what}: the walls of the storey form more than one ring: give the walls around the floor by `walls`")
         ring.append(after[0])
     return ring

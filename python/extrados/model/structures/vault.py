@@ -70,7 +70,7 @@ def make_vault(
     if base >= path[0, 1]:
         raise BadGeometry(f"buttress: the ground at {base:.4g} m is not below the springing at {path[0, 1]:.4g} m")
     if back <= path[-1, 0]:
-        raise BadGeometry(f"buttress: its outer face at x = {back:.4g} m does not reach behind the springing at {path[-1, 0]:.4g} m")
+        raise BadGeometry(f"buttress: the outer face at x = {back:.4g} m must be behind the springing at {path[-1, 0]:.4g} m")
     right = np.concatenate([[[face, base], [back, base], [back, top]], path[::-1]])
     mirror = np.array([-1.0, 1.0])
     builder = Builder(density, depth)
@@ -94,20 +94,18 @@ class Vault(PresetStructure):
     word: ClassVar = "vault on its buttresses"
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
-        None, "all sizes of a reading of the vault of thesis 3.4, inferred from its results; other keys overrule it"
+        None, ("all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; other keys overrule them")
     )
-    radius: Length = key(about="radius of the vault's centre line", gt=0)
+    radius: Length = key(about="radius of the centre line of the vault", gt=0)
     thickness: Length = key(about="thickness of the vault", gt=0)
     embrace: Angle = key(about="angle of embrace of the vault between its end joints", ge=20, le=180)
     voussoirs: int = key(24, "number of voussoirs of the vault", ge=4, le=5000)
-    face: Length = key(about="distance of the buttresses' inner faces from the axis", gt=0)
-    buttress_width: Length = key(about="width of the buttresses, measured outward from `width_from`", gt=0)
-    width_from: Literal["face", "extrados"] = key(
-        "face", "where buttress_width starts: at the inner face, or at the extrados of the springing"
-    )
-    height: Length = key(about="height from the ground up to `height_to`", gt=0)
+    face: Length = key(about="distance of the inner faces of the buttresses from the axis", gt=0)
+    buttress_width: Length = key(about="width of the buttresses, measured outward from the line given by `width_from`", gt=0)
+    width_from: Literal["face", "extrados"] = key("face", "start of buttress_width: at the inner face, or at the extrados of the springing")
+    height: Length = key(about="height of the buttresses from the ground to the level given by `height_to`", gt=0)
     height_to: Literal["extrados", "centre"] = key(
-        "extrados", "where height ends: at the extrados of the springing, or at the level of the vault's centre"
+        "extrados", "end of height: at the extrados of the springing, or at the level of the centre of the vault"
     )
     depth: Length = key(1.0, "depth out of plane", gt=0)
 

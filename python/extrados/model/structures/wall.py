@@ -12,7 +12,7 @@ from extrados.model.geometry.boxes import Box, openings_within
 from extrados.model.geometry.solids.assembly import MOST_SOLIDS, SolidAssembly, Stone, assemble
 from extrados.model.geometry.solids.polyhedra import Polyhedron, box
 from extrados.model.places import Opening
-from extrados.model.structures.brickwork import Bond, laid, levels_of, lintels_of
+from extrados.model.structures.brickwork import Bond, Bonded, laid, levels_of, lintels_of
 from extrados.model.structures.spatial import Spatial
 from extrados.schema.quantities import Length
 from extrados.schema.table import Table, key
@@ -23,11 +23,11 @@ LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])
 class Leg(Table):
     """A straight stretch of wall, from corner to corner or to a free end."""
 
-    length: Length = key(about="length over all, the corners at its ends included", gt=0, le=1e4)
+    length: Length = key(about="total length, including the corners at its ends", gt=0, le=1e4)
     turn: Literal["left", "right"] = key(
-        "left", "side of the previous leg to which this one goes, at a right angle; no effect on the first leg"
+        "left", "side of the previous leg to which this leg runs, at a right angle; no effect on the first leg"
     )
-    openings: list[Opening] = key([], "rectangles cut out: x along the leg from its start, y up", max_length=200)
+    openings: list[Opening] = key([], "rectangular openings: x along the leg from its start, y upward", max_length=200)
 
 
 def make_wall(
@@ -53,7 +53,7 @@ def make_wall(
             for x0, x1, *_ in boxes:
                 if (before and x0 < low - 1e-9) or (after and x1 > high + 1e-9):
                     raise BadGeometry(
-                        f"wall: {what} of leg {i + 1}, x {x0:.4g} to {x1:.4g} m, runs into a corner; expected {low:.4g} to {high:.4g} m"
+                        f"wall: {what} of leg {i + 1}, x {x0:.4g} to {x1:.4g} m, overlaps a corner; expected {low:.4g} to {high:.4g} m"
                     )
         openings.append(here)
         lintels.append(beams)
@@ -111,8 +111,8 @@ def _close(ways: list[np.ndarray], starts: list[np.ndarray], legs: list[tuple[fl
     end = starts[-1] + legs[-1][0] * ways[-1]
     if len(legs) % 2 or np.abs(LEFT @ ways[-1] - ways[0]).max() > 1e-9 or np.abs(end - starts[0]).max() > 1e-6:
         raise BadGeometry(
-            f"wall: the legs do not close: the last one ends at x = {end[0]:.4g}, y = {end[1]:.4g} m; expected 0, 0 and a corner to the left "
-            "at the first"
+            f"wall: the legs are not closed: the last leg ends at x = {end[0]:.4g}, y = {end[1]:.4g} m; expected 0, 0 and a "
+            "left-hand corner at the first leg"
         )
 
 
@@ -127,7 +127,7 @@ def _placed(start: np.ndarray, way: np.ndarray, thickness: float) -> Callable[[B
     return place
 
 
-class Wall(Spatial):
+class Wall(Bonded, Spatial):
     """Walls one unit thick in running bond, with openings and lintels, around corners that the courses pass in turn."""
 
     word: ClassVar = "wall"
@@ -141,36 +141,31 @@ class Wall(Spatial):
         "height": "2.4",
         "legs": "[{ length = 3.0 }, { length = 2.0 }]",
     }
-    unit_length: Length = key(about="length of a unit; twice the thickness makes half bond around corners", gt=0)
+    unit_length: Length = key(about="length of a unit; twice the thickness gives half bond around corners", gt=0)
     unit_height: Length = key(about="height of a unit", gt=0)
-    thickness: Length = key(about="thickness of the wall, the width of a unit", gt=0)
+    thickness: Length = key(about="thickness of the wall, equal to the width of a unit", gt=0)
     height: Length = key(about="height of the wall", gt=0, le=1e3)
     legs: list[Leg] = key(
-        about="its stretches from the first end on, each at a right angle to the one before", min_length=1, max_length=200
+        about="straight parts (legs) of the wall in order, each at a right angle to the previous one", min_length=1, max_length=200
     )
-    closed: bool = key(False, "whether the last leg meets the first, as around a courtyard; then all corners are to the left")
+    closed: bool = key(False, "whether the last leg meets the first, as around a courtyard; all corners are then left-hand corners")
     begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end")
-    lintels: bool = key(True, "a stone over each opening")
-    lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
-    lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default half a unit", gt=0)
-    least_unit: float = key(0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5)
 
     @model_validator(mode="after")
     def _sensible(self) -> "Wall":
         count = sum(leg.length for leg in self.legs) * self.height / (self.unit_length * self.unit_height)
         if count > MOST_SOLIDS:
-            raise ValueError(f"{count:.0f} units are too many, expected at most {MOST_SOLIDS}")
+            raise ValueError(f"the wall would have {count:.0f} units; at most {MOST_SOLIDS} are allowed")
         for i, leg in enumerate(self.legs, start=1):
             if len(self.legs) > 1 and leg.length < 2.0 * self.thickness:
-                raise ValueError(f"legs: leg {i} is {leg.length:g} m long, less than two thicknesses of {self.thickness:g} m")
+                raise ValueError(f"legs: leg {i} has a length of {leg.length:g} m, less than two thicknesses of {self.thickness:g} m")
             for o in leg.openings:
-                if o.x[1] <= 0 or o.x[0] >= leg.length or o.y[1] <= 0 or o.y[0] >= self.height:
-                    raise ValueError(f"legs: the opening x {o.x}, y {o.y} lies outside leg {i}")
+                if o.is_outside(leg.length, self.height):
+                    raise ValueError(f"legs: the opening x {o.x}, y {o.y} is outside leg {i}")
         if self.closed and len(self.legs) < 4:
-            raise ValueError(f"closed needs four legs at least, found {len(self.legs)}")
+            raise ValueError(f"closed requires at least four legs, found {len(self.legs)}")
         return self
 
     def solids(self, density: float) -> SolidAssembly:
-        bond = Bond(self.unit_length, self.unit_height, self.begins, self.lintels, self.lintel_height, self.lintel_bearing, self.least_unit)
-        legs = [(leg.length, leg.turn == "left", [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in leg.openings]) for leg in self.legs]
-        return make_wall(bond, self.thickness, self.height, legs, self.closed, density)
+        legs = [(leg.length, leg.turn == "left", [o.box for o in leg.openings]) for leg in self.legs]
+        return make_wall(self.bond(self.unit_length, self.unit_height), self.thickness, self.height, legs, self.closed, density)

@@ -25,9 +25,9 @@ class Region(Placed):
     linear: bool = key(False, "the elements stay linear")
     thickness: Length | None = key(None, "thickness of the region", gt=0)
     gauss: list[Annotated[int, Field(ge=1, le=4)]] | None = key(
-        None, "Gauss points [along, across] of its quadrilaterals", min_length=2, max_length=2
+        None, "number of Gauss points [along, across] of the quadrilaterals", min_length=2, max_length=2
     )
-    crack_normal: Angle | None = key(None, "the only direction of crack normals allowed, from x", ge=-180, le=180)
+    crack_normal: Angle | None = key(None, "the only allowed direction of the crack normal, as an angle from x", ge=-180, le=180)
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Which of the points (k, 2) [m] lie within it."""
@@ -48,21 +48,23 @@ class Bar(Table):
     """A straight bar between the nodes nearest to two places (a tie rod, a reinforcement)."""
 
     start: list[Length] = key(about="[x, y] of one end", min_length=2, max_length=2)
-    end: list[Length] = key(about="[x, y] of the other end", min_length=2, max_length=2)
+    end: list[Length] = key(about="[x, y] of the other end of the bar", min_length=2, max_length=2)
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
     material: str = key(about="a name of [materials]")
-    bonded: bool = key(False, "embedded: it moves with every element that it runs through; else it is held at its ends alone")
-    yield_strength: Stress | None = key(
-        None, "stress at which it yields in tension and compression, in place of the strengths of its material", gt=0
+    bonded: bool = key(
+        False, "true: the bar is embedded and moves with every element that it crosses; false: it is attached only at its ends"
     )
-    ultimate_strain: float = key(0.05, "strain at which it breaks once it yields", gt=0, le=1)
+    yield_strength: Stress | None = key(
+        None, "yield stress in tension and compression; replaces the strengths of the material of the bar", gt=0
+    )
+    ultimate_strain: float = key(0.05, "ultimate strain, at which the bar breaks after it yields", gt=0, le=1)
 
 
 class MeshedWall(Structure):
     """What walls share that finite elements see whole."""
 
     thickness: Length = key(about="thickness out of plane", gt=0)
-    regions: list[Region] = key([], "parts that differ; a later one overrides an earlier", max_length=1000)
+    regions: list[Region] = key([], "parts with other properties; a later region overrides an earlier one", max_length=1000)
     ties: list[TiedNodes] = key([], "nodes that move as one", max_length=100)
     bars: list[Bar] = key([], "bars between two places", max_length=1000)
 
@@ -78,24 +80,26 @@ class Panel(Laid, MeshedWall):
     rocks_as: ClassVar[RocksAs] = "piers"
     starter_analysis: ClassVar = "sla"
     starter: ClassVar = {"thickness": '"30 cm"', "width": "3.0", "height": "3.0", "openings": "[{ x = [1.05, 1.95], y = [0.9, 2.1] }]"}
-    width: Length | None = key(None, "length along x; needed unless an outline is given", gt=0)
-    height: Length | None = key(None, "length along y; needed unless an outline is given", gt=0)
-    unit_length: Length | None = key(None, "length of a unit of its masonry, for analyses of stones", gt=0)
-    unit_height: Length | None = key(None, "height of a unit of its masonry", gt=0)
-    outline: str | None = key(None, "DXF file of closed polylines: the outer one and the openings; replaces width, height, openings")
-    outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing, if it names none")
+    width: Length | None = key(None, "length along x; required if no outline is given", gt=0)
+    height: Length | None = key(None, "length along y; required if no outline is given", gt=0)
+    unit_length: Length | None = key(None, "length of a unit of the masonry, for analyses of blocks", gt=0)
+    unit_height: Length | None = key(None, "height of a unit of the masonry", gt=0)
+    outline: str | None = key(
+        None, "DXF file of closed polylines: the outline of the wall and the openings; replaces width, height and openings"
+    )
+    outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing, if the file gives none")
 
     @model_validator(mode="after")
     def _sensible(self) -> "Panel":
         if self.outline:
             given = {"width", "height", "openings"} & self.model_fields_set
             if given:
-                raise ValueError(f"an outline replaces {', '.join(sorted(given))}: give one or the other")
+                raise ValueError(f"an outline replaces {', '.join(sorted(given))}: give only one of them")
             return self
         if self.width is None or self.height is None:
-            raise ValueError("width and height are missing (or an outline)")
+            raise ValueError("width and height are missing: give both, or an outline")
         if (self.unit_length is None) != (self.unit_height is None):
-            raise ValueError("a unit has a length and a height: give unit_length and unit_height, or neither")
+            raise ValueError("a unit has a length and a height: give both unit_length and unit_height, or neither")
         self.check_openings(*self.size)
         return self
 
@@ -103,23 +107,28 @@ class Panel(Laid, MeshedWall):
     def size(self) -> tuple[float, float]:
         """Length and height of the wall [m]; NoView where it is an outline."""
         if self.width is None or self.height is None:
-            raise NoView("a panel of an outline is no rectangle", ("structure", "outline"))
+            raise NoView("a panel with an outline is not a rectangle", ("structure", "outline"))
         return self.width, self.height
 
     def pier_assembly(self, density: float) -> Assembly:
         if self.outline:
-            raise NoView("the piers of a panel are found between rectangular openings, not in an outline", ("structure", "outline"))
+            raise NoView(
+                "the piers of a panel are found between rectangular openings, which an outline does not give", ("structure", "outline")
+            )
         if any(region.material or region.thickness for region in self.regions):
             raise NoView(
-                "the piers of a panel weigh the same everywhere; it has regions of another material or thickness", ("structure", "regions")
+                "the piers of a panel require a uniform weight, but the panel has regions with another material or thickness",
+                ("structure", "regions"),
             )
         return make_piers(*self.size, self.holes, density, self.thickness)
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.outline:
-            raise NoView("a panel of an outline has no stones: draw them and read the drawing as kind `blocks`", ("structure", "outline"))
+            raise NoView(
+                "a panel with an outline has no blocks: draw the blocks, and read the drawing with kind `blocks`", ("structure", "outline")
+            )
         if self.unit_length is None or self.unit_height is None:
-            raise NoView("the stones of the panel are not known: give unit_length and unit_height", ("structure", "unit_length"))
+            raise NoView("the units of the panel are not known: give unit_length and unit_height", ("structure", "unit_length"))
         bond = self.bond(self.unit_length, self.unit_height)
         return make_brickwork(bond, *self.size, self.holes, density, self.thickness)
 
@@ -129,14 +138,14 @@ class Panel(Laid, MeshedWall):
         for i, region in enumerate(self.regions, start=1):
             if region.thickness not in (None, self.thickness):
                 raise NoView(
-                    f"region {i} of the panel has a thickness of its own; stones are all of one",
+                    f"region {i} of the panel has its own thickness, but all blocks have the same thickness",
                     ("structure", "regions", i - 1, "thickness"),
                 )
             if region.material is None:
                 continue
             if density == 0.0:
                 raise NoView(
-                    f"region {i} of the panel has a material of its own, but [material] has no density",
+                    f"region {i} of the panel has its own material, but [material] has no density",
                     ("structure", "regions", i - 1, "material"),
                 )
             ratio[region.holds(made.centroid)] = densities[region.material] / density
@@ -150,16 +159,16 @@ Force3 = Annotated[list[Force], Field(min_length=3, max_length=3)]
 class MeshGroup(Table):
     """What a named group of a mesh file is in space: its elements, or the nodes that its lines, points or elements have."""
 
-    name: str = key(about="of the group in the file, or its number if it has none", min_length=1, max_length=200)
+    name: str = key(about="name of the group in the file, or its number if it has no name", min_length=1, max_length=200)
     thickness: Length | None = key(None, "thickness of its elements", gt=0)
-    material: str | None = key(None, "of its elements: a name of [materials]")
+    material: str | None = key(None, "name in [materials] of the material of its elements")
     linear: bool = key(False, "its elements do not crack")
-    membrane: bool = key(False, "its elements do not bend: a floor")
+    membrane: bool = key(False, "whether the elements have no bending stiffness, as for a floor")
     support: Literal["fixed", "pinned", "vertical"] | None = key(
-        None, "its nodes are held: fixed, without their rotations, or upright alone"
+        None, "support of the nodes of the group: fixed, fixed without rotations (pinned), or vertical only"
     )
-    pressure: Vector | None = key(None, "[x, y, z] force per area on its elements, with the weight")
-    force: Force3 | None = key(None, "[x, y, z] force in all, spread evenly over its nodes, with the weight")
+    pressure: Vector | None = key(None, "[x, y, z] force per area on the elements of the group, applied with the weight")
+    force: Force3 | None = key(None, "[x, y, z] total force, distributed evenly over the nodes of the group, applied with the weight")
 
 
 class MeshFile(MeshedWall):
@@ -171,13 +180,13 @@ class MeshFile(MeshedWall):
     starter_analysis: ClassVar = "sla"
     starter: ClassVar = {"thickness": '"30 cm"', "file": '"extrados:example-wall"', "scale": "0.001"}
     file: str = key(
-        about="mesh file of triangles or quadrilaterals: in the x, y plane for `sla`, in space with z up for `pushover`",
+        about="mesh file of triangles or quadrilaterals: in the x, y plane for `sla`; in space, with z up, for `pushover`",
         min_length=1,
         max_length=1000,
     )
     groups: list[MeshGroup] = key(
         [],
-        "of shells in space: properties of the groups of the file, [[structure.groups]]; a later one overrides an earlier",
+        ("for shells in space: properties of the groups of the file, [[structure.groups]]; a later group overrides an earlier one"),
         max_length=1000,
     )
-    scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)
+    scale: float = key(1.0, "length in metres of one unit of the file", gt=0, le=1e6)

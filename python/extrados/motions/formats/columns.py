@@ -34,11 +34,11 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
     """Every acceleration, velocity or displacement of a text in columns; `columns` where the file does not make it plain."""
     header, rows = _split(text)
     if not rows:
-        raise text.error(0, "holds no numbers; expected acceleration, or time and acceleration, in columns")
+        raise text.error(0, "this file contains no numbers; expected acceleration, or time and acceleration, in columns")
     _refuse_decimal_commas(text, [at for at, _ in rows])
     width = len(rows[0][1])
     if odd := next((row for row in rows[:-1] if len(row[1]) != width), None):
-        raise text.error(odd[0], f"{len(odd[1])} columns where {width} stood before{_header_hint(odd[0])}")
+        raise text.error(odd[0], f"this line has {len(odd[1])} columns, but the lines above have {width}{_header_hint(odd[0])}")
     short = len(rows[-1][1]) != width  # the last row of a series may be
     table = text.numbers(rows[:-1] if short else rows).reshape(-1, width)
     said = "\n".join(tidy(line).strip() for line in header)
@@ -52,20 +52,25 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
         step, rounded, notes, data, names = _stated_step(text, said), 0.0, [], values[:, None], []
         for stride in range(1, max(4, width) + 1):
             if _ascends(values[::stride]):
-                what = "the values ascend as a time does" if stride == 1 else f"every value {stride} further on ascends as a time does"
-                raise text.error(rows[0][0], f"{what}; give time and acceleration in two columns")
+                what = "the values increase like times" if stride == 1 else f"every value {stride} places further increases like a time"
+                raise text.error(rows[0][0], f"{what}: give time and acceleration in two columns")
     elif short:
-        raise text.error(rows[-1][0], f"{len(rows[-1][1])} columns where {width} stood before: the file is cut off{_or_series(timed)}")
+        raise text.error(
+            rows[-1][0],
+            (f"the last line has {len(rows[-1][1])} columns, but the lines above have {width}, so the file is cut off{_or_series(timed)}"),
+        )
     elif timed:
         given = time_unit_in(names[0]) if names else None
         per = TIME[given or "s"]
         step, uneven = _step(text, rows, table[:, 0], rounded, given)
         stated = _stated_step(text, said)
         if stated is not None and abs(stated - step) > 0.02 * step:
-            raise text.error(rows[0][0], f"the header says a step of {stated:g} s, the times {step:g} s; delete the wrong one")
-        notes = [f"times of {text.path.name} are in {given}"] if given not in (None, "s") else []
+            raise text.error(
+                rows[0][0], f"the header states a time step of {stated:g} s, but the times have a step of {step:g} s: delete the wrong one"
+            )
+        notes = [f"the times of {text.path.name} are in {given}"] if given not in (None, "s") else []
         if uneven:
-            notes.append(f"times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; their mean step is taken")
+            notes.append(f"the times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; the program uses their mean step")
         data, names, rounded = table[:, 1:], names[1:] or [f"column {k + 2}" for k in range(width - 1)], per * rounded
     elif columns == "components" or names:
         step, rounded, notes, data = _stated_step(text, said), 0.0, [], table
@@ -73,21 +78,25 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
     else:
         raise text.error(
             rows[0][0],
-            f"the row holds {width} columns, and the first is no time of equal steps. Give channel = 1 to {width} where each "
-            'column is a component, or columns = "series" where the numbers of a row follow one another',
+            (
+                f"the row has {width} columns, and the first is not a time with equal steps. If each column is a component, give "
+                f'channel = 1 to {width}. If the numbers of a row follow one another, give columns = "series"'
+            ),
         )
     if not timed or columns == "series":
         _refuse_header_numbers(text, rows, data)
     if counted is not None and counted not in (len(table), data.size):
         raise text.error(
-            len(text) - 1, f"{data.size} values follow where the header says {counted}: the file is cut off or its header is wrong"
+            len(text) - 1, f"the header states {counted} values, but {data.size} follow: the file is cut off, or its header is wrong"
         )
     title = next((line.strip() for line in header if _is_title(line)), "")
     found = []
     for k in range(data.shape[1]):
         name = names[k] if k < len(names) else ""
         if _called_time([name]) or (width > 1 and _ascends(data[:, k])):
-            raise text.error(rows[0][0], f"column {k + 1 + timed} is a time, and the first is none: put the time first")
+            raise text.error(
+                rows[0][0], f"column {k + 1 + timed} contains times, but the first column does not: put the times in the first column"
+            )
         quantity = _quantity(text, name if sure else "", said)
         found.append(
             Record(
@@ -109,7 +118,7 @@ def _quantity(text: Lines, name: str, said: str) -> str:
     """What a column holds, by its name or else by the header; acceleration where neither says so."""
     found = quantities_in(name) or quantities_in(said) or ["acceleration"]
     if len(found) > 1:
-        raise text.error(0, f"the header names {' and '.join(found)}; leave the one that the numbers are")
+        raise text.error(0, f"the header names {' and '.join(found)}: keep only the quantity of the numbers")
     return found[0]
 
 
@@ -163,7 +172,10 @@ def _refuse_factor(text: Lines, said: str) -> None:
     if found and float(found[1]) != 1.0:
         raise text.error(
             0,
-            f"the header says '{found[0].strip()}', but the program applies no factor from a header: multiply the values by the factor and delete these words",
+            (
+                f"the header states '{found[0].strip()}', but the program does not apply a factor from a header: multiply the "
+                "values by this factor and delete these words"
+            ),
         )
 
 
@@ -175,14 +187,23 @@ def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data:
     digits = [any(token.strip("+-0") for token in row) for _, row in rows[:first]]
     if 0 < first < len(rows) and any(digits) and np.mean(whole[first:]) < 0.1:
         at = rows[digits.index(True)][0]
-        raise text.error(at, f"'{text[at].strip()[:40]}' holds whole numbers and the samples decimals, as if a header stood here; {hint}")
+        raise text.error(
+            at,
+            (
+                f"'{text[at].strip()[:40]}' contains whole numbers, but the samples have decimals, so this line seems to belong "
+                f"to a header; {hint}"
+            ),
+        )
     left = sum(len(row) for _, row in rows)
     for k, (at, row) in enumerate(rows[:HEAD]):
         left -= len(row)
         if any(re.fullmatch(r"\d{2,9}", token) and int(token) in (left, left + len(row) - 1, len(rows) - k - 1) for token in row):
             raise text.error(
                 at,
-                f"'{text[at].strip()[:40]}' contains a number equal to the count of the values that follow, as a line of a header does; {hint}",
+                (
+                    f"'{text[at].strip()[:40]}' contains a number equal to the count of the values that follow, so this line seems to "
+                    f"belong to a header; {hint}"
+                ),
             )
     per = max(1, data.size // max(len(rows), 1)) if data.shape[1] == 1 else 1
     if len(data) >= 6 * HEAD * per:
@@ -190,7 +211,11 @@ def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data:
         if peaks[0].max() > 2.0 * peaks[1] and peaks[1] > 0.0:
             at = rows[int(peaks[0].argmax()) // per][0]
             raise text.error(
-                at, f"'{text[at].strip()[:40]}' exceeds twice all values below the first {HEAD} rows, as numbers of a header do; {hint}"
+                at,
+                (
+                    f"'{text[at].strip()[:40]}' exceeds twice the greatest value below the first {HEAD} rows, so this line seems to "
+                    f"belong to a header; {hint}"
+                ),
             )
 
 
@@ -204,7 +229,7 @@ def _split(text: Lines) -> tuple[list[str], list[tuple[int, list[str]]]]:
         if not rows and (not tokens or not re.match(r"[+-]?(?:\.?\d|nan\b|inf)", tokens[0], re.I) or _wordy(tokens)):
             header.append(comment if not tokens else bare)
             if len(header) > MOST_HEADER:
-                raise text.error(at, f"no numbers in the first {MOST_HEADER} lines")
+                raise text.error(at, f"the first {MOST_HEADER} lines contain no numbers")
             continue
         if tokens:
             rows.append((at, tokens))
@@ -222,12 +247,12 @@ def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:
     for at, line in bare.items():
         words = line.replace(";", " ").split()
         if len(words) > 1 and any(re.fullmatch(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?", w) for w in words):
-            raise text.error(at, f"'{text[at].strip()[:40]}' holds decimal commas; the decimal sign is a point")
+            raise text.error(at, f"'{text[at].strip()[:40]}' contains decimal commas: use a decimal point")
     parts = [line.replace(" ", "").split(",") for line in bare.values()]
     if len(bare) == len(lines) and all(
         len(row) % 2 == 0 and all(re.fullmatch(r"[+-]?\d+", w) for w in row[::2]) and all(map(_fraction, row[1::2])) for row in parts
     ):
-        raise text.error(lines[0], f"'{bare[lines[0]].strip()[:40]}' holds decimal commas; the decimal sign is a point")
+        raise text.error(lines[0], f"'{bare[lines[0]].strip()[:40]}' contains decimal commas: use a decimal point")
 
 
 def _fraction(word: str) -> bool:
@@ -276,22 +301,26 @@ def _median(values: np.ndarray) -> float:
 def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, rounded: float, given: str | None) -> tuple[float, bool]:
     """The step [s] of a time column in a unit (seconds where none is given), and whether only rounding makes it uneven."""
     if len(time) < 3:
-        raise text.error(rows[-1][0], f"only {len(time)} samples; a record has at least three")
+        raise text.error(rows[-1][0], f"the file has only {len(time)} samples; a record has at least three")
     steps = np.diff(time)
     step = _median(steps)
     if not step > 0.0:
-        raise text.error(rows[int(np.argmin(steps)) + 1][0], "the time column does not ascend")
+        raise text.error(rows[int(np.argmin(steps)) + 1][0], "the times in the first column do not increase")
     off = np.flatnonzero(np.abs(steps - step) > 0.02 * step)
     uneven = bool(off.size) and _even(time, rounded)
     if off.size and not uneven:
         k = int(off[0])
-        raise text.error(rows[k + 1][0], f"the time step is {steps[k]:g} s here and {step:g} s elsewhere; resample to equal steps")
+        raise text.error(
+            rows[k + 1][0], f"the time step is {steps[k]:g} s here and {step:g} s elsewhere: resample the record to equal steps"
+        )
     step = TIME[given or "s"] * (time[-1] - time[0]) / (len(time) - 1)
     if not SHORTEST_STEP <= step < LONGEST_STEP:
         raise text.error(
             rows[0][0],
-            f"the time step is {step:g} s, which is not plausible for an accelerogram; if the times are milliseconds, name their column time_ms; "
-            "if the column holds sample numbers, delete it",
+            (
+                f"the time step is {step:g} s, which is not plausible for an accelerogram. If the times are in milliseconds, name "
+                "their column time_ms. If the column contains sample numbers, delete the column"
+            ),
         )
     return float(np.round(step, 9)), uneven
 

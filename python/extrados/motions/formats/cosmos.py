@@ -51,7 +51,7 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
         raise text.error(at, "expected the line 'n Comment line(s) follow'")
     at += 1 + int(found[1])
     if len(real) <= _STEP or not real[_STEP] > 0.0:
-        raise text.error(at, "the real header has no sampling interval (value 62)")
+        raise text.error(at, "the header of real numbers has no sampling interval (value 62)")
     step = text.step(repr(real[_STEP] / 1000.0), at)
     records = []
     while at < len(text) and not re.match(r"\s*end-of-data", text.words(at), re.I):
@@ -61,7 +61,7 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
         at, record = _block(text, at, step, " ".join(name.split()))
         records.append(replace(record, title=event, station=station))
     if at >= len(text):
-        raise text.error(at, "ends without 'End-of-data': the file is cut off")
+        raise text.error(at, "the file ends without 'End-of-data', so it is cut off")
     return at + 1, records
 
 
@@ -85,7 +85,7 @@ def _block(text: Lines, at: int, step: float, name: str) -> tuple[int, Record]:
         raise text.error(at, "expected the line 'n acceleration pts, approx x secs, units=cm/sec2(04), Format=(8F10.5)'")
     unit = _UNITS.get(int(code[1]))
     if unit == "counts":
-        raise text.error(at, "holds raw counts (V0), which need the instrument's response: take the V1 or V2 file")
+        raise text.error(at, "the file contains raw counts (V0), which require the response of the instrument: use the V1 or V2 file")
     what = found[2].lower()
     quantity = "velocity" if "vel" in what else "displacement" if "disp" in what else "acceleration"
     columns, width = shape

@@ -44,7 +44,7 @@ def read(text: Lines) -> list[Record]:
         at = end
     if not records:
         raise text.error(
-            len(text) - 1, "no line '... points of accel data equally spaced at ... sec': the file is cut off or of another kind"
+            len(text) - 1, "the file has no line '... points of accel data equally spaced at ... sec': it is cut off, or of another format"
         )
     return records
 

@@ -14,12 +14,12 @@ def recognises(text: Lines) -> bool:
 def read(text: Lines) -> list[Record]:
     """The one record of the file."""
     if len(text) <= HEADER:
-        raise text.error(len(text) - 1, f"ends within the {HEADER} header lines: the file is cut off")
+        raise text.error(len(text) - 1, f"the file ends within the {HEADER} header lines, so it is cut off")
     keys: dict[str, tuple[int, str]] = {}
     for at in range(HEADER):
         key, colon, entry = text[at].partition(":")
         if not colon:
-            raise text.error(at, f"'{text[at][:30]}' is no header line; expected 'KEY: value'")
+            raise text.error(at, f"'{text[at][:30]}' is not a header line; expected 'KEY: value'")
         keys[key.strip()] = (at, entry.strip())
 
     def value(key: str) -> tuple[int, str]:

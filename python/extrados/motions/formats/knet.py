@@ -21,7 +21,7 @@ def read(text: Lines) -> list[Record]:
 
     def value(key: str) -> tuple[int, str]:
         if key not in keys:
-            raise text.error(HEADER - 1, f"'{key}' is missing in the first {HEADER} lines: the file is cut off or of another kind")
+            raise text.error(HEADER - 1, f"'{key}' is missing in the first {HEADER} lines: the file is cut off, or of another format")
         return keys[key]
 
     at, said = value("Sampling Freq(Hz)")
@@ -31,10 +31,10 @@ def read(text: Lines) -> list[Record]:
     at, said = value("Scale Factor")
     scale = re.fullmatch(r"(\S+?)\(gal\)/(\S+)", tidy(said))
     if not scale:
-        raise text.error(at, f"'{said[:30]}' is no scale; expected such as '3920(gal)/6182761'")
+        raise text.error(at, f"'{said[:30]}' is not a scale; expected a text such as '3920(gal)/6182761'")
     divisor = text.number(scale[2], at)
     if divisor == 0.0:
-        raise text.error(at, "the scale factor divides by zero")
+        raise text.error(at, "the divisor of the scale factor is zero")
     factor = text.number(scale[1], at) / divisor
     value("Memo.")
     rows = text.blanks(HEADER)
@@ -44,7 +44,7 @@ def read(text: Lines) -> list[Record]:
     if len(counts) < expected:
         raise text.cut(len(counts), expected)
     if len(counts) < 3:
-        raise text.error(HEADER, f"only {len(counts)} samples; a record has at least three")
+        raise text.error(HEADER, f"the file has only {len(counts)} samples; a record has at least three")
     counts = counts - counts.mean()
     return [
         Record(

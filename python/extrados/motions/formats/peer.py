@@ -24,20 +24,20 @@ def read(text: Lines) -> list[Record]:
         bare = re.match(r"\s*(\d+)\s+(\S+)\s+NPTS", line, re.I)
         found = named or bare
         if not found:
-            raise text.error(at, "no number of points and step here; expected 'NPTS= 4000, DT= .0100 SEC'")
+            raise text.error(at, "this line gives no number of points and no step; expected 'NPTS= 4000, DT= .0100 SEC'")
         count, step = text.integer(found[1], at), text.step(found[2].rstrip(","), at)
         break
     else:
-        raise text.error(0, "a PEER file without its line 'NPTS= 4000, DT= .0100 SEC'")
+        raise text.error(0, "the PEER file has no line 'NPTS= 4000, DT= .0100 SEC'")
     header = "\n".join(text.words(k).strip() for k in range(at + 1)).upper()
     quantity = next((q for q in ("velocity", "displacement") if f"{q.upper()} TIME" in header), None)
     if quantity is None:
         said = quantities_in(header) or ["acceleration"]
         if len(said) > 1:
-            raise text.error(0, f"the header names {' and '.join(said)}; expected 'ACCELERATION TIME SERIES' or one other")
+            raise text.error(0, f"the header names {' and '.join(said)}; expected one quantity, as in 'ACCELERATION TIME SERIES'")
         quantity = said[0]
     if (other := SUFFIXES.get(text.path.suffix.lower(), quantity)) != quantity:
-        raise text.error(0, f"the header names {quantity}, the suffix {text.path.suffix} is that of {other}; rename the file")
+        raise text.error(0, f"the header names {quantity}, but the suffix {text.path.suffix} means {other}: rename the file")
     rows: list[tuple[int, list[str]]] = []
     have = 0
     for number, row in text.blanks(at + 1):

@@ -40,15 +40,15 @@ def read_record(source: File | Path, channel: str | int | None = None, columns: 
     wanted = [r for r in records if r.quantity == "acceleration"] or records
     if isinstance(channel, int):
         if not 1 <= channel <= len(wanted):
-            raise RecordError(f"{path}: has no channel {channel}; expected 1 to {len(wanted)}")
+            raise RecordError(f"{path}: channel {channel} does not exist; expected 1 to {len(wanted)}")
         return wanted[channel - 1]
     if channel is not None:
         found = [r for r in wanted if channel.lower() in r.component.lower()]
         if len(found) != 1:
-            raise RecordError(f"{path}: {len(found)} channels are called '{channel}'; there are {_names(wanted)}")
+            raise RecordError(f"{path}: {len(found)} channels have the name '{channel}'; the channels are {_names(wanted)}")
         return found[0]
     if len(wanted) > 1:
-        raise RecordError(f"{path}: holds {len(wanted)} channels; name one with channel = 1 to {len(wanted)}: {_names(wanted)}")
+        raise RecordError(f"{path}: this file has {len(wanted)} channels. Select one with channel = 1 to {len(wanted)}: {_names(wanted)}")
     return wanted[0]
 
 

@@ -74,13 +74,13 @@ class Lines:
 
     def cut(self, have: int, want: int) -> RecordError:
         """The complaint of a file that ends too early."""
-        return self.error(len(self.lines) - 1, f"ends after {have} of {want} values: the file is cut off or its header is wrong")
+        return self.error(len(self.lines) - 1, f"the file ends after {have} of {want} values: it is cut off, or its header is wrong")
 
     def number(self, token: str, at: int) -> float:
         """A token as a finite number, no NaN, no decimal comma, no Python spelling."""
         token = token.strip()
         if len(token) > LONGEST_NUMBER:
-            raise self.error(at, f"'{token[:30]}...' has {len(token)} characters, a number at most {LONGEST_NUMBER}")
+            raise self.error(at, f"'{token[:30]}...' has {len(token)} characters, but a number has at most {LONGEST_NUMBER}")
         if not _NUMBER.match(token):
             hint = "; the decimal sign is a point" if re.fullmatch(r"[+-]?\d*,\d+", token) else ""
             raise self.error(at, f"'{token[:30]}' is not a number{hint}")
@@ -125,13 +125,15 @@ class Lines:
         if len(decimals) == 1 and len(last.partition(".")[2]) < max(decimals):
             raise self.error(
                 at,
-                f"the last number '{last[:30]}' has fewer decimals than those above it: the file is cut off there; complete it, "
-                "or delete the last line",
+                (
+                    f"the last number '{last[:30]}' has fewer decimals than the numbers above, so the file is cut off there: complete "
+                    "this number, or delete the last line"
+                ),
             )
 
-    def blanks(self, start: int, stop: int | None = None) -> list[tuple[int, list[str]]]:
+    def blanks(self, start: int) -> list[tuple[int, list[str]]]:
         """Rows of tokens between blanks; empty lines are left out."""
-        rows = ((at, self.lines[at].split()) for at in range(start, len(self.lines) if stop is None else stop))
+        rows = ((at, self.lines[at].split()) for at in range(start, len(self.lines)))
         return [(at, row) for at, row in rows if row]
 
     def fixed(self, start: int, count: int, width: int, columns: int) -> tuple[np.ndarray, int]:
@@ -148,7 +150,9 @@ class Lines:
                 raise (
                     self.cut(have + len(row), count)
                     if at >= len(self.lines) - 1
-                    else self.error(at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters")
+                    else self.error(
+                        at, f"this line has {len(row)} values, expected {min(columns, count - have)} values of {width} characters each"
+                    )
                 )
             if len(row[-1]) < width and at == len(self.lines) - 1 and have + len(row) == count and len(line) % width:
                 raise self.error(at, "the last value is cut off")
@@ -164,8 +168,8 @@ class Lines:
         if len(values) == count:
             return values, []
         if len(values) - count > max(8, count // 100):
-            raise self.error(at, f"the header says {count} values but {len(values)} follow")
-        return values[:count], [f"{self.path.name}: {len(values)} values where the header says {count}; the rest is ignored"]
+            raise self.error(at, f"the header states {count} values, but {len(values)} follow")
+        return values[:count], [f"{self.path.name}: the header states {count} values, but {len(values)} follow; the rest is ignored"]
 
 
 def tidy(text: str) -> str:
@@ -177,10 +181,10 @@ def tidy(text: str) -> str:
     return re.sub(r"\s{3,}", "  ", text[: 100 * LONGEST_WORDS])[:LONGEST_WORDS]
 
 
-def read_file(file: str | Path, folder: Path | None = None, largest: int = LARGEST) -> File:
+def read_file(file: str | Path, folder: Path | None = None) -> File:
     """The file that a deck in `folder` names, or the one at a path; RecordError where it cannot be read."""
     try:
-        return files.read(file, largest, folder)
+        return files.read(file, LARGEST, folder)
     except files.BadFile as error:
         raise RecordError(str(error)) from None
 
@@ -189,12 +193,12 @@ def read_lines(file: File) -> Lines:
     """The lines of a record; refuses what is no text."""
     path, raw = file.path, file.content
     if not raw.strip():
-        raise RecordError(f"{path}: is empty; expected an accelerogram")
+        raise RecordError(f"{path}: this file is empty; expected an accelerogram")
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        raise RecordError(f"{path}:1: is UTF-16 text; save it as UTF-8 or ASCII")
+        raise RecordError(f"{path}:1: this file is UTF-16 text: save it as UTF-8 or ASCII")
     if b"\0" in raw:
         line = raw[: raw.index(b"\0")].count(b"\n") + 1
-        raise RecordError(f"{path}:{line}: is a binary file; expected text")
+        raise RecordError(f"{path}:{line}: this file is binary; expected text")
     text = raw.decode("utf-8-sig", errors="replace")
     ended = text.endswith(("\n", "\r", "\x1a"))
     return Lines(path, re.split(r"\r\n|\n|\r", text.rstrip("\r\n \t\x1a")), ended)

@@ -33,7 +33,7 @@ def parse(content: bytes) -> list[tuple[np.ndarray, float, str]]:
     try:
         import obspy
     except ImportError:
-        raise Unreadable("miniSEED and SAC need obspy: pip install 'extrados[seismo]'") from None
+        raise Unreadable("miniSEED and SAC require obspy. Install it by pip install 'extrados[seismo]'") from None
     try:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
@@ -41,7 +41,7 @@ def parse(content: bytes) -> list[tuple[np.ndarray, float, str]]:
     except MemoryError:
         raise
     except Exception as error:  # obspy raises many kinds on broken files
-        raise Unreadable(f"obspy cannot read it: {type(error).__name__}: {str(error)[:200]}") from None
+        raise Unreadable(f"obspy cannot read this file: {type(error).__name__}: {str(error)[:200]}") from None
     damage = [str(w.message) for w in said if issubclass(w.category, UserWarning)]
     if damage:
         raise Unreadable(f"is damaged, obspy says: {damage[0][:200]}")

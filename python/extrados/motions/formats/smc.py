@@ -24,9 +24,9 @@ def read(text: Lines) -> list[Record]:
     missing, rate = real[0], real[1]
     comments, count = int(whole[15]), int(whole[16])
     if not 0 <= comments <= 10_000 or not 3 <= count <= 100_000_000:
-        raise text.error(12, f"the header says {comments} comment lines and {count} values, which cannot be")
+        raise text.error(12, f"the header states {comments} comment lines and {count} values, which is not possible")
     if rate == missing or not 0.0 < rate < 1e5:
-        raise text.error(17, "no sampling rate: times are unequally spaced; take the corrected file of this record")
+        raise text.error(17, "the file has no sampling rate, because its times are unequally spaced: use the corrected file of this record")
     for k in range(comments):
         if at + k < len(text) and not text[at + k].lstrip().startswith("|"):
             raise text.error(at + k, f"expected comment line {k + 1} of {comments}, beginning with '|'")

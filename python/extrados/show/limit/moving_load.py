@@ -42,7 +42,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                     linewidths=0.25,
                     alpha=0.5,
                     zorder=2.2,
-                    label="thrust lines, all places" if i == 0 else "_",
+                    label="thrust lines at all positions of the load" if i == 0 else "_",
                 )
             )
         section.thrust_lines(ax, run, name, "collapse", style.THRUST, "thrust line")
@@ -54,7 +54,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         hinged = [h.joint for h in r.hinges]
         lettered = len(hinged) <= MOST_LETTERS
         style.draw_hinges(ax, point[hinged], [chr(65 + i) for i in range(len(hinged))] if lettered else None)
-        ax.set_title(f"Collapse at the worst place: {_borne(r)}")
+        ax.set_title(f"Collapse at the most dangerous position: {_borne(r)}")
         if ax.get_legend_handles_labels()[0]:
             style.legend_below(fig, ax)
         section.earth(moved, run, name)
@@ -70,7 +70,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-worst"),
-                f"The most dangerous place: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
+                f"The most dangerous position of the load: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
             )
         ]
     return found if len(place) == 1 else [*found, _draw_places(run, name, folder)]
@@ -93,11 +93,11 @@ def _draw_places(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         curve.set_ylim(0.0, max(1.1 * low, min(float(np.nanmax(value)) * 1.05, 8.0 * low), 1.1 if adequacy else 0.0))
         curve.set_xlabel("x of the first axle [m]")
         curve.set_ylabel("adequacy factor" if adequacy else "load at collapse [kN]")
-        curve.set_title("Adequacy over place" if adequacy else "Load at collapse over place")
+        curve.set_title("Adequacy factor over position" if adequacy else "Load at collapse over position")
         return (
             style.save(fig, folder, f"{name}-places"),
-            "Load that causes collapse, over the place of the first axle."
-            + (f" At the worst place joints slide: {DILATANT}." if run.results_of(name, MovingLoad).dilating_joints else ""),
+            "Load that causes collapse, over the position of the first axle."
+            + (f" At the most dangerous position joints slide: {DILATANT}." if run.results_of(name, MovingLoad).dilating_joints else ""),
         )
 
 
@@ -107,13 +107,13 @@ def _borne(r: MovingLoad) -> str:
 
 
 def _road_of(run: Stored, name: str, blocks: list[np.ndarray]) -> float:
-    """Level at which loads stand [m]: the top of the surfacing, the fill or the stones."""
+    """Level of the loads [m]: the top of the surfacing, the fill or the blocks."""
     tops = [run.array(name, what) for what in ("fill_outline", "surfacing_outline") if what in run.arrays[name]]
     return max(float(o[:, 1].max()) for o in [*blocks, *tops])
 
 
 def _load_marks(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray], size: float) -> None:
-    """Axles as arrows and even loads as bands, on the road, or on the stones where there is no fill."""
+    """Axles as arrows and uniform loads as bands, on the road, or on the blocks of a structure without fill."""
     paved = any(what in run.arrays[name] for what in ("fill_outline", "surfacing_outline"))
     road = _road_of(run, name, blocks)
     for x in run.array(name, "axle"):
@@ -155,7 +155,7 @@ def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
 
 
 def _zones(ax: Axes, run: Stored, name: str, links: list[np.ndarray]) -> None:
-    """Zones of thrust along the chains: what of the joints the strength needs to carry the compression."""
+    """Zones of thrust along the chains: the part of each joint that carries the compression at the given strength."""
     if "zone_inner" not in run.arrays[name]:
         return
     inner, outer = run.array(name, "zone_inner"), run.array(name, "zone_outer")

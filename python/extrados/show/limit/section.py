@@ -51,12 +51,12 @@ def ground(ax: Axes, run: Stored, name: str, joints: list[int]) -> None:
 
 
 def standing(run: Stored, name: str) -> list[int]:
-    """The joints by which the structure stands on the ground."""
+    """The joints on the ground."""
     return [reaction.joint for reaction in run[name]["reactions"]]
 
 
 def earth(ax: Axes, run: Stored, name: str) -> None:
-    """Fill and surfacing over the stones, where there are any."""
+    """Fill and surfacing over the blocks, if any."""
     for what, colour in (("fill_outline", FILL), ("surfacing_outline", PAVED)):
         if what in run.arrays[name]:
             ax.fill(*run.array(name, what).T, facecolor=colour, edgecolor=style.EDGE, linewidth=0.4, zorder=0.5)
@@ -88,9 +88,9 @@ def resting(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray]) -> None:
 
 
 def ties(ax: Axes, run: Stored, name: str, state: str, pose: np.ndarray | None = None) -> None:
-    """Ties, struts and springs with their forces in a state, dashed where they are slack; nothing without them.
+    """Ties, struts and springs with their forces in a state, dashed if slack.
 
-    pose (blocks, 3): where the stones have gone; the ties follow them, and tell no forces.
+    pose (blocks, 3): displaced blocks; the ties follow them, without forces.
     """
     forces = f"{state}_tie_force"
     if forces not in run.arrays[name]:
@@ -126,7 +126,7 @@ def _moved(run: Stored, name: str, points: np.ndarray, block: np.ndarray, pose: 
 
 def _pull(force: float) -> str:
     """A force in a tie as drawings tell it."""
-    return f"{force / 1e3:.3g} kN" if force > 0.0 else f"{-force / 1e3:.3g} kN pressed"
+    return f"{force / 1e3:.3g} kN" if force > 0.0 else f"{-force / 1e3:.3g} kN compression"
 
 
 def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text: str) -> None:
@@ -165,8 +165,8 @@ def overall_dimensions(ax: Axes, blocks: list[np.ndarray], others: np.ndarray) -
 
 
 def thrust_lines(ax: Axes, run: Stored, name: str, state: str, colour: str, label: str) -> None:
-    """The thrust line of a state through every stone: where there are arches or stacks of one width, but for branches
-    within a stone, which share it as they press; else as wide everywhere as it presses."""
+    """The thrust line of a state through every block. In arches and stacks it has one width, divided among branches within a
+    block in proportion to their forces; elsewhere its width shows the zone in compression."""
     points, start = run.array(name, f"{state}_line"), run.array(name, f"{state}_line_start")
     lines = [points[a:b] for a, b in itertools.pairwise(start)]
     force = run.array(name, f"{state}_line_force")

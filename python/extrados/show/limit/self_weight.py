@@ -1,4 +1,4 @@
-"""Collapse under self-weight: the blocks, and the motion that proves it."""
+"""Collapse under self-weight: the blocks, and the collapse mechanism of the certificate."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def draw_self_weight(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     step = SHOWN * size / max(speed)
     pose = np.column_stack([centroid + step * velocity[:, :2], step * velocity[:, 2]])
     fastest = int(np.argmax(speed))
-    title = "Collapse motion under self-weight"
+    title = "Collapse mechanism under self-weight"
     with style.figure(7.2, 7.2 * min(1.2, max(0.35, np.ptp(corners[:, 1]) / np.ptp(corners[:, 0])))) as (fig, (ax,)):
         section.stone(ax, section.carried(blocks, centroid, pose))
         section.stone(ax, blocks, ghost=True)

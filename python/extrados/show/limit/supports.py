@@ -1,4 +1,4 @@
-"""Figures of supports that give way: states of an arch on its way, the joints that open."""
+"""Figures of moving supports: states of an arch during the movement, and the joints that open."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-states"),
-                "The arch as its right support moves (true scale), with the thrust line through its three hinges.",
+                "The arch at several movements of its right support (true scale), with the thrust line through its three hinges.",
             )
         ]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
@@ -42,9 +42,11 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for stage in r.stages[1:]:
             ax.axvline(stage.movement_m, color=style.EDGE, linestyle=":", linewidth=0.7)
         ax.set_xlabel("movement of the right support [m]")
-        ax.set_ylabel("force on it [kN]")
+        ax.set_ylabel("force on the support [kN]")
         ax.legend()
-        found.append((style.save(fig, folder, f"{name}-thrust"), "Force of the arch on the moving support; dotted: a hinge moves."))
+        found.append(
+            (style.save(fig, folder, f"{name}-thrust"), "Force of the arch on the moving support. Dotted: a hinge moves to another joint.")
+        )
     return found
 
 
@@ -83,12 +85,12 @@ def _draw_settled(run: Stored, name: str, folder: Path, blocks: list[np.ndarray]
                 color=style.HINGE,
                 arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": style.HINGE},
             )
-        ax.set_title(f"Settlement of supports: movements and openings {factor:g} times as large")
+        ax.set_title(f"Movements and openings magnified {factor:g} times")
         style.section_axes(ax)
         ax.margins(0.12)  # room for the openings beside the outermost stones
         return (
             style.save(fig, folder, f"{name}-openings"),
-            f"Joints open as supports settle; movements and openings are drawn {factor:g} times as large, dotted: before.",
+            f"Openings of joints due to the movement of supports, magnified {factor:g} times. Dotted: before the movement.",
         )
 
 

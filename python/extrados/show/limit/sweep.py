@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.results.limit import Imperfections, Sweep
 from extrados.results.store import Stored
-from extrados.show import style
+from extrados.show import solids, style
 from extrados.show.limit import section
 
 MOST_NAMED = 8  # mechanisms in a legend
@@ -76,10 +76,12 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-curve"),
-                "Tilt at collapse; dotted: changes of mechanism; crosses: values at which the structure cannot stand; "
-                "points on the axis: values without a result or without a limit.",
+                "Tilt at collapse. Dotted: changes of mechanism. Crosses: values at which the structure collapses "
+                "under self-weight. Points on the axis: values without a result, or values at which the structure does not collapse at any tilt.",
             )
         ]
+    if "example" not in run.arrays[name]:  # solids
+        return found + solids.draw_examples(run, name, folder, {m.number: m.hinges for m in r.mechanisms})
     if len(run.array(name, "example")):
         examples, moved = (list(section.paths(run, name, what).values()) for what in ("example", "example_moved"))
         of = run.array(name, "example_mechanism")
@@ -126,11 +128,11 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.plot(gamma[order], (np.arange(len(order)) + 1.0) / len(order), color=style.THRUST)
             ax.set_xlabel("collapse acceleration [g]")
             ax.set_ylabel("share of sections with at most this acceleration")
-        return [(style.save(fig, folder, name), "Collapse acceleration of the sections that stand.")]
+        return [(style.save(fig, folder, name), "Collapse acceleration of the sections that carry their self-weight.")]
 
 
 def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Capacities of the random surveys: how many bear at most how much, the band, and the survey that is given."""
+    """Capacities of the random surveys: distribution, band, and the value of the given survey."""
     r = run.results_of(name, Imperfections)
     gamma = run.array(name, "gamma")
     lesser = np.sort(np.nan_to_num(gamma.min(axis=1), nan=0.0))
@@ -141,19 +143,19 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
             r.high_collapse_acceleration_g,
             color=style.STONE,
             zorder=0,
-            label=f"nine in ten: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
+            label=f"90 % of the surveys: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
         )
         ax.step(lesser, share, where="post", color=style.THRUST, label=f"{r.count} surveys within {1e3 * r.deviation_m:.3g} mm")
         given = r.given_collapse_acceleration_g
-        ax.axvline(given, color=style.HINGE, linestyle="--", label=f"as given: {given:.4f} g")
-        ax.set_xlabel("collapse acceleration, the lesser of both senses [g]")
-        ax.set_ylabel("share of surveys at or below")
+        ax.axvline(given, color=style.HINGE, linestyle="--", label=f"survey in the deck: {given:.4f} g")
+        ax.set_xlabel("collapse acceleration [g], the smaller of +x and -x")
+        ax.set_ylabel("share of surveys with at most this acceleration")
         ax.set_ylim(0.0, 1.0)
         ax.set_title("Capacity within the tolerance of the survey")
         style.legend_below(fig, ax)
         return [
             (
                 style.save(fig, folder, name),
-                "Capacities of random surveys: the stones are the same, their corners and joints are displaced within the deviation.",
+                "Capacities of random surveys of the same stones, with corners and joints displaced within the deviation.",
             )
         ]

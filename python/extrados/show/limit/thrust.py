@@ -1,4 +1,4 @@
-"""Figures of thrust lines at a given acceleration: lines, force polygons, friction needed."""
+"""Figures of thrust lines at a given acceleration: lines, force polygons, required friction."""
 
 from pathlib import Path
 from typing import Any
@@ -6,14 +6,18 @@ from typing import Any
 import numpy as np
 
 from extrados.results.limit import Thrust
+from extrados.results.solids import SolidThrust
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.limit import section
+from extrados.show.solids import draw_thrust
 from extrados.show.stones import outlines
 
 
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """The three lines and their force polygons; friction needed along the joints."""
+    """The three lines and their force polygons; friction needed along the joints. Of solids the forces between blocks."""
+    if isinstance(run[name], SolidThrust):
+        return draw_thrust(run, name, folder)
     r = run.results_of(name, Thrust)
     blocks = outlines(run, name)
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
@@ -44,7 +48,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             forces.set_title(f"Force polygons of the {r['chain']}")
         caption = "Thrust lines of least, greatest and most central thrust, and their force polygons."
         if not arched:
-            caption = "The most central state: the thrust line through every stone, as wide as it presses."
+            caption = "The most central state: thrust line through every stone; its width shows the zone in compression."
         found = [(style.save(fig, folder, f"{name}-lines"), caption)]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
@@ -52,7 +56,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_ylim(bottom=0.0)
         style.numbers(ax.xaxis)
         ax.set_xlabel("joint")
-        ax.set_ylabel("friction needed")
+        ax.set_ylabel("required friction")
         ax.legend()
-        found.append((style.save(fig, folder, f"{name}-friction"), "Coefficient of friction needed at each joint."))
+        found.append((style.save(fig, folder, f"{name}-friction"), "Coefficient of friction required at each joint."))
     return found

@@ -81,14 +81,14 @@ def _per_metre(r: Tilt, force: float) -> str:
 
 def _caption(r: Tilt) -> str:
     letters = "; ".join(f"{chr(65 + i)} {h.told()}" for i, h in enumerate(r.hinges[: section.MOST_LETTERED]))
-    free = " Where the line is not fixed by the mechanism its most central course is drawn." if len(r.thrusts or {}) > 1 else ""
+    free = " The mechanism does not fix the line everywhere: elsewhere the most central line is drawn." if len(r.thrusts or {}) > 1 else ""
     slides = f" Joints slide: {DILATANT}." if r.dilating_joints else ""
     least = r.collapse_acceleration_non_associated_g if r.dilating_joints else None
     if least is not None:
-        slides += f" Without dilatancy collapse is possible at {least:.4f} g (not drawn)."
+        slides += f" Without dilatancy, collapse is possible from {least:.4f} g (not drawn)."
         if r.collapse_acceleration_load_path_g is not None:
-            slides += f" Load paths give the design value {r.collapse_acceleration_load_path_g:.4f} g."
-    return f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}{slides}"
+            slides += f" The analysis by load paths gives the design value {r.collapse_acceleration_load_path_g:.4f} g."
+    return f"Thrust line, hinges and mechanism at the collapse acceleration. Hinges: {letters}.{free}{slides}"
 
 
 def _title(r: Tilt) -> str:
@@ -99,7 +99,7 @@ def _title(r: Tilt) -> str:
     design = r.collapse_acceleration_load_path_g
     value = "" if design is None else f"{design:.4f} g (design value),\n"
     without = "" if least is None else f"\nwithout dilatancy {value}{least:.4f} g (least found)"
-    return f"Collapse to +x at {r.collapse_acceleration_g:.4f} g at most (dilatant friction){without}"
+    return f"Collapse to +x at or below {r.collapse_acceleration_g:.4f} g (dilatant friction: upper bound){without}"
 
 
 def _draw_fracture(run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray, height: float) -> tuple[str, str]:
@@ -120,7 +120,7 @@ def _draw_fracture(run: Stored, name: str, folder: Path, blocks: list[np.ndarray
             style.section_axes(ax)
         return (
             style.save(fig, folder, f"{name}-fracture"),
-            f"Mechanisms with the buttress whole and cracked; the crack starts {f.crack_height_m:.2f} m above the base, the wedge below it stays.",
+            f"Mechanisms with the uncracked and with the cracked buttress. The crack starts {f.crack_height_m:.2f} m above the base. The wedge below the crack does not move.",
         )
 
 
@@ -176,8 +176,8 @@ def film_tilt(run: Stored, name: str, folder: Path) -> None:
                 drawn[word].set_data(*(turned(points, -angle).T if share == 0.0 else np.empty((2, 0))))
             cursor.set_xdata([np.degrees(angle)] * 2)
             title.set_text(
-                f"ground tilted by {np.degrees(angle):.2f} degrees, as {np.tan(angle):.4f} g to the side"
-                + (": it collapses" if share else "")
+                f"ground tilted by {np.degrees(angle):.2f} degrees, equal to {np.tan(angle):.4f} g horizontally"
+                + (": collapse" if share else "")
             )
 
         count = len(tilt) + moves

@@ -11,30 +11,37 @@ class FrameOptions(Table):
 
     heights: Literal["dolce", "lagomarsino"] = key(
         "dolce",
-        "deformable height of piers: Dolce's effective height, or the mean height of the openings beside (outer piers: of "
-        "opening and storey)",
+        (
+            "deformable height of piers: effective height by Dolce, or the mean height of the adjacent openings (for outer "
+            "piers: mean of opening and storey)"
+        ),
         source="Dolce 1991; Lagomarsino and others 2013",
     )
     shear: Literal["least", "mohr-coulomb", "turnsek-cacovic", "reversed", "damage", "none"] = key(
         "least",
-        "shear strength of piers: Mohr-Coulomb on the compressed part, Turnsek-Cacovic, or the lesser of both; reversed: that, with "
-        "cohesion on the part alone that opens in neither sense; damage: friction with damage and softening; none: flexure alone",
+        (
+            "shear strength of piers. mohr-coulomb: on the compressed part; turnsek-cacovic; least: the lesser of both; "
+            "reversed: as least, with cohesion only on the part that opens in neither sense; damage: friction with damage "
+            "and softening; none: flexure only"
+        ),
         source="NTC 2018, 7.8.2.2; Circ. 7/2019, C8.7.1.3.1; Gambarotta and Lagomarsino 1997",
     )
-    cohesion: Stress | None = key(None, "shear strength of bed joints without pressure, f_v0; default that of [joints]", gt=0)
-    friction: float = key(0.4, "coefficient of friction of bed joints in that strength", gt=0, le=1.5, source="EN 1996-1-1")
+    cohesion: Stress | None = key(None, "shear strength f_v0 of bed joints without compression; default: that of [joints]", gt=0)
+    friction: float = key(0.4, "coefficient of friction of bed joints in the shear strength", gt=0, le=1.5, source="EN 1996-1-1")
     diagonal_strength: Stress | None = key(
-        None, "tau_0 of diagonal cracking, without pressure; f_t is 1.5 times it", gt=0, source="Circ. 7/2019, C8.7.1.16"
+        None, "tau_0 of diagonal cracking, without compression; f_t is 1.5 times tau_0", gt=0, source="Circ. 7/2019, C8.7.1.16"
     )
-    stiffness: float = key(0.5, "part of the elastic stiffness that cracked masonry has", gt=0, le=1, source="NTC 2018, 7.2.6")
+    stiffness: float = key(0.5, "ratio of the stiffness of cracked masonry to its elastic stiffness", gt=0, le=1, source="NTC 2018, 7.2.6")
     confidence_factor: float = key(1.0, "divides all strengths", ge=1, le=2)
-    sections: Literal[3, 5] = key(5, "sections of a pier, at Gauss-Lobatto points")
+    sections: Literal[3, 5] = key(5, "number of sections of a pier, at Gauss-Lobatto points")
     drift_flexure: float = key(
-        0.01, "chord rotation of a pier at which flexural strength is lost", gt=0, le=0.1, source="NTC 2018, 7.8.2.2.1"
+        0.01, "drift (chord rotation) of a pier at which its flexural strength is lost", gt=0, le=0.1, source="NTC 2018, 7.8.2.2.1"
     )
-    drift_shear: float = key(0.005, "that at which shear strength is lost", gt=0, le=0.1, source="NTC 2018, 7.8.2.2.2")
+    drift_shear: float = key(
+        0.005, "drift (chord rotation) of a pier at which its shear strength is lost", gt=0, le=0.1, source="NTC 2018, 7.8.2.2.2"
+    )
     spandrels: Literal["all", "lintels", "none"] = key(
-        "all", "spandrels that couple piers: all, those whose openings have lintels, or none"
+        "all", "spandrels that couple piers: all spandrels, only those above openings with lintels, or none"
     )
     spandrel_drift_tied: float = key(
         0.02,
@@ -50,16 +57,24 @@ class FrameOptions(Table):
         gt=0,
         source="NTC 2018, 7.8.2.2.4",
     )
-    interlocking: float = key(1.0, "phi of spandrels: unit height over overlap", gt=0, le=5, source="Circ. 7/2019, C8.7.1.17")
+    interlocking: float = key(1.0, "phi of spandrels: unit height divided by overlap", gt=0, le=5, source="Circ. 7/2019, C8.7.1.17")
     spandrel_drift_flexure: float = key(
-        0.015, "chord rotation of a spandrel at which its flexural strength drops", gt=0, le=0.1, source="Circ. 7/2019, C8.7.1.3.1.1"
+        0.015,
+        "drift (chord rotation) of a spandrel at which its flexural strength drops",
+        gt=0,
+        le=0.1,
+        source="Circ. 7/2019, C8.7.1.3.1.1",
     )
-    spandrel_drift_shear: float = key(0.005, "that at which its shear strength drops", gt=0, le=0.1, source="Circ. 7/2019, C8.7.1.3.1.1")
+    spandrel_drift_shear: float = key(
+        0.005, "drift (chord rotation) of a spandrel at which its shear strength drops", gt=0, le=0.1, source="Circ. 7/2019, C8.7.1.3.1.1"
+    )
     spandrel_residual: float | None = key(
-        None, "part of its strength that a spandrel keeps beyond; default 0.6 with a lintel, 0.1 without", ge=0, le=1
+        None, "share of the strength that a spandrel keeps beyond its drift limit; default 0.6 with a lintel, 0.1 without", ge=0, le=1
     )
     flange_strength: Stress | None = key(
-        None, "shear strength of the vertical section between walls that meet at corners; default the cohesion, unlimited without one", gt=0
+        None,
+        ("shear strength of the vertical section between walls that meet at corners; default: the cohesion, or unlimited without cohesion"),
+        gt=0,
     )
     flanges: Literal["effective", "whole", "none"] = key(
         "effective",
@@ -67,6 +82,6 @@ class FrameOptions(Table):
         "corners transfer no vertical force",
         source="after EN 1996-1-1, 5.5.3",
     )
-    softening: float = key(0.5, "beta of the law damage: exponent of its resistance beyond the peak", gt=0, lt=2)
-    damage_compliance: float = key(3.0, "c_t G of the law damage: inelastic over elastic shear compliance", gt=0, le=100)
-    second_order: bool = key(True, "effect of the weight on displaced piers (P-Delta)")
+    softening: float = key(0.5, 'beta of shear = "damage": exponent of the resistance beyond the peak', gt=0, lt=2)
+    damage_compliance: float = key(3.0, 'c_t G of shear = "damage": ratio of inelastic to elastic shear compliance', gt=0, le=100)
+    second_order: bool = key(True, "include the effect of the weight on displaced piers (P-Delta)")

@@ -163,19 +163,20 @@ class _Maker:
         for a, b in itertools.combinations(range(len(plan.walls)), 2):
             if (a, b) not in self.junctions and (gap := nearly_meeting(plan.walls[a], plan.walls[b])) is not None:
                 self.remarks.append(
-                    f"Walls '{plan.walls[a].name}' and '{plan.walls[b].name}' end {gap:.3g} m apart and do not meet: nothing joins them."
+                    f"Walls '{plan.walls[a].name}' and '{plan.walls[b].name}' end {gap:.3g} m apart, so they do not meet and are not "
+                    "connected."
                 )
         for k, corner in enumerate(plan.corners):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
         if plan.beds:
-            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own strength.")
+            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
         if plan.ring_beams:
             self.remarks.append("Ring beams of [[structure.ring_beams]] remain elastic: check their reinforcement for the greatest moment.")
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
-                    raise BadGeometry(f"wall '{wall.name}' does not reach the ground: a frame has no pier below it")
+                    raise BadGeometry(f"wall '{wall.name}' does not reach the ground, so it has no pier below")
                 self._divide(w, wall)
         n = self._number()
         self.linear, self.weight = np.zeros((n, n)), np.zeros(n)
@@ -189,7 +190,7 @@ class _Maker:
             with blaming("floors", k):
                 around = frozenset(w for w, _, _ in plan.around(floor))
                 if (first := rings.setdefault((floor.storey, around), k)) != k:
-                    raise BadGeometry(f"floor {first + 1} lies between the same walls on storey {floor.storey}")
+                    raise BadGeometry(f"floor {first + 1} is given for the same walls on storey {floor.storey}")
                 self._floor(floor)
         for load in plan.prestress:
             w = self._named(load.wall)
@@ -231,20 +232,20 @@ class _Maker:
         pieces = {storey: _between(wall, storey, plan.storeys[storey - 1]) for storey in range(1, last + 1)}
         for storey, found in pieces.items():
             if not found:
-                raise BadGeometry(f"wall '{wall.name}', storey {storey}: its openings leave no pier")
+                raise BadGeometry(f"wall '{wall.name}', storey {storey}: the openings leave no pier")
         for level in range(last + 1):
             below, above = pieces.get(level, []), pieces.get(level + 1, [])
             groups = _groups([p[:2] for p in below], [p[:2] for p in above])
             if level and any(len(g) > 2 for g in groups):
                 self.remarks.append(
-                    f"Wall '{wall.name}', level {level}: piers above and below do not match; those that overlap share one rigid node."
+                    f"Wall '{wall.name}', level {level}: piers above and below do not match. Piers that overlap share one rigid node."
                 )
             for group in groups:
                 if level and not any(side == 0 for side, _ in group):
                     ends = [above[k][:2] for _, k in group]
                     self.remarks.append(
-                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m stands above an opening; "
-                        "only spandrels carry it."
+                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m is above an opening, so "
+                        "only spandrels support it."
                     )
                 ends = [(below, above)[side][k][:2] for side, k in group]
                 self.at.setdefault((w, level), []).append(len(self.nodes))
@@ -333,8 +334,10 @@ class _Maker:
         if any(sign < 0.0 for sign in self.turned.values()):
             w = next(w for w, sign in self.turned.items() if sign < 0.0)
             raise BadGeometry(
-                f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line and run against each other; give them one "
-                "sense",
+                (
+                    f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line with opposite directions: give "
+                    "both the same direction"
+                ),
                 ("structure", "walls", w),
             )
         count = 0
@@ -483,7 +486,7 @@ class _Maker:
         if name is None:
             return self.building.material
         if name not in self.building.materials:
-            raise BadGeometry(f"wall '{wall.name}': there is no [materials.{name}]")
+            raise BadGeometry(f"wall '{wall.name}': the deck has no [materials.{name}]")
         return self.building.materials[name]
 
     def _element(self, strip: Strip) -> MacroElement:
@@ -678,7 +681,7 @@ class _Maker:
             way = (ends[1] - ends[0])[:2]
             length = float(np.linalg.norm(ends[1] - ends[0]))
             if rod.material not in self.building.materials:
-                raise BadGeometry(f"rod {k + 1}: there is no [materials.{rod.material}]", ("structure", "rods", k, "material"))
+                raise BadGeometry(f"rod {k + 1}: the deck has no [materials.{rod.material}]", ("structure", "rods", k, "material"))
             steel = self.building.materials[rod.material]
             pull = UNLIMITED if steel.tensile_strength is None else rod.area * steel.tensile_strength
             for w in self._beside(rod, way / length):
@@ -694,7 +697,7 @@ class _Maker:
                 ]
                 if not found or min(found)[0] > 0.5:
                     raise BadGeometry(
-                        f"rod {k + 1}: its end at {', '.join(f'{v:g}' for v in end)} m is not on a wall", ("structure", "rods", k)
+                        f"rod {k + 1}: the end at {', '.join(f'{v:g}' for v in end)} m is not on a wall", ("structure", "rods", k)
                     )
                 _, w, s = min(found)
                 if level:

@@ -23,18 +23,19 @@ def open_mesh(wall: MeshFile, building: Description) -> tuple[str, ForeignMesh]:
     path, mesh = file.path, read_mesh_file(file)
     points = mesh.points
     if not np.isfinite(points).all():
-        raise BadGeometry(f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place")
+        raise BadGeometry(f"{path.name}: the coordinates of node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} are not finite")
     far = np.abs(points).max(initial=0.0) * wall.scale
     if far > FARTHEST:
         node = int(np.abs(points).max(axis=1).argmax()) + 1
         raise BadGeometry(
-            f"{path.name}: node {node} lies {far:.3g} m from the origin; expected places within {FARTHEST:g} m: move it to the "
-            "building's own origin"
+            f"{path.name}: node {node} lies {far:.3g} m from the origin; expected at most {FARTHEST:g} m. Move the origin to the building"
         )
     for cells in mesh.cells:
         data = np.asarray(cells.data)
         if data.size and (data.min() < 0 or data.max() >= len(points)):
-            raise BadGeometry(f"{path.name}: a cell of kind '{cells.type}' names a node that is not there; there are {len(points)}")
+            raise BadGeometry(
+                f"{path.name}: a cell of kind '{cells.type}' names a node that does not exist; the file has {len(points)} nodes"
+            )
     return path.name, mesh
 
 
@@ -48,17 +49,17 @@ def mesh_file(building: Description, options: MeshOptions, seed: int | None = No
 def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Mesh:
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     if wall.groups:
-        raise BadGeometry("groups are of shells in space, which `pushover` analyses; a plane wall takes regions", ("structure", "groups"))
+        raise BadGeometry("groups belong to shells in space (`pushover`); for a plane wall give regions", ("structure", "groups"))
     name, mesh = open_mesh(wall, building)
     found: dict[str, list[np.ndarray]] = {}
     for cells in mesh.cells:
         if cells.type in KINDS:
             found.setdefault(cells.type, []).append(np.asarray(cells.data))
         elif cells.type not in ("line", "line3", "vertex"):
-            raise BadGeometry(f"{name}: cells of kind '{cells.type}'; expected {', '.join(KINDS)}")
+            raise BadGeometry(f"{name}: this file has cells of kind '{cells.type}'; expected {', '.join(KINDS)}")
     if len(found) != 1:
         kinds = ", ".join(found) or "none"
-        raise BadGeometry(f"{name}: holds plane cells of kind {kinds}; expected exactly one of {', '.join(KINDS)}")
+        raise BadGeometry(f"{name}: this file has plane cells of the kinds {kinds}; expected exactly one of {', '.join(KINDS)}")
     points = np.asarray(mesh.points, dtype=float)
     if points.shape[1] > 2 and np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2]):
         raise BadGeometry(f"{name}: the mesh is not plane: z runs from {points[:, 2].min():g} to {points[:, 2].max():g}")

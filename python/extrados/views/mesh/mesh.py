@@ -105,12 +105,12 @@ class Mesh:
             nearest = int(distance.argmin())
             if distance[nearest] > 1.5 * self.size:
                 raise BadGeometry(
-                    f"{what}: no node near x {point[0]:g} m, y {point[1]:g} m; the nearest is at "
-                    f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
+                    f"{what}: no node near x {point[0]:g} m, y {point[1]:g} m; the nearest node is at {self.xy[nearest, 0]:g}, "
+                    f"{self.xy[nearest, 1]:g}"
                 )
             if distance[nearest] > 1e-3 * self.size:
                 self.tell(
-                    f"{what}: no node lies at x {point[0]:g} m, y {point[1]:g} m; the nearest is taken, at "
+                    f"{what}: no node lies at x {point[0]:g} m, y {point[1]:g} m. The nearest node is used, at "
                     f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
                 )
             return np.array([nearest])
@@ -119,7 +119,7 @@ class Mesh:
                 inside &= (self.xy[:, axis] >= ends[0] - tolerance) & (self.xy[:, axis] <= ends[1] + tolerance)
         found = np.flatnonzero(inside)
         if not len(found):
-            raise BadGeometry(f"{what}: no node lies within {words_of_place(place.edge, place.x, place.y)}; a mesh line is missing")
+            raise BadGeometry(f"{what}: no node lies within {words_of_place(place.edge, place.x, place.y)}. Add a mesh line there")
         return found
 
     def tell(self, warning: str) -> None:
@@ -212,9 +212,9 @@ def build_mesh(
 ) -> Mesh:
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: leave joint_thickness out")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove joint_thickness")
     if options.joints is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no stones: leave joints out")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no blocks: remove joints")
     if not len(connect):
         raise BadGeometry("the mesh has no elements")
     used, renumbered = np.unique(connect, return_inverse=True)
@@ -229,7 +229,7 @@ def build_mesh(
     same = np.sort(connect, axis=1)
     _, counts = np.unique(same, axis=0, return_counts=True)
     if counts.max() > 1:
-        raise BadGeometry(f"{int((counts - 1).sum())} elements stand twice in the mesh")
+        raise BadGeometry(f"{int((counts - 1).sum())} elements occur twice in the mesh")
 
     names = list(building.materials)
     materials = [building.material, *building.materials.values()]
@@ -245,7 +245,7 @@ def build_mesh(
             raise BadGeometry("a region is given by x and y, not by an edge")
         inside = region.holds(centre)
         if not inside.any():
-            warnings.append(f"region {i + 1} holds no element")
+            warnings.append(f"region {i + 1} contains no element")
         if region.material is not None:
             material[inside] = 1 + names.index(region.material)
         if region.thickness is not None:

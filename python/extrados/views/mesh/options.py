@@ -23,31 +23,37 @@ class MeshOptions(Table):
     """Kind, size and pattern of the elements."""
 
     size: Length | None = key(
-        None, "wanted size of the elements; default a twentieth of a wall's lesser side, an eighth of the median joint of stones", gt=0
+        None, ("required size of the elements; default: 1/20 of the lesser side of the wall, or 1/8 of the median joint for blocks"), gt=0
     )
     joints: Literal["interfaces", "rows"] | None = key(
         None,
-        "of stones: joints of no thickness, which open and slide, or thin rows of elements, which only open; default "
-        "interfaces. A panel has stones where this is given, and its unit is",
+        (
+            "for blocks: joints without thickness (interfaces), which open and slide, or thin rows of elements, which only "
+            "open; default: interfaces. A panel is divided into blocks if this key and its unit are given"
+        ),
     )
     joint_thickness: Length | None = key(
         None,
-        "thickness of the row of elements along each joint between stones; default 1/25 of the size, and at most a fifth "
-        "of the shortest element along a joint. The stiffness of interfaces is by default that of the stone over it",
+        (
+            "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, and at most 1/5 of "
+            "the shortest element along a joint. By default, interfaces have the stiffness of the block material over this "
+            "thickness"
+        ),
         gt=0,
     )
-    element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; stones have triangles where quadrilaterals do not fit")
+    element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; blocks also get triangles where quadrilaterals do not fit")
     pattern: Literal["structured", "random"] = key(
-        "structured", "structured grid, or triangles on randomly moved points (no mesh lines for cracks to follow)"
+        "structured",
+        ("pattern of the mesh: structured grid, or triangles on randomly moved points (without mesh lines that cracks could follow)"),
     )
     seed: int = key(1, "of the random pattern", ge=0, le=2**31 - 1)
     refine: list[Refinement] = key([], "ranges with smaller elements", max_length=100)
-    lines_x: list[Length] = key([], "further mesh lines at these x", max_length=2000)
-    lines_y: list[Length] = key([], "further mesh lines at these y", max_length=2000)
-    selective: bool = key(False, "Q4 with the shear strain of the element's middle (no shear locking)")
+    lines_x: list[Length] = key([], "x of additional mesh lines", max_length=2000)
+    lines_y: list[Length] = key([], "y of additional mesh lines", max_length=2000)
+    selective: bool = key(False, "Q4 elements with the shear strain of their middle (avoids shear locking)")
 
     @model_validator(mode="after")
     def _triangles(self) -> "MeshOptions":
         if self.pattern == "random" and self.element not in ("T3", "T6"):
-            raise ValueError(f'a random pattern has triangles: element is {self.element}, expected "T3" or "T6"')
+            raise ValueError(f'a random pattern consists of triangles: element is {self.element}, expected "T3" or "T6"')
         return self

@@ -21,11 +21,11 @@ def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed
     drawn = read_dxf(read(drawing, LARGEST_FILE, folder, ("structure", "outline")), unit)
     rings = sorted((np.asarray(p.points) for p in drawn.blocks), key=lambda r: -abs(signed_area(r)))
     if not rings:
-        raise BadGeometry(f"{drawing}: no closed polyline in the drawing")
+        raise BadGeometry(f"{drawing}: the drawing contains no closed polyline")
     outer, holes = Ring(rings[0]), [Ring(r) for r in rings[1:]]
     for ring in rings[1:]:
         if not outer.contains_points(ring, radius=1e-9).any():
-            raise BadGeometry(f"{drawing}: a polyline lies outside the largest, which is taken for the wall")
+            raise BadGeometry(f"{drawing}: a polyline lies outside the largest one, which is assumed to be the wall")
 
     def inside(points: np.ndarray) -> np.ndarray:
         found = outer.contains_points(points)
@@ -51,8 +51,8 @@ def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed
     wanted = abs(signed_area(rings[0])) - sum(abs(signed_area(r)) for r in rings[1:])
     if abs(area.sum() - wanted) > 1e-6 * wanted:
         raise BadGeometry(
-            f"{drawing}: triangles of {size:g} m do not follow the outline (area {area.sum():.4g} m2 for "
-            f"{wanted:.4g} m2): use smaller elements"
+            f"{drawing}: triangles of {size:g} m do not follow the outline (their area is {area.sum():.4g} m2, that of the "
+            f"outline {wanted:.4g} m2): use smaller elements"
         )
     return xy, triangles, drawn.notes
 

@@ -37,7 +37,7 @@ def mesh_panel(building: Masonry, options: MeshOptions, seed: int | None = None)
     if options.joints is None:
         return make_panel(panel, building, options, seed)
     if panel.regions:
-        raise BadGeometry("a panel meshed unit by unit takes no regions: give its joints by joints.types")
+        raise BadGeometry("a panel meshed by units takes no regions: give properties of its joints by joints.types")
     return make_stones(building, options)
 
 
@@ -47,11 +47,11 @@ def make_panel(panel: Panel, building: Description, options: MeshOptions, seed: 
     notes: tuple[str, ...] = ()
     if panel.outline is not None:
         if options.element not in ("T3", "T6"):
-            raise BadGeometry(f'an outline is filled with triangles: element is {options.element}, expected "T3" or "T6"')
+            raise BadGeometry(f'an outline is meshed with triangles: element is {options.element}, expected "T3" or "T6"')
         if options.lines_x or options.lines_y or options.refine:
-            raise BadGeometry("an outline takes no lines_x, lines_y or refine: its corners lead the mesh")
+            raise BadGeometry("an outline takes no lines_x, lines_y or refine, because its corners determine the mesh")
         if options.size is None:
-            raise BadGeometry("an outline needs a size of elements")
+            raise BadGeometry("an outline requires a size of the elements")
         size = options.size
         xy, connect, notes = fill_outline(panel.outline, panel.outline_unit, building.folder, size, seed)
     else:
@@ -60,7 +60,10 @@ def make_panel(panel: Panel, building: Description, options: MeshOptions, seed: 
         smallest = min([size, *(r.size for r in options.refine)])
         count = width * height / smallest**2
         if count > LARGEST_MESH:
-            raise BadGeometry(f"about {count:.2g} elements of {smallest:g} m: the most are {LARGEST_MESH:g}; use larger elements")
+            raise BadGeometry(
+                f"the mesh would have about {count:.2g} elements of {smallest:g} m; at most {LARGEST_MESH:g} are allowed: use "
+                "larger elements"
+            )
         placed = [*panel.openings, *panel.regions, *options.refine, *building.supports.held, *panel.ties]
         layout = Layout(width, height, panel.openings, placed, options, size)
         columns, rows = grid_lines(layout, 0), grid_lines(layout, 1)
@@ -163,7 +166,7 @@ def random_triangles(columns: np.ndarray, rows: np.ndarray, layout: Layout, fixe
     flat = np.abs(area) < 1e-6 * layout.size**2
     triangles = triangles[~flat]
     if not len(triangles):
-        raise BadGeometry("the openings leave nothing of the panel")
+        raise BadGeometry("the openings occupy the whole panel")
     return xy, triangles
 
 

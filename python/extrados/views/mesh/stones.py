@@ -67,14 +67,16 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     sizes = [max(size, float(assembly.length[assembly.joints_of(i)].max()) / most) for i in range(len(assembly.mass))]
     count = sum(abs(signed_area(o)) / s**2 for o, s in zip(assembly.outlines, sizes, strict=True))
     if count > LARGEST_MESH:
-        raise BadGeometry(f"about {count:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}; use larger ones")
+        raise BadGeometry(
+            f"the mesh would have about {count:.2g} elements of {size:g} m; at most {LARGEST_MESH:g} are allowed: use larger elements"
+        )
     lines = [_divided(p, q, size, most) for p, q in zip(assembly.p, assembly.q, strict=True)]
     shortest = min(float(np.hypot(*np.diff(line, axis=0).T).min()) for line in lines)
     rows_of_elements = options.joints == "rows"
     thickness = options.joint_thickness or min(THICKNESS * size, THICKNESS_OF_SIDE * shortest)
     if thickness > 0.5 * shortest:
         raise BadGeometry(
-            f"joint_thickness {thickness:g} m is too large for joint elements {shortest:g} m long; at most {0.5 * shortest:g} m"
+            f"joint_thickness {thickness:g} m is too large for joint elements of {shortest:g} m length: give at most {0.5 * shortest:g} m"
         )
     snap = max(1e-7 * assembly.size, 10.0 * assembly.tolerance)
     triangles_only = options.element == "T3"
@@ -143,7 +145,9 @@ def _rows(
     row[turned] = row[turned][:, [1, 0, 3, 2]]  # the first side stays along the joint
     bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
     if len(bad):
-        raise BadGeometry(f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' folds: use a smaller joint_thickness")
+        raise BadGeometry(
+            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' overlaps itself: use a smaller joint_thickness"
+        )
     materials, index, dry = _joint_materials(building, assembly, thickness)
     normal = assembly.normal[joint]
     n = len(row)
@@ -173,7 +177,7 @@ def _interfaces(
                 f"joint '{assembly.joint_names[missing[0]]}' has a {strength} but no {energy}: give joints.{energy}, or {strength} = 0"
             )
     if (missing := np.flatnonzero(np.isnan(value["compressive_strength"]) != np.isnan(value["crushing_energy"]))).size:
-        raise BadGeometry(f"joint '{assembly.joint_names[missing[0]]}': compressive_strength and crushing_energy go together")
+        raise BadGeometry(f"joint '{assembly.joint_names[missing[0]]}': compressive_strength and crushing_energy require each other")
     stiffness = _in_series(building, assembly, 1.0 / thickness)
     joints = building.joints
     shear = np.full(len(stiffness), joints.shear_stiffness or np.nan)
@@ -231,11 +235,11 @@ def _small_stress(assembly: Assembly) -> float:
 
 def _refuse(options: MeshOptions) -> None:
     if options.element not in ("Q4", "T3"):
-        raise BadGeometry(f'stones are meshed by "Q4" (triangles if that does not fit) or "T3", not {options.element}')
+        raise BadGeometry(f'blocks are meshed by "Q4" (triangles where these do not fit) or "T3", not by {options.element}')
     if options.pattern == "random":
-        raise BadGeometry("stones have no random pattern: their joints lead the cracks")
+        raise BadGeometry("blocks take no random pattern, because their joints determine the cracks")
     if options.refine or options.lines_x or options.lines_y:
-        raise BadGeometry("stones take no refine, lines_x or lines_y: their joints lead the mesh")
+        raise BadGeometry("blocks take no refine, lines_x or lines_y, because their joints determine the mesh")
 
 
 def _joint_materials(building: Masonry, assembly: Assembly, thickness: float) -> tuple[list[Material], np.ndarray, np.ndarray]:
@@ -346,7 +350,7 @@ def _outline_pieces(assembly: Assembly, block: int, lines: list[np.ndarray], sna
             gap = np.where(edge @ t > 0.9 * length, gap, np.inf)
             k = int(gap.argmin())
             if gap[k] > max(snap, 1e-3 * assembly.length[j]):
-                raise BadGeometry(f"joint '{assembly.joint_names[j]}' does not lie on the outline of block '{assembly.block_names[block]}'")
+                raise BadGeometry(f"joint '{assembly.joint_names[j]}' is not on the outline of block '{assembly.block_names[block]}'")
             ends.append(at[k] + run[k] * length[k])
         begin, end = ends
         found.append((begin, end if end > begin else end + around, int(j), line))

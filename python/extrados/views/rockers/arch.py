@@ -108,7 +108,7 @@ class ArchModel:
         try:
             state, mechanism = self.limit.collapse(1)
         except Immovable:
-            raise NoView("no horizontal load makes a mechanism of this arch: its joints restrain it on all sides", WHOLE) from None
+            raise NoView("no horizontal load causes a mechanism of this arch, because its joints restrain it on all sides", WHOLE) from None
         except NoEquilibrium:
             state = None
         if state is None or state.gamma <= 0.0:
@@ -116,9 +116,10 @@ class ArchModel:
             least = minimum_thickness(float(np.degrees(a.embrace)), a.voussoirs)
             proof = without_restraints(cannot_stand(self.limit))
             raise CannotStand(
-                f"the effective thickness is {a.thickness:.4g} m (t/R {a.thickness / a.radius:.4f}), the least for "
-                f"{np.degrees(a.embrace):g} deg and {a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f}); "
-                f"{proof}",
+                (
+                    f"the effective thickness is {a.thickness:.4g} m (t/R {a.thickness / a.radius:.4f}). The least thickness for "
+                    f"{np.degrees(a.embrace):g} deg and {a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f}); {proof}"
+                ),
                 proof.motion,
                 proof.neglects,
             )
@@ -131,7 +132,7 @@ class ArchModel:
         try:
             return four_hinge(self.arch, mechanism)
         except ValueError as error:
-            raise NoView(f"rocking needs a four-hinge mechanism, but {error}", WHOLE) from None
+            raise NoView(f"rocking requires a four-hinge mechanism, but {error}", WHOLE) from None
 
     @cached_property
     def limits(self) -> core_arch.Limits:
@@ -162,8 +163,10 @@ class ArchModel:
         value = self.impacts.by_rule[self.rule]
         if value < 0.0:
             raise NoView(
-                f'the impact rule "{self.rule}" gives c_v = {value:.3f}: the mirrored mechanism would have to close '
-                f'further; restitution = "inelastic" gives {self.impacts.inelastic:.3f}',
+                (
+                    f'the impact rule "{self.rule}" gives c_v = {value:.3f}, with which the mirrored mechanism would have to close '
+                    f'further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}'
+                ),
                 ("joints", "restitution"),
             )
         return min(value, 1.0)
@@ -187,13 +190,18 @@ class ArchModel:
         impacts = self.impacts
         if (kept := self.kept_by_elements) is not None:
             return [
-                f"the impact at all joints of an arch this stocky leaves {self.restitution:.3f} of the rate, discrete elements up "
-                f"to {kept:.3f}: they collapse earlier"
+                (
+                    f"a plastic impact at all joints gives this stocky arch c_v = {self.restitution:.3f}, and discrete elements give "
+                    f"up to {kept:.3f}: they collapse earlier"
+                )
             ]
         if self.rule == "thesis" and impacts.thesis > 1.0:
             return [
-                f"the impact balance of the thesis gives c_v = {impacts.thesis:.3f}, which would create energy; 1 is used "
-                f'(restitution = "inelastic" gives {impacts.inelastic:.3f}, "energy-safe" {impacts.energy_safe:.3f})'
+                (
+                    f"the momentum balance of the thesis gives c_v = {impacts.thesis:.3f}, which would create energy, so c_v = 1 is "
+                    f'used. With restitution = "inelastic" c_v is {impacts.inelastic:.3f}, and with "energy-safe" it is '
+                    f"{impacts.energy_safe:.3f}"
+                )
             ]
         return []
 

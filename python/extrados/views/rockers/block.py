@@ -61,7 +61,12 @@ class BlockModel:
     def warnings(self) -> list[str]:
         """What the reader of an answer should know of the impact rule."""
         if self.energy_ratio is None and isinstance(self.rule, str) and self.housner.min() < 0.0:
-            return ["it is too stocky for Housner's impact (c_v below zero): it lands flat and stays, c_v = 0 is used"]
+            return [
+                (
+                    "the block is too stocky for the impact rule of Housner (c_v below zero): it lands flat and stays in contact; "
+                    "c_v = 0 is used"
+                )
+            ]
         return []
 
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:

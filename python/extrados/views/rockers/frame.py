@@ -97,7 +97,7 @@ class FrameModel(MechanismModel):
     @cached_property
     def warnings(self) -> list[str]:
         if min(self.projections) < 0.0 and isinstance(self.rule, str):
-            return ["its columns are too stocky to rock on after an impact: it comes to rest at the first"]
+            return ["the columns are too stocky to rock after an impact: the frame comes to rest at the first impact"]
         return []
 
     @cached_property

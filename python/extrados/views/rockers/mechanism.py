@@ -93,7 +93,7 @@ class MechanismModel:
             try:
                 made.append(linkage(self.assembly, mechanism, side))
             except CannotRock as error:
-                raise NoView(f"the collapse mechanism to {WORD[side]} does not rock: {error}", WHOLE) from None
+                raise NoView(f"the collapse mechanism towards {WORD[side]} does not rock: {error}", WHOLE) from None
         return made[0], made[1]
 
     @cached_property
@@ -104,12 +104,16 @@ class MechanismModel:
             try:
                 table = core_mechanism.table(one)
             except CoreError as error:
-                raise NoMotion(f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}", WHOLE) from None
+                raise NoMotion(
+                    f"the motion of the mechanism towards {WORD[side]} cannot be calculated to the critical rotation: {error}", WHOLE
+                ) from None
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
                 raise NoView(
-                    f"the mechanism to {WORD[side]} moves at {uplift:.6g} g by its own weight, but limit analysis says "
-                    f"{state.gamma:.6g} g: some load on it is not its mass",
+                    (
+                        f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis gives "
+                        f"{state.gamma:.6g} g: a load on the structure is not part of its mass"
+                    ),
                     WHOLE,
                 )
             made.append(table)
@@ -180,14 +184,19 @@ class MechanismModel:
         if rule == "inelastic":
             if self.energy_kept is None:
                 raise NoView(
-                    f'the impact rule "inelastic" is for at most {MOST_BLOCKS} blocks; give [joints] restitution = '
-                    '"energy-safe" or a number',
+                    (
+                        f'the impact rule "inelastic" is limited to {MOST_BLOCKS} blocks; give [joints] restitution = "energy-safe" or a '
+                        "number"
+                    ),
                     ("joints", "restitution"),
                 )
             right, left = np.sqrt(self.energy_kept)
             return float(right) * ratio, float(left) / ratio
         if isinstance(rule, str):
-            raise NoView(f'the impact rule "{rule}" is not known here: "energy-safe", "inelastic", or a number', ("joints", "restitution"))
+            raise NoView(
+                f'the impact rule "{rule}" does not apply to this structure; expected "energy-safe", "inelastic", or a number',
+                ("joints", "restitution"),
+            )
         return float(rule) * ratio, float(rule) / ratio
 
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
@@ -210,22 +219,22 @@ class MechanismModel:
         )
         if self.rule == "energy-safe" and max(self.projections) <= 0.0:
             found.append(
-                f"the impact of one mechanism does not open the other (c_v = {self.projections[0]:.3f} to +x, "
-                f"{self.projections[1]:.3f} to -x): the structure comes to rest at every impact"
+                f"the impact of one mechanism does not start the other (c_v = {self.projections[0]:.3f} towards +x, "
+                f"{self.projections[1]:.3f} towards -x), so the structure comes to rest at every impact"
             )
         if self.energy_kept is not None and max(self.energy_kept) > max(kept) + LOST:
             found.append(
-                f"an impact keeps {100 * max(kept):.0f} % of the kinetic energy in the mechanism of the other side, but "
-                f"would leave {100 * max(self.energy_kept):.0f} % if hinges could open anywhere: the impact moves the "
-                'section otherwise, and peaks after an impact are underestimated (restitution = "inelastic" keeps all of it)'
+                f"after an impact the mechanism of the other side keeps {100 * max(kept):.0f} % of the kinetic energy. If hinges "
+                f"could open anywhere, {100 * max(self.energy_kept):.0f} % would remain. The section then moves differently, and "
+                'rotations after an impact are underestimated (restitution = "inelastic" keeps all of this energy)'
             )
         for side, one, table, (_, mechanism) in zip(SIDES, self.linkages, self.tables, self.collapse, strict=True):
             closing = self._closing(one, table, mechanism)
             if closing:
                 q, name = closing
                 found.append(
-                    f"rocking to {WORD[side]}, {name} closes again at {q / table.critical:.2f} of the critical rotation: "
-                    "beyond it the section would move otherwise"
+                    f"during rocking towards {WORD[side]}, {name} closes again at {q / table.critical:.2f} times the critical "
+                    "rotation; beyond this rotation the section would move differently"
                 )
         return found
 

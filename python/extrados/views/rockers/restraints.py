@@ -64,7 +64,7 @@ class Restraints:
             try:
                 found.append(paths(one, sort, self._parts(one), points, reach))
             except CoreError as error:
-                raise NoView(f"restraints cannot be followed through the motion: {error}", WHOLE) from None
+                raise NoView(f"the restraints cannot be followed through the motion: {error}", WHOLE) from None
         return found[0], found[1]
 
     def _parts(self, one: Linkage) -> np.ndarray:
@@ -211,11 +211,11 @@ def _restraints(stones: Callable[[], Assembly], one: Tie | Damper | AddedHinge, 
             Restraint(f"{what}, {assembly.joint_names[j]}", law, TURN, (int(assembly.a[j]), int(assembly.b[j])), _twice(assembly, j))
             for j in joints_named(assembly, one.joints, what, (*key, "joints"))
         ]
-    points = np.array(one.flat() if isinstance(one, Tie) else [one.start, one.far], dtype=float)
+    points = np.array(one.flat(), dtype=float)
     first = stone_at(assembly, points[0], one.start_stone, f"{what}, start", key, "start")
     last = GROUND if one.end is None else stone_at(assembly, points[1], one.end_stone, f"{what}, end", key, "end")
     if first == last:
-        raise BadGeometry(f"{what}: both of its ends are in the stone '{assembly.block_names[first]}'", key)
+        raise BadGeometry(f"{what}: both ends are in block '{assembly.block_names[first]}'", key)
     return [Restraint(what, _law(one, key), LENGTH, (first, last), points)]
 
 
@@ -230,7 +230,7 @@ def _law(one: Tie | Damper, key: Key) -> Law:
         assert one.slip_force is not None and one.stiffness is not None
         return Law(one.stiffness, 0.0, one.slip_force, -one.slip_force)
     if one.stiffness is None:
-        raise NoView(f"{one.name} is rigid until it yields; rocking requires its stiffness, EA/L", key)
+        raise NoView(f"{one.name} is rigid until it yields, but rocking requires its stiffness EA/L", key)
     slack = {"tension": 1, "compression": -1, "both": 0}[one.works_in]
     return Law(one.stiffness, one.prestress, min(one.most, FREE), max(one.least, -FREE), slack)
 
@@ -254,7 +254,7 @@ def joints_named(assembly: Assembly, names: Sequence[str], what: str, key: Key) 
             found += assembly.groups[name]
         else:
             known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(assembly.joint_names) > 8 else "")
-            raise BadGeometry(f"{what}: there is no joint '{name}'; there are {known}, ground and all", key)
+            raise BadGeometry(f"{what}: joint '{name}' does not exist; expected one of {known}, ground and all", key)
     return list(dict.fromkeys(found))
 
 

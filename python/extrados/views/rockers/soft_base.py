@@ -16,7 +16,7 @@ from extrados.views.rockers.words import refuse_soft_base
 
 #: Rotations tried up to the one taken as collapse, in the search for equilibria
 LOOKS = 400
-UNDAMPED = "the base has no damping: it gives all energy back, and bounces continue; give [supports] damping_ratio"
+UNDAMPED = "the base has no damping, so no energy is lost and bounces continue: give [supports] damping_ratio"
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class SoftBaseModel:
     def _too_soft(self) -> str:
         least = self.core.stiffness * self.weight * self.core.height / (self._stiffness_at_rest + self.weight * self.core.height)
         return (
-            f"the stiffness of the base, {self.core.stiffness / self.block.depth:.4g} N/m^3, is too low: below about "
+            f"the stiffness of the base is too low, {self.core.stiffness / self.block.depth:.4g} N/m^3: below about "
             f"{least / self.block.depth:.3g} N/m^3 the block overturns under its own weight"
         )
 

@@ -46,20 +46,20 @@ def open_shells(structure: MeshFile, building: Description, options: ShellOption
     """Name and content of a file of shells; BadGeometry if it holds anything else, or too many."""
     for name in ("regions", "ties", "bars"):
         if getattr(structure, name):
-            raise BadGeometry(f"{name} are of a wall in a plane; shells in space take groups", ("structure", name))
+            raise BadGeometry(f"{name} belong to a wall in a plane; for shells in space give groups", ("structure", name))
     file, mesh = open_mesh(structure, building)
     if options.size is not None:
-        raise BadGeometry(f"{file}: the elements are those of the file; leave mesh.size out", ("analysis", "mesh", "size"))
+        raise BadGeometry(f"{file}: the file determines the elements: remove mesh.size", ("analysis", "mesh", "size"))
     if mesh.points.shape[1] != 3:
-        raise BadGeometry(f"{file}: its points have {mesh.points.shape[1]} coordinates; shells in space need 3")
+        raise BadGeometry(f"{file}: the points have {mesh.points.shape[1]} coordinates; shells in space require 3")
     for cells in mesh.cells:
         if cells.type not in KINDS and cells.type not in PASSED_OVER:
-            raise BadGeometry(f"{file}: cells of kind '{cells.type}'; expected {' and '.join(KINDS)}")
+            raise BadGeometry(f"{file}: this file has cells of kind '{cells.type}'; expected {' and '.join(KINDS)}")
     count = sum(len(cells.data) for cells in mesh.cells if cells.type in KINDS)
     if not count:
-        raise BadGeometry(f"{file}: holds no shells; expected cells of kind {' or '.join(KINDS)}")
+        raise BadGeometry(f"{file}: this file contains no shells; expected cells of kind {' or '.join(KINDS)}")
     if count > LARGEST_MESH:
-        raise BadGeometry(f"{file}: {count} elements: the most are {LARGEST_MESH:g}")
+        raise BadGeometry(f"{file}: this file has {count} elements; at most {LARGEST_MESH:g} are allowed")
     return file, mesh
 
 
@@ -86,7 +86,7 @@ def read_shell(structure: MeshFile, building: Description, options: ShellOptions
     for g, group in enumerate(structure.groups):
         what = f"{file}, group '{group.name}'"
         if group.name not in known:
-            raise BadGeometry(f"{what}: there is none in the file; there are {there}", (*GROUPS, g, "name"))
+            raise BadGeometry(f"{what}: the file has no such group; its groups are {there}", (*GROUPS, g, "name"))
         cells_of, nodes = known[group.name]
         own = {b: rows for b, rows in cells_of.items() if b in shells}
         _check(group, what, bool(own), (*GROUPS, g))
@@ -109,12 +109,12 @@ def read_shell(structure: MeshFile, building: Description, options: ShellOptions
             held |= {(int(n), d) for n in nodes for d in HOLDS[group.support]}
             feet.append(_foot(group.name, nodes, xyz, middle))
     if not held:
-        raise BadGeometry(f"{file}: it has no support: give a group `support`; there are {there}")
+        raise BadGeometry(f"{file}: the structure has no support: give a group `support`; the groups are {there}")
     parts: list[ShellPart] = []
     warnings: list[str] = []
     for b, connect in shells.items():
         if (warped := _warping(xyz, connect)) > WARPED:
-            warnings.append(f"{file}: corners of quadrilaterals lie up to {warped:.2g} of their size off their plane")
+            warnings.append(f"{file}: corners of quadrilaterals are out of their plane by up to {warped:.2g} of their size")
         for g in np.unique(owner[b]):
             for bent in (True, False):
                 rows = np.flatnonzero((owner[b] == g) & (bends[b] == bent))
@@ -166,9 +166,11 @@ def _check(group: MeshGroup, what: str, elements: bool, key: Key) -> None:
     """BadGeometry where a group of lines or points is told what only elements have, or nothing is said."""
     told = [key for key in ("thickness", "material", "linear", "membrane", "pressure") if getattr(group, key)]
     if told and not elements:
-        raise BadGeometry(f"{what}: {told[0]} is of elements, and the group has none; it takes support and force", (*key, told[0]))
+        raise BadGeometry(f"{what}: {told[0]} belongs to elements, and this group has none; give only support and force", (*key, told[0]))
     if not (told or group.support or group.force):
-        raise BadGeometry(f"{what}: nothing is said of it: expected thickness, material, linear, membrane, support, pressure or force", key)
+        raise BadGeometry(
+            f"{what}: this group has no properties; expected thickness, material, linear, membrane, support, pressure or force", key
+        )
 
 
 def _foot(name: str, nodes: np.ndarray, xyz: np.ndarray, middle: np.ndarray) -> Foot:
@@ -197,9 +199,9 @@ def _check_corners(xyz: np.ndarray, connect: np.ndarray, file: str) -> None:
     unit = normal / np.where(flat, 1.0, np.linalg.norm(normal, axis=1))[:, None]
     inward = (np.einsum("ecx,ex->ec", at, unit) <= LEAST * size[:, None] ** 2).any(axis=1)
     for wrong, what in (
-        (twice, f"names a node twice; expected {connect.shape[1]} different ones"),
+        (twice, f"has the same node twice; expected {connect.shape[1]} different nodes"),
         (flat, "has no area"),
-        (inward, "folds over itself, or has an angle of 180 degrees or more at a corner; expected its corners in order, all convex"),
+        (inward, "overlaps itself, or has an angle of 180 degrees or more at a corner; expected its corners in order, all convex"),
     ):
         if wrong.any():
             e = int(wrong.argmax())
@@ -228,8 +230,8 @@ def _check_overlaps(xyz: np.ndarray, shells: list[np.ndarray], file: str) -> Non
             nodes = edges[:-step][on.argmax()]
             x, y, z = xyz[nodes].mean(axis=0)
             raise BadGeometry(
-                f"{file}: two elements lie on each other at the edge of nodes {_nodes_told(nodes)}, at x {x:.4g}, y {y:.4g}, z {z:.4g} m; "
-                "expected each place covered once"
+                f"{file}: two elements overlap at the edge of nodes {_nodes_told(nodes)}, at x {x:.4g}, y {y:.4g}, z {z:.4g} m; "
+                "expected one element at each place"
             )
 
 
@@ -248,7 +250,7 @@ def _unjoined(xyz: np.ndarray, parts: list[ShellPart], size: float) -> list[str]
     pairs = tree.query_pairs(near, output_type="ndarray")
     if len(pairs):
         a, b = ends[pairs[0]]
-        told.append((f"nodes {a + 1} and {b + 1}", xyz[a], "are two nodes at one place", len(pairs)))
+        told.append((f"nodes {a + 1} and {b + 1}", xyz[a], "are two nodes at the same position", len(pairs)))
     a, b = xyz[free[:, 0]], xyz[free[:, 1]]
     middle, way, length = 0.5 * (a + b), b - a, np.linalg.norm(b - a, axis=1)
     between = [
@@ -260,10 +262,12 @@ def _unjoined(xyz: np.ndarray, parts: list[ShellPart], size: float) -> list[str]
     if between:
         node = between[0][1]
         nodes = len({n for _, n in between})
-        told.append((f"node {node + 1}", xyz[node], "lies on the edge of an element of which it is not a corner", nodes))
+        told.append((f"node {node + 1}", xyz[node], "lies on the edge of an element and is not one of its corners", nodes))
     return [
-        f"{who}, at x {at[0]:.4g}, y {at[1]:.4g}, z {at[2]:.4g} m, {what}{f' ({many} such)' if many > 1 else ''}: nothing joins the "
-        "elements there"
+        (
+            f"{who}, at x {at[0]:.4g}, y {at[1]:.4g}, z {at[2]:.4g} m, {what}{f' ({many} such)' if many > 1 else ''}: the "
+            "elements are not connected there"
+        )
         for who, at, what, many in told
     ]
 
@@ -297,13 +301,13 @@ def _mesh(
         if part.bends:
             bent[part.connect] = True
         elif np.ptp(xyz[part.connect][..., 2], axis=1).max() > 1e-6 * np.ptp(xyz, axis=0).max():
-            raise BadGeometry(f"{file}, group '{part.name}': a membrane is level, and its elements are not")
+            raise BadGeometry(f"{file}, group '{part.name}': a membrane must be horizontal, and its elements are not")
     _to_the_rim(building, xyz, parts, bent, push, file)
     lonely = sorted(n for n, _ in held if not used[n])
     if lonely:
-        raise BadGeometry(f"{file}: node {lonely[0] + 1} of a support is no node of a shell")
+        raise BadGeometry(f"{file}: node {lonely[0] + 1} of a support is not a node of a shell")
     if push[~used].any():
-        raise BadGeometry(f"{file}: a force acts on a node that is no node of a shell")
+        raise BadGeometry(f"{file}: a force acts on a node that is not a node of a shell")
     support, of_file = sorted(held), parts
     held |= {(int(n), d) for n in np.flatnonzero(used & ~bent) for d in (2, 3, 4, 5)}
     number = np.cumsum(used) - 1
@@ -324,7 +328,7 @@ def _mesh(
         )
     levels = np.array([kept[:, 2].min(), kept[:, 2].max()])
     if not levels[1] > levels[0]:
-        raise BadGeometry(f"{file}: all nodes lie at one height; z is up")
+        raise BadGeometry(f"{file}: all nodes have the same height; z must point up")
     return ShellMesh(
         kept,
         parts,
@@ -355,7 +359,7 @@ def _to_the_rim(building: Description, xyz: np.ndarray, parts: list[ShellPart], 
         np.add.at(weight, part.connect, GRAVITY * share * (density[part.material] * part.thickness)[:, None])
         inner, rim = (own > 0.0) & ~bent, (own > 0.0) & bent
         if not rim.any():
-            raise BadGeometry(f"{file}, group '{part.name}': a membrane that meets no wall")
+            raise BadGeometry(f"{file}, group '{part.name}': the membrane is not connected to a wall")
         down = float((push[inner, 2] - weight[inner]).sum())
         push[inner, 2] = 0.0
         push[rim, 2] += down * own[rim] / own[rim].sum()

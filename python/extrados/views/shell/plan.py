@@ -56,7 +56,10 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     size = options.size or min(0.1 * plan.storeys[0], min(wall.length for wall in plan.walls) / 8.0)
     area = sum(wall.length for wall in plan.walls) * plan.levels[-1]
     if area / size**2 > LARGEST_MESH:
-        raise BadGeometry(f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}", ("analysis", "mesh", "size"))
+        raise BadGeometry(
+            f"the mesh would have about {area / size**2:.2g} elements of {size:g} m; at most {LARGEST_MESH:g} are allowed",
+            ("analysis", "mesh", "size"),
+        )
     warnings: list[str] = []
     junctions = {}
     for a, b in itertools.combinations(range(len(plan.walls)), 2):
@@ -64,7 +67,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
         if (at := meeting(one, two)) is not None:
             junctions[a, b] = at
         elif (gap := nearly_meeting(one, two)) is not None:
-            warnings.append(f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart and do not meet: nothing joins them")
+            warnings.append(f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart, so they do not meet and are not connected")
     _check_corners(plan, junctions)
     grids = _grids(plan, junctions, size, warnings)
     xyz, number = _join(plan, grids, junctions)
@@ -74,7 +77,8 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     joints = [replace(joint, strength=_strength(plan, building, joint.name, size), softening=building.joints.softening) for joint in joints]
     if joints and building.joints.coefficient is not None and not all(j.strength["cohesion"] > 0.0 for j in joints):
         warnings.append(
-            "joints have no cohesion: they slide only after opening; any cohesion, with its shear_energy, lets them slide under pressure"
+            "joints without cohesion slide only after they open. To let them slide under compression, give a cohesion of any "
+            "value, with its shear_energy"
         )
     xyz = np.concatenate([xyz, xyz[sources]])
     planes = [_plane(plan, grid) for grid in grids]
@@ -86,7 +90,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
         with blaming("floors", k):
             walls, ring = _ring(plan, floor, grids, number, xyz)
             if (first := rings.setdefault((floor.storey, frozenset(ring)), k)) != k:
-                raise BadGeometry(f"floor {first + 1} lies between the same walls on storey {floor.storey}")
+                raise BadGeometry(f"floor {first + 1} is given for the same walls on storey {floor.storey}")
             grown, mass, push = _add_floor(plan, floor, (walls, ring), grids, number, (grown, mass, push), parts, materials, bars, size)
     used = np.zeros(len(grown), dtype=bool)
     for connect in (*(part.connect for part in parts), *(joint.connect for joint in joints)):
@@ -158,8 +162,10 @@ def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], joints: lis
         if len(loose):
             x, y, z = xyz[loose].mean(axis=(0, 1))
             raise BadGeometry(
-                f"wall '{part.name}': its part around x {x:.3g}, y {y:.3g}, z {z:.3g} m is not supported: no masonry connects it "
-                "with the ground",
+                (
+                    f"wall '{part.name}': the part around x {x:.3g}, y {y:.3g}, z {z:.3g} m is not supported, because no masonry "
+                    "connects it with the ground"
+                ),
                 ("structure", "walls", part.wall),
             )
     piece = pieces(len(xyz), parts, bars, joints)
@@ -169,7 +175,7 @@ def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], joints: lis
     alone = [names for which, names in joined.items() if not any(which & other for other in joined if other != which)]
     if len(alone) < 2:
         return []
-    return [f"nothing joins {' with '.join(', '.join(names) for names in alone)}: no corner, floor or rod; each is free"]
+    return [(f"no corner, floor or rod connects {' with '.join(', '.join(names) for names in alone)}: each of these stands alone")]
 
 
 def _lines(breaks: Iterable[float], length: float, size: float, what: str, warnings: list[str]) -> np.ndarray:
@@ -181,7 +187,7 @@ def _lines(breaks: Iterable[float], length: float, size: float, what: str, warni
     kept[-1] = length
     thin = min((b - a for a, b in itertools.pairwise(kept)), default=length)
     if thin < SLIVER * size:
-        warnings.append(f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were requested")
+        warnings.append(f"{what}: two mesh lines are only {1e3 * thin:.3g} mm apart, but elements of {size:.3g} m were requested")
     parts = [np.zeros(1)]
     for a, b in itertools.pairwise(kept):
         count = max(1, round((b - a) / size))
@@ -227,7 +233,7 @@ def _grids(plan: Plan, junctions: dict, size: float, warnings: list[str]) -> lis
         beams = (*(lintel[:4] for lintel in _lintels(plan, wall)), *(beam[1:] for beam in _ring_beams(plan, wall)))
         for box in (*_holes(plan, wall), *beams):
             heights.update(box[2:4])
-    z = _lines(heights, float(plan.levels[-1]), size, "the heights of openings and storeys", warnings)
+    z = _lines(heights, float(plan.levels[-1]), size, "the heights of openings and of storeys", warnings)
     grids: list[_Grid] = []
     for w, wall in enumerate(plan.walls):
         breaks = {0.0, wall.length, *_loaded(plan, wall)}
@@ -274,7 +280,7 @@ def _wall_part(plan: Plan, w: int, grids: list[_Grid], junctions: dict, number: 
     grid, wall = grids[w], plan.walls[w]
     i, k = np.nonzero(grid.there)
     if not len(i):
-        raise BadGeometry(f"wall '{wall.name}': its openings leave nothing of it")
+        raise BadGeometry(f"wall '{wall.name}': the openings occupy the whole wall")
     corners = [(i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1)]
     connect = np.column_stack([number[grid.number(a, b)] for a, b in corners])
     thickness = _thickness_at(plan, wall, 0.5 * (grid.z[k] + grid.z[k + 1]))
@@ -321,7 +327,7 @@ def _joints(
         row = int(np.abs(grids[0].z - plan.bed_height(bed)).argmin())
         on = {w: _cells_above(grids[w], row, number) for w in range(len(grids))}
         if not any(len(on[w]) for w in walls):
-            raise BadGeometry(f"there is no wall at {plan.bed_height(bed):g} m", ("structure", "beds", k))
+            raise BadGeometry(f"at {plan.bed_height(bed):g} m there is no wall", ("structure", "beds", k))
         stay = {n for w in on if w not in walls for n in on[w].ravel().tolist()}  # there a wall passes through the joint
         for n in sorted({n for w in walls for n in on[w].ravel().tolist()} - stay):
             copies[row, n] = nodes + len(copies)
@@ -376,7 +382,7 @@ def _strength(plan: Plan, building: Description, name: str, size: float) -> dict
         for joint in kind.joints:
             key = ("joints", "types", k, "joints")
             if joint not in plan.joint_names:
-                raise BadGeometry(f"names no joint '{joint}'; there are {', '.join(plan.joint_names)}", key)
+                raise BadGeometry(f"joint '{joint}' does not exist; the joints are {', '.join(plan.joint_names)}", key)
             if named.setdefault(joint, k) != k:
                 raise BadGeometry(f"joint '{joint}' is named twice, in joints.types {named[joint] + 1} and {k + 1}", key)
         if name in kind.joints:
@@ -385,11 +391,13 @@ def _strength(plan: Plan, building: Description, name: str, size: float) -> dict
         if own[strength] > 0.0 and own[energy] is None:
             raise BadGeometry(f"joint '{name}' has a {strength} but no {energy}", ("joints", energy))
     if (own["compressive_strength"] is None) != (own["crushing_energy"] is None):
-        raise BadGeometry(f"joint '{name}': compressive_strength and crushing_energy go together", ("joints",))
+        raise BadGeometry(f"joint '{name}': compressive_strength and crushing_energy require each other", ("joints",))
     if not own["tension"] > 0.0:
         raise BadGeometry(
-            f"joint '{name}' has no tension: between shells a joint holds until it is torn; give it one, however small, with a "
-            "fracture_energy",
+            (
+                f"joint '{name}' has no tension. A joint between shells must hold until it opens: give a tension, however small, "
+                "with a fracture_energy"
+            ),
             ("joints", "tension"),
         )
     if own["friction"] == NO_SLIDING:
@@ -420,7 +428,7 @@ def _between(
     key = ("structure", "corners", plan.corners.index(corner))
     if MEETS < t < wall.length - MEETS:
         raise BadGeometry(
-            f"walls: wall '{wall.name}' passes through '{names[one]}'; a joint is where the second wall ends on the first", key
+            (f"walls: wall '{wall.name}' passes through '{names[one]}', but a joint requires that the second wall ends on the first"), key
         )
     first = t <= MEETS  # it begins there
     j = 0 if first else len(grid.s) - 1
@@ -432,7 +440,7 @@ def _between(
             beside |= other.there[column]
     k = np.flatnonzero(own & beside)
     if not len(k):
-        raise BadGeometry(f"walls: '{names[one]}' and '{wall.name}' have no height in common there", key)
+        raise BadGeometry(f"walls: '{names[one]}' and '{wall.name}' have no common height at this joint", key)
     lower, upper = (
         np.array([[foot(int(r), int(low)), int(high)] for r, low, high in zip(k, nodes[k], nodes[k + 1], strict=True)])
         for nodes in (number[g.number(np.array(c), np.arange(len(g.z)))] for g, c in ((other, i), (grid, j)))
@@ -495,7 +503,7 @@ def _ring(plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray
         nodes += own[inside][order].tolist()
     ring = [n for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True) if np.linalg.norm(xyz[n] - xyz[before]) > MEETS]
     if len(ring) < 3 or len(set(ring)) < len(ring):
-        raise BadGeometry(f"{what}: its walls make no ring; name them in order by `walls`")
+        raise BadGeometry(f"{what}: the walls do not form a ring; name them in order by `walls`")
     x, y = xyz[ring, 0], xyz[ring, 1]
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
         ring.reverse()
@@ -530,7 +538,7 @@ def _add_floor(
             half = np.diff(s[on]) / 2.0
             np.add.at(shares, own[on], np.append(half, 0.0) + np.append(0.0, half))
         if not shares.sum() > 0.0:
-            raise BadGeometry(f"{name}: none of the walls that carry its load lies beside it")
+            raise BadGeometry(f"{name}: none of the walls that carry its load is adjacent to it")
         mass = mass + floor.load * area / GRAVITY * shares / shares.sum()
     if floor.kind in ("flexible", "rigid"):
         thickness = floor.thickness if floor.kind == "flexible" else RIGID_THICKNESS
@@ -581,7 +589,7 @@ def _joists(
             continue  # no wall opposite
         made.append(ShellBar(f"{name}, joists", (n, to), floor.joist_area * width / floor.joist_spacing, material))
     if not made:
-        raise BadGeometry(f"{name}: no joist reaches from wall '{floor.bears_on[0]}' to '{floor.bears_on[1]}'")
+        raise BadGeometry(f"{name}: no joist spans from wall '{floor.bears_on[0]}' to '{floor.bears_on[1]}'")
     return made
 
 
@@ -608,13 +616,13 @@ def _rod(rod: Rod, k: int, xyz: np.ndarray, used: np.ndarray, building: Descript
             x, y, z = xyz[there[away.argmin()]]
             raise BadGeometry(
                 f"rod {k}: its end at {', '.join(f'{v:g}' for v in place)} m lies {away.min():.3g} m from the nearest node, at "
-                f"{x:g}, {y:g}, {z:g} m; expected a place on a wall, within an element ({size:g} m)"
+                f"{x:g}, {y:g}, {z:g} m; expected a place on a wall, at a distance of at most one element ({size:g} m)"
             )
         ends.append(int(there[away.argmin()]))
     if ends[0] == ends[1]:
-        raise BadGeometry(f"rod {k}: both of its ends are at one node")
+        raise BadGeometry(f"rod {k}: both ends of the rod are at one node")
     if rod.material not in building.materials:
-        raise BadGeometry(f"rod {k}: there is no [materials.{rod.material}]")
+        raise BadGeometry(f"rod {k}: the deck has no [materials.{rod.material}]")
     return ShellBar(f"rod {k}", (ends[0], ends[1]), rod.area, building.materials[rod.material], rod.prestress)
 
 
@@ -644,7 +652,7 @@ def _supports(
             bends[part.connect] = True
     ground = np.flatnonzero((xyz[:, 2] <= MEETS) & used & ~above)
     if not len(ground):
-        raise BadGeometry("no wall rests on the ground: give a wall storeys from 1")
+        raise BadGeometry("no wall is on the ground: give a wall storeys from 1")
     rigid = plan.foundation_stiffness is None
     held += [(int(n), d) for n in ground for d in range(6) if rigid or d != 2]
     if not rigid:

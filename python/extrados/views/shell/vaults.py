@@ -34,7 +34,7 @@ def element_size(options: ShellOptions, arc: float, area: float) -> float:
     """The size of the elements; BadGeometry where that makes too many."""
     size = options.size or arc / ALONG
     if area / size**2 > LARGEST_MESH:
-        raise BadGeometry(f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}")
+        raise BadGeometry(f"the mesh would have about {area / size**2:.2g} elements of {size:g} m; at most {LARGEST_MESH:g} are allowed")
     return size
 
 
@@ -112,8 +112,8 @@ def mesh_barrel(
         springing = radius * np.array([np.sin(half), np.cos(half)])
         if wide > THICK_WALL * (springing[1] - sole):
             raise BadGeometry(
-                f"the walls are {wide:g} m thick and {springing[1] - sole:.4g} m high: no shell; shells need walls thinner than "
-                f"{THICK_WALL:g} of their height"
+                f"the walls have a thickness of {wide:g} m and a height of {springing[1] - sole:.4g} m. Shells require a "
+                f"thickness below {THICK_WALL:g} of the height"
             )
         extra = [Material(density=0.0, young=building.material.young, poisson=building.material.poisson)]
         ledge, up = abs(away - springing[0]), count_along(springing[1] - sole, size, 2)
@@ -219,7 +219,7 @@ def shell_of_arch(building: Description, options: ShellOptions) -> ShellMesh:
     arch = building.structure
     assert isinstance(arch, Arch)
     if arch.skew:
-        raise NoView("a skew arch is no shell yet; `tilt` analyses its solids", ("structure", "skew"))
+        raise NoView("a skew arch cannot be modelled by shells; its solids can be analysed by `tilt`", ("structure", "skew"))
     return mesh_barrel(building, options, arch.radius, arch.thickness * arch.thickness_factor, arch.embrace, arch.depth)
 
 

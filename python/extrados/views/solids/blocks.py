@@ -33,7 +33,7 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         return solids_of_section(building)
     name = file.path.name
     if drawing.layers is not None or drawing.layer or drawing.ground is not None or drawing.origin is not None:
-        raise BadGeometry(f"{name}: layers, ground and origin belong to plane drawings; solids rest on foundation_levels")
+        raise BadGeometry(f"{name}: layers, ground and origin belong to plane drawings; solids are supported by foundation_levels")
     if drawing.fill is not None:
         raise BadGeometry(f"{name}: fill belongs to plane drawings", ("structure", "fill"))
     meshes = read_meshes(file) if sort in (".obj", ".stl") else read_solids(value, name)

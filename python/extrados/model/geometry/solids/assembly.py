@@ -141,10 +141,10 @@ def assemble(
     they look, as springings do: a block and corners (k, 3), counter-clockwise from within it. BadGeometry tells overlaps, and stones that touch nothing, in words.
     """
     if len(stones) > MOST_SOLIDS:
-        raise BadGeometry(f"{what}: {len(stones)} solids, at most {MOST_SOLIDS}")
+        raise BadGeometry(f"{what}: {len(stones)} solids exceed the limit of {MOST_SOLIDS}")
     blocks = [s for s in stones if not s.ground]
     if not blocks:
-        raise BadGeometry(f"{what}: no stone is left beside the ground")
+        raise BadGeometry(f"{what}: no block remains besides the ground")
     ordered = [*blocks, *(s for s in stones if s.ground)]
     parts = [part for stone in ordered for part in stone.parts]
     owner = np.repeat(np.arange(len(ordered)), [len(s.parts) for s in ordered])
@@ -280,7 +280,7 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     for one, two, depth in met.overlaps[:MOST_TOLD]:
         pair = names[one] if two >= len(names) else f"{names[one]} and {names[two]}"
         whom = f"{pair} and the ground" if two >= len(names) else pair
-        wrong.append(f"{whom} overlap by {1e3 * depth:.3g} mm, more than {1e3 * close:.3g} mm{cure}")
+        wrong.append(f"{whom} overlap by {1e3 * depth:.3g} mm, which exceeds {1e3 * close:.3g} mm{cure}")
     if len(met.overlaps) > MOST_TOLD:
         wrong.append(f"and {len(met.overlaps) - MOST_TOLD} more pairs overlap")
     touched = set(a.tolist()) | set(b.tolist())
@@ -288,14 +288,17 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     near = {k: gap for one, two, gap in met.gaps for k in (one, two)}
     narrow = _widest(met.slivers)
     for k in lonely[:MOST_TOLD]:
-        told = f"; its nearest face is {1e3 * near[k]:.3g} mm away: contact_tolerance" if k in near else ""
+        told = f"; the nearest face is {1e3 * near[k]:.3g} mm away: contact_tolerance" if k in near else ""
         if k in narrow:
-            told = f": its widest contact measures {1e3 * narrow[k]:.3g} mm, less than {1e3 * close:.3g} mm{cure}, and counts as a line"
-        wrong.append(f"{names[k]} touches no other stone and no ground{told}")
+            told = (
+                f": the width of its widest contact is {1e3 * narrow[k]:.3g} mm, less than {1e3 * close:.3g} mm{cure}, so this "
+                "contact counts as a line"
+            )
+        wrong.append(f"{names[k]} touches neither another block nor the ground{told}")
     if len(lonely) > MOST_TOLD:
-        wrong.append(f"and {len(lonely) - MOST_TOLD} more stones touch nothing")
+        wrong.append(f"and {len(lonely) - MOST_TOLD} more blocks touch nothing")
     if not lonely and not (b == GROUND).any():
-        wrong.append("no stone is supported by the ground")
+        wrong.append("no block is supported by the ground")
     if wrong:
         raise BadGeometry(f"{what}: " + "; ".join(wrong))
 
@@ -307,8 +310,10 @@ def _nearly(names: Sequence[str], gaps: Sequence[tuple[int, int, float]]) -> tup
     one, two, gap = max(gaps, key=lambda g: g[2])
     other = names[two] if two < len(names) else "the ground"
     return (
-        f"{len(gaps)} pairs of stones have faces that nearly touch and are no contact, at most {1e3 * gap:.3g} mm apart "
-        f"({names[one]} and {other}); contact_tolerance closes them",
+        (
+            f"{len(gaps)} pairs of blocks have faces that nearly touch but form no contact. They are at most {1e3 * gap:.3g} "
+            f"mm apart ({names[one]} and {other}); contact_tolerance closes them"
+        ),
     )
 
 
@@ -328,8 +333,10 @@ def _narrow(names: Sequence[str], slivers: Sequence[tuple[int, int, float]], clo
     one, two, width = max(slivers, key=lambda s: s[2])
     other = names[two] if two < len(names) else "the ground"
     return (
-        f"{len(slivers)} contacts are narrower than {1e3 * close:.3g} mm (contact_tolerance). They count as lines or points and carry no "
-        f"force. The widest measures {1e3 * width:.3g} mm ({names[one]} and {other})",
+        (
+            f"{len(slivers)} contacts are narrower than {1e3 * close:.3g} mm (contact_tolerance). They count as lines or "
+            f"points and carry no force. The widest of them has {1e3 * width:.3g} mm ({names[one]} and {other})"
+        ),
     )
 
 
@@ -344,9 +351,11 @@ def _rough(blocks: Sequence[Stone], met: Touching) -> tuple[str, ...]:
         return ()
     other = blocks[met.b[j]].name if met.b[j] < len(blocks) else "the ground"
     return (
-        f"Faces in contact deviate by up to {0.5e3 * met.apart[j]:.3g} mm from their common plane ({blocks[met.a[j]].name} and {other}). "
-        f"The thinnest block measures {1e3 * _thickness(thin):.3g} mm ({thin.name}): capacities are uncertain by about "
-        f"{share / ONE_PERCENT:.2g} %. Measure the blocks more closely",
+        (
+            f"Faces in contact deviate by up to {0.5e3 * met.apart[j]:.3g} mm from their common plane "
+            f"({blocks[met.a[j]].name} and {other}). The thinnest block has a thickness of {1e3 * _thickness(thin):.3g} mm "
+            f"({thin.name}), so capacities are uncertain by about {share / ONE_PERCENT:.2g} %. Measure the blocks more closely"
+        ),
     )
 
 

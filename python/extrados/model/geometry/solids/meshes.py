@@ -86,10 +86,10 @@ def read_obj(text: str, name: str) -> list[Mesh]:
             try:
                 face = [int(word.split("/")[0]) for word in words[1:]]
             except ValueError:
-                raise BadGeometry(f"{where}: a face names vertices by numbers, found '{line.strip()[:40]}'") from None
+                raise BadGeometry(f"{where}: a face must give its vertices by numbers, found '{line.strip()[:40]}'") from None
             face = [k - 1 if k > 0 else len(points) + k for k in face]
             if len(face) < 3 or min(face) < 0 or max(face) >= len(points):
-                raise BadGeometry(f"{where}: a face names a vertex that is not there, or less than three")
+                raise BadGeometry(f"{where}: a face has a vertex that does not exist, or fewer than three vertices")
             rows.setdefault(here, []).append(face)
     if not rows:
         raise BadGeometry(f"{name}: holds no faces")
@@ -111,7 +111,7 @@ def read_stl(content: bytes, name: str) -> list[Mesh]:
     found: list[Mesh] = []
     size = max(float(np.ptp(t.reshape(-1, 3), axis=0).max()) for t in solids.values())
     if not size * MERGED > 0.0:
-        raise BadGeometry(f"{name}: all of its corners lie in one place")
+        raise BadGeometry(f"{name}: all corners of the body have the same position")
     for title, triangles in solids.items():
         corners = triangles.reshape(-1, 3)
         _, first, inverse = np.unique(np.round(corners / (MERGED * size)), axis=0, return_index=True, return_inverse=True)
@@ -151,7 +151,7 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
     BadGeometry names the meshes that are open, flat or not convex.
     """
     if len(meshes) > MOST_SOLIDS:
-        raise BadGeometry(f"{name}: {len(meshes)} bodies, at most {MOST_SOLIDS}")
+        raise BadGeometry(f"{name}: {len(meshes)} bodies exceed the limit of {MOST_SOLIDS}")
     scale = UNITS[unit or "m"]
     stones: dict[str, list[Polyhedron]] = {}
     grounds: dict[str, bool] = {}
@@ -188,7 +188,7 @@ def without_doubles(stones: Sequence[Stone], tolerance: float) -> tuple[list[Sto
     told = ", ".join(f"{stones[j].name} as {stones[i].name}" for j, i in list(doubled.items())[:MOST_TOLD])
     more = f" and {len(doubled) - MOST_TOLD} more" if len(doubled) > MOST_TOLD else ""
     kept = [stone for k, stone in enumerate(stones) if k not in doubled]
-    return kept, (f"{len(doubled)} blocks are drawn twice and count once: {told}{more}",)
+    return kept, (f"{len(doubled)} blocks are drawn twice and counted once: {told}{more}",)
 
 
 def _within_itself(title: str, parts: Sequence[Polyhedron], tolerance: float) -> str:
@@ -199,14 +199,14 @@ def _within_itself(title: str, parts: Sequence[Polyhedron], tolerance: float) ->
     pairs = near_pairs(low, high, np.arange(len(parts)), 0.0)
     depth = max((overlap_depth(parts[i], parts[j]) for i, j in pairs.tolist()), default=0.0)
     least = max(tolerance, MERGED * float(np.ptp([low.min(axis=0), high.max(axis=0)], axis=0).max()))
-    return f"{title}: two of its parts overlap by {1e3 * depth:.3g} mm" if depth > least else ""
+    return f"{title}: two parts of the block overlap by {1e3 * depth:.3g} mm" if depth > least else ""
 
 
 def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: float = 0.0) -> Polyhedron:
     """The convex body around a closed mesh that lies within a distance [m] of it, faces with corners so far off a plane made
     one; ValueError says in words why there is none."""
     if len(points) > MOST_POINTS:
-        raise ValueError(f"is a mesh of {len(points)} points, at most {MOST_POINTS} are considered: draw it coarser")
+        raise ValueError(f"has {len(points)} points; at most {MOST_POINTS} are considered: draw it with fewer points")
     around_edge: dict[tuple[int, int], list[int]] = {}
     for k, face in enumerate(faces):
         for i, j in _edges(face):
@@ -214,29 +214,29 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: floa
     open_edges = sum(len(there) != 2 for there in around_edge.values())
     if open_edges:
         raise ValueError(
-            f"is not closed: {open_edges} edges do not have a face on either side; close its surface, or write blocks that share corners "
-            "as objects `o` of an OBJ"
+            f"is not closed: {open_edges} edges do not have a face on both sides. Close the surface, or write blocks that "
+            "share corners as objects `o` of an OBJ file"
         )
     turned = _turned(faces, around_edge)
     triangles = np.array([(f[0], b, c) for f in turned for b, c in itertools.pairwise(f[1:])])
     if not np.ptp(points, axis=0).all():
-        raise ValueError("is flat: it has no volume")
+        raise ValueError("is flat: its volume is zero")
     volume = abs(moments(points, triangles)[0])
-    fine = f"is of more than {MOST_CORNERS} corners, the greatest number considered: draw it coarser"
+    fine = f"has more than {MOST_CORNERS} corners, the greatest number considered: draw it with fewer corners"
     try:
         # more faces have more corners, by Euler; faces are made one by the fit of all of their corners where that is known
         whole = hull(points, SAME_PLANE if within > 0.0 else PLANE, 2 * MOST_CORNERS)
     except ManyFaces:
         raise ValueError(fine) from None
     except ValueError:
-        raise ValueError("is flat: it has no volume") from None
+        raise ValueError("is flat: its volume is zero") from None
     if len(whole.vertices) > MOST_CORNERS:
         raise ValueError(fine)
     around = moments(whole.vertices, whole.triangles)[0]
     if volume < (1.0 - CONVEX) * around and _dent(whole, points, triangles) > within:
         raise ValueError(
-            f"is not convex: its hull has {100.0 * (around / volume - 1.0):.3g} % more volume; cut it into convex parts, in an OBJ "
-            "as groups `g` of one object `o`"
+            f"is not convex: its convex hull has {100.0 * (around / volume - 1.0):.3g} % more volume. Divide it into convex "
+            "parts; in an OBJ file, as groups `g` of one object `o`"
         )
     return fitted(whole, within)
 
@@ -331,13 +331,13 @@ def _stl_binary(content: bytes, name: str) -> np.ndarray:
     """Triangles (n, 3, 3)."""
     count = struct.unpack("<I", content[80:84])[0] if len(content) >= 84 else -1
     if count < 1 or len(content) < 84 + 50 * count:
-        raise BadGeometry(f"{name}: neither the text nor the length of an STL file")
+        raise BadGeometry(f"{name}: this file has neither the text nor the length of an STL file")
     if 3 * count > MOST_VERTICES:
-        raise BadGeometry(f"{name}: {count} triangles, at most {MOST_VERTICES // 3}")
+        raise BadGeometry(f"{name}: {count} triangles exceed the limit of {MOST_VERTICES // 3}")
     row = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
     found = np.frombuffer(content, row, count, 84)["corners"].astype(float)
     if not (np.abs(found) <= FARTHEST).all():  # NaN too
-        raise BadGeometry(f"{name}: holds corners that are no numbers within {FARTHEST:g}")
+        raise BadGeometry(f"{name}: the file contains corners that are not numbers up to {FARTHEST:g}")
     return found
 
 
@@ -354,9 +354,9 @@ def _stl_text(content: bytes, name: str) -> dict[str, np.ndarray]:
             rows.setdefault(title, []).append(_numbers(words[1:], f"{name}:{number}", "a vertex of three numbers"))
     for solid, corners in rows.items():
         if len(corners) % 3 or not corners:
-            raise BadGeometry(f"{name}: solid '{solid}' has {len(corners)} corners, which are no triangles")
+            raise BadGeometry(f"{name}: solid '{solid}' has {len(corners)} corners, which do not form triangles")
     if not rows:
         raise BadGeometry(f"{name}: holds no triangles")
     if sum(map(len, rows.values())) > MOST_VERTICES:
-        raise BadGeometry(f"{name}: more than {MOST_VERTICES // 3} triangles")
+        raise BadGeometry(f"{name}: this file has more than {MOST_VERTICES // 3} triangles")
     return {solid: np.array(corners).reshape(-1, 3, 3) for solid, corners in rows.items()}

@@ -133,7 +133,7 @@ def hull(points: np.ndarray, flat: float = FLAT, most: float = np.inf) -> Polyhe
     try:
         found = ConvexHull((points - middle) / (size or 1.0))
     except QhullError:
-        raise ValueError("the points lie in one plane") from None
+        raise ValueError("all points lie in one plane") from None
     planes: np.ndarray = np.empty((0, 4))
     groups: list[list[int]] = []  # facets that lie in one plane
     for k, plane in enumerate(found.equations):
@@ -144,7 +144,7 @@ def hull(points: np.ndarray, flat: float = FLAT, most: float = np.inf) -> Polyhe
             planes = np.vstack([planes, plane])
             groups.append([k])
             if len(planes) > most:
-                raise ManyFaces(f"the hull has more than {most:g} faces")
+                raise ManyFaces(f"the convex hull has more than {most:g} faces")
     scaled = (points - middle) / (size or 1.0)
     faces = []
     for plane, facets in zip(planes, groups, strict=True):

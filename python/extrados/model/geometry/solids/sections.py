@@ -20,7 +20,9 @@ def drawn_out(assembly: Assembly) -> SolidAssembly:
     """The solids of a plane assembly, from -depth/2 to depth/2 across; its joints are the contacts, so that limit analysis
     in the plane and in space ask for the same forces. NoView where earth pushes back, which is known in the plane alone."""
     if assembly.earth is not None:
-        raise NoView("the fill of a bridge spreads loads and resists in its section alone: remove `direction`", ("analysis", "direction"))
+        raise NoView(
+            "the fill of a bridge spreads loads and gives pressure only in the plane section: remove `direction`", ("analysis", "direction")
+        )
     half = 0.5 * assembly.depth
     parts, owner, inertia = [], [], []
     for i, outline in enumerate(assembly.outlines):

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from extrados.model.errors import BadGeometry, Key
+from extrados.model.geometry.anchors import named_stone, only_stone
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.model.geometry.solids.polyhedra import Polyhedron
@@ -70,26 +71,12 @@ class Strand:
 
 def solid_at(assembly: SolidAssembly, point: np.ndarray, name: str | None, what: str, key: Key, end: str) -> int:
     """The block at a point (3) [m], or the one of a name; BadGeometry, which begins with `what`, where that is not one."""
-    names = assembly.block_names
     if name is not None:
-        if name not in names:
-            more = ", ..." if len(names) > 8 else ""
-            raise BadGeometry(f"{what}: there is no block '{name}'; there are {', '.join(names[:8])}{more}", (*key, f"{end}_stone"))
-        return names.index(name)
+        return named_stone(assembly.block_names, name, what, key, end)
     hair = HAIR * assembly.size
     holding = [k for k, part in enumerate(assembly.parts) if _outside(part, point) < hair]
     found = sorted({int(assembly.owner[k]) for k in holding})
-    place = f"x = {point[0]:.4g}, y = {point[1]:.4g}, z = {point[2]:.4g} m"
-    if not found:
-        near = names[int(np.linalg.norm(assembly.centroid - point, axis=1).argmin())]
-        raise BadGeometry(
-            f"{what}: no block is at {place}; name the block by {end}_stone if the tie is anchored outside of it, '{near}' is near",
-            (*key, end),
-        )
-    if len(found) > 1:
-        said = ", ".join(f"'{names[i]}'" for i in found)
-        raise BadGeometry(f"{what}: {place} lies between {said}; name the one in which the tie is anchored", (*key, end))
-    return found[0]
+    return only_stone(assembly.block_names, assembly.centroid, found, point, what, key, end)
 
 
 def _outside(part: Polyhedron, point: np.ndarray) -> float:
@@ -116,7 +103,7 @@ def hoop_at(assembly: SolidAssembly, height: float, what: str, key: Key) -> tupl
                     points.append((part.vertices[i] + share * (part.vertices[j] - part.vertices[i]))[:2])
                     owner.append(block)
     if not points:
-        raise BadGeometry(f"{what}: no block is cut at z = {height:.4g} m; a hoop lies between two bed joints", key)
+        raise BadGeometry(f"{what}: no block exists at z = {height:.4g} m; a hoop must lie between two bed joints", key)
     plan, whose = np.array(points), np.array(owner)
     corners = plan[ConvexHull(plan).vertices]
     back, forth = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners

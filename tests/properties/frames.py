@@ -1,0 +1,148 @@
+"""Buildings as frames of macro-elements: statics of the whole building, order of strengths, the same plan seen otherwise."""
+
+import math
+from typing import Any
+
+import numpy as np
+from asking import Answer, Deck, ask, at_most, must, near
+from buildings import changed, number
+from hypothesis import strategies as st
+from relations import GRAVITY, ok, relation
+
+ONE = {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]}
+#: What every element keeps of its elastic stiffness carries a few per cent of the strength at the drift limits
+KEPT = 0.03
+
+
+@st.composite
+def plans(draw: st.DrawFn) -> Deck:
+    """Oblong buildings of one to three storeys with openings in all walls, in weak or strong masonry, dry or in mortar."""
+    a, b = draw(number(4.0, 9.0, 10)), draw(number(4.0, 7.0, 6))
+    storeys = draw(st.lists(number(2.6, 3.4, 8), min_size=1, max_size=3))
+    corners = [[0.0, 0.0], [a, 0.0], [a, b], [0.0, b]]
+    walls = []
+    for k, name in enumerate(("south", "east", "north", "west")):
+        wall: Deck = {"name": name, "start": corners[k], "end": corners[(k + 1) % 4], "thickness": draw(number(0.3, 0.6, 6))}
+        from_ = draw(number(0.8, 1.4, 6))
+        if draw(st.booleans()):
+            wall["openings"] = [{"storey": s + 1, "x": [from_, round(from_ + 1.0, 6)], "z": [0.8, 2.0]} for s in range(len(storeys))]
+        walls.append(wall)
+    young, load = draw(st.sampled_from([30e6, 3e9])), draw(st.sampled_from([1000.0, 3000.0]))
+    return {
+        "structure": {
+            "kind": "building",
+            "storeys": storeys,
+            "walls": walls,
+            "floors": [{"storey": k + 1, "young": young, "thickness": 0.05, "load": load} for k in range(len(storeys))],
+        },
+        "material": {"density": 1800.0, "young": 1.5e9, "compressive_strength": draw(st.sampled_from([2.5e6, 6e6]))},
+        "joints": {"cohesion": draw(st.sampled_from([0.0, 2e4, 1e5]))},
+    }
+
+
+def push(deck: Deck, frame: dict[str, Any] | None = None, **keys: Any) -> Answer:
+    """One push of the frame, with other keys."""
+    return ask(deck, "frame-pushover", **{**ONE, "frame": frame or {}, "steps": 100, **keys})
+
+
+@relation("frame-pushover", st.tuples(plans(), st.sampled_from([0.0, 90.0])), share=0.5)
+def pushes_of_frames_end(deck: Deck, direction: float, within: float) -> None:
+    """A push ends by its target or by a loss of strength, not by too many steps; without equilibrium only where a pier has reached its drift limit."""
+    answer = push(deck, directions=[direction], senses=["+", "-"], eccentricities=[0.05], steps=200)
+    ok(answer)
+    for run in answer.results.runs:
+        ends = {"target displacement", "loss of strength"} | ({"no equilibrium at the least step"} if run.failed else set())
+        must(run.stop in ends, f"{run.name}: {run.stop} at {run.control_displacement_m[-1]} m")
+
+
+@relation("frame-pushover", plans(), KEPT, share=0.5)
+def frames_are_held_by_their_weight(deck: Deck, within: float) -> None:
+    """The ground pulls at no wall: the base shear times the height of the forces is at most the weight times its distance to the edge. Without cohesion
+    it is at most friction times the weight."""
+    mu = 0.4
+    answer = push(changed(deck, joints={"cohesion": 0.0}), {"shear": "mohr-coulomb", "friction": mu})
+    ok(answer)
+    (run,) = answer.results.runs
+    levels = np.cumsum(deck["structure"]["storeys"])
+    masses = np.array(run.level_mass_kg)
+    height = float(masses @ levels / masses.sum())
+    walls = deck["structure"]["walls"]
+    thick = max(wall["thickness"] for wall in walls)
+    width = max(wall["end"][0] for wall in walls) + thick
+    at_most("friction", run.peak_base_shear_N, mu * answer.results.weight_N, within)
+    at_most("overturning", run.peak_base_shear_N * height, answer.results.weight_N * 0.75 * width, within)
+
+
+@relation("frame-pushover", st.tuples(plans(), number(5.0, 85.0, 8)), 1e-4, share=0.3)
+def frames_on_a_turned_plan(deck: Deck, angle: float, within: float) -> None:
+    """The plan and the push turned together, and the walls in another order: the same curve."""
+    turn = math.radians(angle)
+    made = [[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]]
+    walls = [
+        {**wall, **{key: np.round(np.array(wall[key]) @ made, 9).tolist() for key in ("start", "end")}}
+        for wall in reversed(deck["structure"]["walls"])
+    ]
+    one, other = push(deck), push(changed(deck, structure={"walls": walls}), directions=[angle])
+    ok(one, other)
+    near("weight", one.results.weight_N, other.results.weight_N, 1e-9)
+    a, b = one.results.runs[0], other.results.runs[0]
+    near("stiffness", a.stiffness_N_m, b.stiffness_N_m, within)
+    near("base shear", a.peak_base_shear_N, b.peak_base_shear_N, within)
+
+
+@relation("frame-pushover", plans(), 1e-4, share=0.3)
+def frames_in_a_mirror(deck: Deck, within: float) -> None:
+    """The mirrored plan pushed to the other sense: the same curve."""
+    walls = []
+    for wall in deck["structure"]["walls"]:
+        seen = {**wall, "start": [-wall["end"][0], wall["end"][1]], "end": [-wall["start"][0], wall["start"][1]]}
+        if "openings" in wall:
+            length = math.dist(wall["start"], wall["end"])
+            seen["openings"] = [{**o, "x": [round(length - o["x"][1], 9), round(length - o["x"][0], 9)]} for o in wall["openings"]]
+        walls.append(seen)
+    one, other = push(deck), push(changed(deck, structure={"walls": walls}), senses=["-"])
+    ok(one, other)
+    a, b = one.results.runs[0], other.results.runs[0]
+    near("stiffness", a.stiffness_N_m, b.stiffness_N_m, within)
+    near("base shear", a.peak_base_shear_N, b.peak_base_shear_N, 20.0 * within)  # of steps between limits
+
+
+@relation("frame-pushover", st.tuples(plans(), st.sampled_from(["cohesion", "compressive_strength"])), 0.02, share=0.3)
+def stronger_frames(deck: Deck, key: str, within: float) -> None:
+    """More cohesion or a greater compressive strength never lowers the greatest base shear, as long as no pier reaches its drift limit."""
+    table = "joints" if key == "cohesion" else "material"
+    other = changed(deck, **{table: {key: 1.5 * deck[table][key] + (2e4 if table == "joints" else 0.0)}})
+    ductile = {"drift_flexure": 0.1, "drift_shear": 0.1}
+    weak, strong = push(deck, ductile), push(other, ductile)
+    ok(weak, strong)
+    at_most(f"base shear with more {key}", weak.results.base_shear_N, strong.results.base_shear_N, within)
+
+
+@relation("frame-pushover", plans(), 0.02, share=0.3)
+def halved_steps_of_frames(deck: Deck, within: float) -> None:
+    """Twice as many steps: the same greatest base shear, and the same ultimate displacement."""
+    one, other = push(deck), push(deck, steps=200)
+    ok(one, other)
+    near("base shear", one.results.base_shear_N, other.results.base_shear_N, within)
+    if one.results.ultimate_displacement_m and other.results.ultimate_displacement_m:
+        near("ultimate displacement", one.results.ultimate_displacement_m, other.results.ultimate_displacement_m, within)
+
+
+@relation("frame-modes frame-pushover", plans(), 1e-6, share=0.3)
+def weights_and_periods_of_frames(deck: Deck, within: float) -> None:
+    """The weight by hand from the plan; with four times the stiffness of masonry and floors the periods are halved."""
+    structure = deck["structure"]
+    volume = 0.0
+    for wall in structure["walls"]:
+        area = math.dist(wall["start"], wall["end"]) * sum(structure["storeys"])
+        area -= sum((o["x"][1] - o["x"][0]) * (o["z"][1] - o["z"][0]) for o in wall.get("openings", ()))
+        volume += area * wall["thickness"]
+    walls = structure["walls"]
+    plan = walls[0]["end"][0] * walls[1]["end"][1]
+    floors = sum(plan * floor["load"] for floor in structure["floors"])
+    stiff = changed(deck, material={"young": 4.0 * deck["material"]["young"]})
+    stiff["structure"]["floors"] = [{**floor, "young": 4.0 * floor["young"]} for floor in structure["floors"]]
+    pushed, soft, hard = push(deck), ask(deck, "frame-modes"), ask(stiff, "frame-modes")
+    ok(pushed, soft, hard)
+    near("weight", pushed.results.weight_N, volume * deck["material"]["density"] * GRAVITY + floors, within)
+    near("periods", *(factor * np.array([m.period_s for m in one.results.modes]) for factor, one in ((1.0, soft), (2.0, hard))), 0.01)
