@@ -218,7 +218,7 @@ export function planPanel(app, frame, box) {
 
   function pushed(direction) {
     halt();
-    app.say(tr`pushing it …`);
+    app.say(tr`calculating the capacity …`);
     app.ask({ do: "push-plan", direction }, { reply: (reply, arrays) => {
       if (!reply.pushed) return;
       app.say("");
