@@ -6,6 +6,7 @@ calculation shares nothing else with the pushover.
 """
 
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -36,17 +37,19 @@ def rows_of(element, n):
     return np.array([along[0] - along[1], ends[2] + chord, ends[5] + chord])
 
 
-def limit_of(frame, forces):
-    """The greatest multiple of `forces` (n) beside the weight that is in equilibrium within the strengths."""
+def limit_of(frame, forces, tension=0.0):
+    """The greatest multiple of `forces` (n) beside the weight that is in equilibrium within the strengths. tension: strength of bed
+    joints that acts on the whole section [Pa]."""
     n, columns, low, high, above = len(frame.weight), [], [], [], []
     for element in frame.elements:
         rows = rows_of(element, n)
         if element.pier:
             start, arm = len(columns), 0.5 * element.depth
+            bond = tension * element.depth * element.thickness
             columns += list(rows)
-            low += [0.0, -np.inf, -np.inf]
+            low += [-bond, -np.inf, -np.inf]
             high += [np.inf] * 3
-            above += [(start, start + k, arm, sign) for k in (1, 2) for sign in (1.0, -1.0)]
+            above += [(start, start + k, arm, sign, arm * bond) for k in (1, 2) for sign in (1.0, -1.0)]
         else:
             columns += list(rows[1:])
             low += [-element.moment] * 2
@@ -66,22 +69,25 @@ def limit_of(frame, forces):
     high += [np.inf] * len(floors)
     equal = np.column_stack([*columns, -forces])
     less = np.zeros((len(above), equal.shape[1]))
-    for k, (normal, moment, arm, sign) in enumerate(above):
+    for k, (normal, moment, arm, sign, _) in enumerate(above):
         less[k, moment], less[k, normal] = sign, -arm
     cost = np.zeros(equal.shape[1])
     cost[-1] = -1.0
     bounds = [(a if a > -1e29 else None, b if b < 1e29 else None) for a, b in zip([*low, 0.0], [*high, np.inf], strict=True)]
     scale = 1.0 / np.abs(frame.weight).max()
-    found = linprog(cost, less, np.zeros(len(less)), equal * scale, frame.weight * scale, bounds, method="highs")
+    found = linprog(cost, less, [row[4] for row in above], equal * scale, frame.weight * scale, bounds, method="highs")
     assert found.status == 0, found.message
     return float(found.x[-1])
 
 
-def rigid(name, **more):
-    """The frame of a case of stiff masonry that does not crush."""
+def rigid(name, floors=None, **more):
+    """The frame of a case of stiff masonry that does not crush; floors: their modulus."""
     with open(f"cases/{name}.toml", "rb") as file:
         data = tomllib.load(file)
     data["material"] |= {"young": 2e10, "compressive_strength": 1e9}
+    data["analysis"] = [{"kind": "frame-modes"}]
+    for floor in data["structure"]["floors"] if floors else []:
+        floor["young"] = floors
     return make_deck(data).building.frame(FrameOptions(**RIGID | more, cohesion=0.2e6, diagonal_strength=0.1e6))
 
 
@@ -100,3 +106,16 @@ def test_a_pushover_reaches_the_load_of_limit_analysis(name, flanges):
             path = core.push(push.forces, push.control, 0.03 * float(frame.plan.levels[level]), 150, 0.5)
             limit = limit_of(frame, push.forces)
             assert 0.97 < path.multiple.max() / limit < 1.01, push.name
+
+
+@pytest.mark.parametrize("floors", [None, 2e9])
+def test_walls_that_floors_do_not_join_carry_what_each_of_them_does(floors):
+    """Yi's building has diaphragms of 0.02 MPa: its walls move apart, and limit analysis without floors gives the load."""
+    frame = rigid("building/yi", floors)
+    options = FramePushover(kind="frame-pushover", directions=[0.0], patterns=["uniform"], eccentricities=[0.0], senses=["+"])
+    with frame.core() as core:
+        (push,) = pushes_of(frame, options, modes_of(frame, rest_of(frame, core).tangent, 6), 2)
+        path = core.push(push.forces, push.control, 0.2, 200, 0.5)
+    apart, joined = limit_of(replace(frame, linear=0.0 * frame.linear), push.forces), limit_of(frame, push.forces)
+    assert joined > 1.05 * apart
+    assert path.multiple.max() == pytest.approx(joined if floors else apart, rel=1e-2)

@@ -34,6 +34,7 @@ def deck_of_ifc(model: Path) -> str:
     walls, storeys = _by_storey(found, model.name)
     said = [
         f"Walls, openings and storeys are read from the model {model.name}: boxes about their solids.",
+        *([f"{found['cut']} walls are cut, as gables are by a roof: their boxes count (more masonry)."] if found["cut"] else []),
         *([f"Not considered: {found['left']} walls whose solids are not extruded upward."] if found["left"] else []),
     ]
     return written_deck(walls, storeys, model.name, said)
@@ -41,7 +42,7 @@ def deck_of_ifc(model: Path) -> str:
 
 def parse_ifc(content: bytes) -> dict[str, Any]:
     """Elevations of storeys, walls as a (2), b (2), thickness, foot, head and openings (s from, to, z from, to) [m], and how many
-    walls have no such solid; run by the process that reads. Unreadable says what is wrong."""
+    walls have no such solid or one that is cut; run by the process that reads. Unreadable says what is wrong."""
     try:
         import ifcopenshell
     except ImportError:
@@ -49,7 +50,7 @@ def parse_ifc(content: bytes) -> dict[str, Any]:
     model = ifcopenshell.file.from_string(content.decode("utf-8", "replace"))
     scale = _scale(model)
     elevations = sorted({round(scale * float(s.Elevation or 0.0), 4) for s in model.by_type("IfcBuildingStorey")})
-    walls, left = [], 0
+    walls, left, cut = [], 0, 0
     every = model.by_type("IfcWall")
     if not every:
         raise Unreadable("holds no IfcWall")
@@ -61,9 +62,10 @@ def parse_ifc(content: bytes) -> dict[str, Any]:
             left += 1
             continue
         walls.append(_wall(wall, corners, scale))
+        cut += _is_cut(wall)
     if not walls:
         raise Unreadable("no wall has an extruded solid")
-    return {"elevations": elevations, "walls": walls, "left": left}
+    return {"elevations": elevations, "walls": walls, "left": left, "cut": cut}
 
 
 def _scale(model: Any) -> float:
@@ -120,6 +122,16 @@ def _corners(element: Any) -> np.ndarray | None:
                 ends = np.concatenate([outline, outline + way])
                 return (_axes(item.Position) @ np.column_stack([ends, np.ones(len(ends))]).T).T[:, :3]
     return None
+
+
+def _is_cut(element: Any) -> bool:
+    """Whether the solid of an element is cut by another."""
+    return any(
+        item.is_a("IfcBooleanResult")
+        for shape in element.Representation.Representations
+        for item in shape.Items
+        if shape.RepresentationIdentifier == "Body"
+    )
 
 
 def _outline(profile: Any) -> np.ndarray | None:

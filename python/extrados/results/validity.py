@@ -235,7 +235,8 @@ FramePushover = Validity(
         "load. All nodes of a wall on one level have the same displacement along the wall."
     ),
     (
-        "Out-of-plane failure of walls is not considered: use local-mechanism for it. Spandrels carry no normal force. "
+        "Out-of-plane failure of walls is not considered: use local-mechanism for it. Spandrels carry no normal force but "
+        "that of ties and ring beams. A corner lifts the weight on the effective width of its flange. "
         "Strengths and drift limits are those of codes, and tested walls differ from them by about 20 %. With irregular "
         "openings the division into piers is uncertain."
     ),

@@ -139,7 +139,9 @@ def _plan_wall(ax: Axes, run: Stored, name: str, w: int, storey: int, label: str
     for a, b, _, _ in part[(of == w) & (kind == 1) & (at == storey)]:
         ax.add_patch(Polygon(_on_plan(line, a, b, thickness), facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.8))
     middle, way = 0.5 * (line[:2] + line[2:]), (line[2:] - line[:2]) / length
-    x, y = middle + (0.5 * thickness + 0.18) * np.array([-way[1], way[0]])
+    across = np.array([-way[1], way[0]])
+    outward = -1.0 if across @ (middle - run.array(name, "wall_line").reshape(-1, 2).mean(axis=0)) < 0.0 else 1.0
+    x, y = middle + outward * (0.5 * thickness + 0.22) * across
     angle = float(np.degrees(np.arctan2(way[1], way[0])))
     turn = angle - 180.0 if angle > 90.0 else angle + 180.0 if angle <= -90.0 else angle
     ax.text(x, y, label, ha="center", va="center", fontsize=7, rotation=turn)
