@@ -250,7 +250,7 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     damper = "[[dampers]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\ndamping = 100.0\n"
     for kind in ("tilt", "dem", "assessment", "rocking-spectrum"):
         ((status, reason),) = told(DECK.replace("rocking", kind))
-        assert status == "refused" and f"supports.abutting_wall: {kind} cannot take [supports] abutting_wall into account" in reason, reason
+        assert status == "refused" and f"supports.abutting_wall: {kind} cannot include [supports] abutting_wall" in reason, reason
         if kind == "dem":  # elements take dampers
             continue
         ((status, reason),) = told(damper + DECK.replace('[supports]\nabutting_wall = "left"\n', "").replace("rocking", kind))
@@ -262,7 +262,7 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
 def test_wrong_dampers_and_hinges_are_reported_with_their_line() -> None:
     for text, said in (
         ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]", "expected either damping"),
-        ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]\nslip_force = 2.0", "go together"),
+        ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]\nslip_force = 2.0", "require each other"),
         ("[[hinges]]\njoints = ['base']", "expected stiffness or damping"),
         ("[[hinges]]\njoints = ['base']\ndamping = 1.0\nyield_moment = 1.0", "yield_moment needs stiffness"),
     ):

@@ -228,7 +228,7 @@ def check_run(end_time: float, output_step: float, tolerance: float, scale: floa
 
 
 def events_of(kinds: np.ndarray, event: np.ndarray, found: int) -> list[tuple[str, float, float]]:
-    """Events (kind, time [s], value) from the numbers of their kinds (room) and their times and values (2, room)."""
+    """The `found` events as (kind, time [s], value). kinds (room): their numbers; event (2, room): their times [s] and values."""
     return [(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)]
 
 

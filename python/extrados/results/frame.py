@@ -123,7 +123,7 @@ class FramePushover(KindResults):
     spandrels: int = fact("spandrels")
     walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
     remarks: list[str] = fact("parts of the building that the frame model neglects")
-    ring_beam_moment_N_m: float = maybe("greatest moment of the elastic ring beams up to the peaks of all runs", "N m")
+    ring_beam_moment_Nm: float = maybe("greatest moment of the elastic ring beams up to the peaks of all runs", "N*m")
     out_of_plane: OutOfPlane = maybe("check of the walls out of their planes; only with a seismic action")
     verification: Verification = maybe("displacement-based verification: all runs at the limit states of the code")
 
@@ -131,8 +131,8 @@ class FramePushover(KindResults):
         """The verification by displacement; without one the least base shear, without an outcome."""
         lost = [row.name for row in self.runs if row.stop.startswith("no equilibrium") and row.drop_displacement_m is None]
         text = f"The frame can carry a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
-        if self.ring_beam_moment_N_m is not None:
-            text += f" Greatest moment of the ring beams, which remain elastic: {self.ring_beam_moment_N_m / 1e3:.3g} kN m."
+        if self.ring_beam_moment_Nm is not None:
+            text += f" Greatest moment of the ring beams, which remain elastic: {self.ring_beam_moment_Nm / 1e3:.3g} kN m."
         if self.out_of_plane is not None and self.out_of_plane.outcome in ("collapses", "cannot-stand"):
             factor = "" if self.out_of_plane.factor is None else f" (safety factor {self.out_of_plane.factor:.3g})"
             text += f" A wall does not satisfy the check of out-of-plane failure{factor}. {self.out_of_plane.statement}"

@@ -246,7 +246,7 @@ def _ring_beams(frame: EquivalentFrame, paths: Sequence[Path]) -> dict[str, Any]
     own = [k for k, s in enumerate(frame.strips) if s.kind == "ring beam"]
     if not own:
         return {}
-    return {"ring_beam_moment_N_m": max(float(np.abs(p.force[: int(p.multiple.argmax()) + 1, own, 1:]).max()) for p in paths)}
+    return {"ring_beam_moment_Nm": max(float(np.abs(p.force[: int(p.multiple.argmax()) + 1, own, 1:]).max()) for p in paths)}
 
 
 def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> None:

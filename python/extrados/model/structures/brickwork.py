@@ -189,11 +189,13 @@ def _joints(wall: _Units, size: float) -> list[tuple[str, np.ndarray, np.ndarray
 class Bonded(Table):
     """Keys of walls in running bond, in a plane or around corners."""
 
-    begins: str = "whole"
-    lintels: bool = True
-    lintel_height: float | None = None
-    lintel_bearing: float | None = None
-    least_unit: float = 0.25
+    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course; courses then alternate")
+    lintels: bool = key(True, "true: one block as lintel over each opening; false: the units above rest on the units beside the opening")
+    lintel_height: Length | None = key(None, "height of the lintels; default: one course", gt=0)
+    lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default: half a unit", gt=0)
+    least_unit: float = key(
+        0.25, "share of the length and height of a unit below which a cut piece is joined to its neighbour", ge=0, le=0.5
+    )
 
     def bond(self, unit_length: float, unit_height: float) -> Bond:
         """How this wall is laid, of a unit [m]."""
