@@ -70,7 +70,7 @@ class Tie(Table):
         if self.start == self.far:
             raise ValueError("start: both ends have the same position")
         if self.ground is not None and self.end_stone is not None:
-            raise ValueError("end_stone belongs to end, not to ground")
+            raise ValueError("end_stone can be given only with the key end, and this tie has the key ground: remove end_stone")
         if self.prestress > self.most or self.prestress < self.least:
             raise ValueError(
                 f"prestress: {self.prestress:g} N exceeds the range that the tie can carry, {self.least:g} to {self.most:g} N "

@@ -235,7 +235,13 @@ class Generated(Motion):
     lines: int | list[Frequency] = key(15, "number of sine lines over the band of the spectrum, or their frequencies")
     spacing: Literal["log", "uniform"] = key("log", "spacing of the lines: equal ratios, or equal distances")
     scaling: Literal["thesis", "fourier", "energy"] = key(
-        "energy", "rule for the amplitude of a line: factor |X| df, 2 |X| df, or 2 |X| sqrt(df / int P^2 dt)", source="thesis Eq. 6.6"
+        "energy",
+        (
+            "rule for the amplitude of each spectral line. thesis: factor |X| df; fourier: 2 |X| df; energy: 2 |X| sqrt(df "
+            "/ int P^2 dt), which keeps the energy of the spectrum. |X|: amplitude of the Fourier spectrum, df: frequency "
+            "step, P: envelope, factor: the key `factor`"
+        ),
+        source="thesis Eq. 6.6",
     )
     factor: float = key(1.0, 'factor on the amplitudes; with scaling = "thesis", also the unit of the frequency step', gt=0)
     dispersion: float = key(

@@ -209,7 +209,9 @@ class FrameHistory(KindResults):
     peak_drift: float = fact("greatest drift (chord rotation) of a pier")
     peak_drift_element: str = fact("that pier")
     failed: list[FailedElement] = fact("elements beyond their drift limits, in order, with the control displacement at each instant")
-    period_s: float = fact("period of the mode with the greatest participating mass in the direction, at rest", "s")
+    period_s: float = fact(
+        ("initial period (undamaged frame at rest) of the mode with the greatest participating mass in the direction of the motion"), "s"
+    )
     damping: list[float] = fact("Rayleigh damping: factor of the mass [1/s] and factor of the last tangent stiffness [s]")
     weight_N: float = fact("weight of walls and floors", "N")
     steps: int = fact("time steps")

@@ -424,7 +424,9 @@ class MovingLoad(KindResults):
     )
     load_N: float = maybe("load given in the deck", "N")
     safety_factor: float = maybe("ratio of the collapse load to the load given in the deck")
-    train: str = maybe('name of the train; "load" for axles that share one force, "train" for the axle loads of the deck')
+    train: str = maybe(
+        'name of the train; "load" if one total force is divided among the axles, "train" if the deck gives the load of each axle'
+    )
     adequacy_factor: float = maybe("multiple of the factored train (or load) that causes collapse")
     live_load_factor: float = maybe(
         "live-load factor: partial factor times dynamic factor, applied to the train before the adequacy factor"
@@ -639,21 +641,27 @@ class Survey(KindResults):
 
 
 class Imperfections(KindResults):
-    """imperfections: capacities of random surveys of the same stones, the lesser of the two senses of each."""
+    """imperfections: capacities of random geometries of the same stones, the lesser of the two senses of each."""
 
-    count: int = fact("number of random surveys")
-    deviation_m: float = fact("greatest distance of each measured point from its position in the given survey", "m")
-    given_collapse_acceleration_g: float = fact("collapse acceleration of the survey that the deck gives", "g")
+    count: int = fact("number of random geometries")
+    deviation_m: float = fact("greatest distance of each point of a random geometry from its position in the given geometry", "m")
+    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry that the deck gives", "g")
     median_collapse_acceleration_g: float = fact("median capacity", "g")
     low_collapse_acceleration_g: float = fact(
-        "5th percentile of the capacity: lower end of the band that contains 90 % of the surveys", "g"
+        "5th percentile of the capacity: lower end of the band that contains 90 % of the random geometries", "g"
     )
-    high_collapse_acceleration_g: float = fact("95th percentile of the capacity: upper end of this band", "g")
-    least_collapse_acceleration_g: float = fact("least capacity; 0 if a survey cannot stand", "g")
+    high_collapse_acceleration_g: float = fact(
+        ("95th percentile of the capacity: upper end of the band that contains 90 % of the random geometries"), "g"
+    )
+    least_collapse_acceleration_g: float = fact("least capacity; 0 if a geometry cannot stand", "g")
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
-    cannot_stand: int = fact("surveys that cannot carry their own weight, by a certificate; they count with a capacity of 0 g")
-    without_answer: int = fact("surveys for which the linear programmes gave no result; they are not counted")
-    upper_bounds: int = fact("surveys in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)")
+    cannot_stand: int = fact(
+        "number of random geometries that cannot carry their own weight, by a certificate; they count with a capacity of 0 g"
+    )
+    without_answer: int = fact("number of random geometries for which the linear programmes gave no result; they are not counted")
+    upper_bounds: int = fact(
+        "number of random geometries in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The 5th percentile of the capacities, or the given capacity if that is less, against the peak ground acceleration of the

@@ -101,7 +101,9 @@ class StageOfPush(PushCurve):
 
     name: str = fact("its name, or its number")
     of: Literal["push", "settlement"] = fact("quantity")
-    prefix: str = fact("first part of the names of the arrays of this stage; empty for the stage that represents the analysis")
+    prefix: str = fact(
+        "prefix of the array names of this stage; empty for the stage whose results are reported as the results of the analysis"
+    )
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 

@@ -103,7 +103,7 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
     met = [one for one in r.interventions if one.meets_target]
     for one in met:
         then = f"; afterwards {one.next_mechanism}" if one.next_mechanism else ""
-        moves = f" (under the hazard the strengthened building {rocking[one.name]})" if one.name in rocking else ""
+        moves = f" (under the hazard, the strengthened building {rocking[one.name]})" if one.name in rocking else ""
         said.append(f"{one.name}, {size_told(one)}{then}{moves}.")
     if not met:
         said.append("none: no tie and no thickness of those considered is sufficient.")

@@ -92,8 +92,8 @@ class Assess(Analysis):
     advise: bool = key(
         True,
         (
-            "also find the least tie force and the least thickness with which the building carries the peak of the hazard as "
-            'a sustained load; only if not all strategies give the verdict "stands"'
+            'if at least one strategy does not give the verdict "stands": also find the least tie force and the least '
+            "thickness with which the building carries the peak of the hazard as a sustained load"
         ),
     )
     options: dict[Strategy, dict[str, Any]] = key(

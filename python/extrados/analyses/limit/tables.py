@@ -162,9 +162,10 @@ class Sweep(SpatialLimit):
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
         about=(
-            "key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise; of another "
-            "table, for instance joints.friction, material.compressive_strength or ties.0.yield_force; or `direction`, that "
-            "of the load on solids"
+            "key to vary. A key of [structure] is given without its table, for instance buttress_width, "
+            "right.buttress_width or spans.0.rise; any other key with its table, for instance joints.friction, "
+            "material.compressive_strength or ties.0.yield_force. For solids also `direction`, the direction of the "
+            "load"
         )
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
@@ -191,20 +192,23 @@ class Survey(SpatialLimit):
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
     file: str = key(
-        about="CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or one file of solids"
+        about=(
+            "CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or "
+            "one file of solids"
+        )
     )
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
 
 
 class Imperfections(SpatialLimit):
-    """Random surveys of the same stones, each point within the deviation of the survey: a band on the capacity."""
+    """Random geometries of the same stones, each point within the deviation of the survey: a band on the capacity."""
 
     kind: Literal["imperfections"]
     starter: ClassVar = {"deviation": '"5 mm"'}
     deviation: Length | None = key(
         None, "greatest distance of a measured point from its true position; default: the contact_tolerance of `blocks`", gt=0, le=1
     )
-    count: int = key(200, "number of random surveys", ge=10, le=100000)
+    count: int = key(200, "number of random geometries", ge=10, le=100000)
     seed: int = key(1, "seed of the random numbers", ge=0)
 
 
@@ -349,9 +353,9 @@ class MovingLoad(LimitAnalysisTable):
         if not self.axles and not self.uniform:
             raise ValueError("axles: expected at least one axle, or uniform loads")
         if self.lanes is not None and self.train != "LM1":
-            raise ValueError('lanes belongs to train = "LM1": remove it')
+            raise ValueError('lanes is used only with train = "LM1": remove lanes')
         if self.gap is not None and not (self.train or "").startswith("SV"):
-            raise ValueError("gap belongs to the trains SV80, SV100 and SV196: remove it")
+            raise ValueError("gap is used only with the trains SV80, SV100 and SV196: remove gap")
         if self.gap not in (None, 1.2, 5.0, 9.0):
             raise ValueError(f"gap: expected 1.2, 5 or 9 m, found {self.gap:g}")
         for one in self.uniform:

@@ -128,7 +128,8 @@ class Stage(Table):
             raise ValueError("a stage requires a load that increases: give reference, or free")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
             raise ValueError(
-                "reference with an imposed displacement can contain no other load; give further places of the displacement as parts"
+                "if `reference` contains an imposed displacement, it can contain no other load. To impose the "
+                "displacement at more places, list them under `parts` of this load"
             )
         return self
 
@@ -425,7 +426,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         )
         if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
             raise ValueError(
-                "reference with an imposed displacement can contain no other load; give further places of the displacement as parts"
+                "if `reference` contains an imposed displacement, it can contain no other load. To impose the "
+                "displacement at more places, list them under `parts` of this load"
             )
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("seeds: a seed occurs twice, which would give the same wall again")
