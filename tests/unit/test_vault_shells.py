@@ -244,7 +244,7 @@ def test_limits_of_a_vault_are_reported(tmp_path, stages, change, words):
         ({"stages": [{"name": "a"}, {"name": "a"}]}, "occurs twice"),
         ({"stages": [{}], "directions": ["+", "-"]}, "together with stages"),
         ({"stages": [{}], "without_equilibrium": "proportional"}, 'without_equilibrium = "proportional" cannot be used together with'),
-        ({"main_stage": "a"}, "there are no `stages`"),
+        ({"main_stage": "a"}, "without stages"),
     ],
 )
 def test_wrong_stages_are_reported(keys, words):

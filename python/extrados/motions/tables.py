@@ -47,7 +47,7 @@ class Harmonic(Motion):
     @model_validator(mode="after")
     def _one_envelope(self) -> "Harmonic":
         if self.ramp > 0.0 and self.carrier is not None:
-            raise ValueError("give ramp or carrier, not both")
+            raise ValueError("give either the key ramp or the key carrier, not both")
         return self
 
 
@@ -106,7 +106,7 @@ class Treated(Motion):
     @model_validator(mode="after")
     def _one_target(self) -> "Treated":
         if sum(v is not None for v in (self.pga, self.pgv, self.arias, self.sa)) > 1:
-            raise ValueError("give only one of pga, pgv, arias and sa")
+            raise ValueError("give only one of the keys pga, pgv, arias and sa")
         if (self.sa is None) != (self.sa_period is None):
             raise ValueError("sa and sa_period go together")
         if self.low_cut is not None and self.high_cut is not None and self.low_cut >= self.high_cut:
@@ -133,7 +133,7 @@ class Components(Table):
     @model_validator(mode="after")
     def _plane(self) -> "Components":
         if (self.angle is not None) != (self.second is not None or self.second_channel is not None):
-            raise ValueError("angle requires second or second_channel, the other horizontal component")
+            raise ValueError("the key angle requires second or second_channel, which gives the other horizontal component")
         return self
 
 
@@ -210,9 +210,9 @@ class Suite(Treated):
     @model_validator(mode="after")
     def _one_source(self) -> "Suite":
         if any("*" in name or "?" in name for name in self.files or []):
-            raise ValueError('files takes names without wildcards; for wildcards give pattern = "records/*.AT2"')
+            raise ValueError('the key files takes names without wildcards; for wildcards give pattern = "records/*.AT2"')
         if sum(v is not None for v in (self.files, self.pattern, self.folder, self.records)) != 1:
-            raise ValueError("give only one of files, pattern, folder and records")
+            raise ValueError("give only one of the keys files, pattern, folder and records")
         return self
 
 
@@ -233,7 +233,9 @@ class Generated(Motion):
         source="thesis Fig. 6-5",
     )
     lines: int | list[Frequency] = key(15, "number of sine lines over the band of the spectrum, or their frequencies")
-    spacing: Literal["log", "uniform"] = key("log", "spacing of the lines: equal ratios, or equal distances")
+    spacing: Literal["log", "uniform"] = key(
+        "log", ("spacing of the spectral lines: equal ratios of the frequencies (log), or equal distances (uniform)")
+    )
     scaling: Literal["thesis", "fourier", "energy"] = key(
         "energy",
         (
@@ -251,10 +253,17 @@ class Generated(Motion):
         "arctangent", "envelope of the amplitude over time", source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974"
     )
     rise: Time | None = key(
-        None, ("width of the rise of the arctangent envelope (0.1 s); for other envelopes, time to full amplitude (0.15 or 0.2 t_d)"), gt=0
+        None,
+        (
+            "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time to full amplitude "
+            "(default 0.15 or 0.2 times t_d)"
+        ),
+        gt=0,
     )
     decay: Time | None = key(
-        None, "duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d down to 5 % (0.4 t_d)", gt=0
+        None,
+        ("duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d, down to 5 % (default 0.4 times t_d)"),
+        gt=0,
     )
     lead: Time = key(0.5, "time before t_d, t_0", ge=0, le=60)
     tail: Time = key(2.0, "time after t_d", ge=0, le=600)
@@ -290,5 +299,5 @@ class Compatible(TargetSpectrum, Motion):
         if self.code == "ASCE7" and self.damping != 0.05:
             raise ValueError("the spectrum of ASCE 7 is defined for 5 % damping only")
         if self.longest <= 2.0 * self.shortest:
-            raise ValueError("longest must be more than twice shortest")
+            raise ValueError("the period longest must be more than twice the period shortest")
         return self

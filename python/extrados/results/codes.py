@@ -27,8 +27,8 @@ class Check(ResultModel):
     )
     scope: str = fact("element, restraint and height to which the rule applies")
     alternative: str = fact(
-        "group of alternative checks: of the checks with the same code, limit state and word here, one that is satisfied "
-        "suffices; empty if this check must be satisfied by itself"
+        "name of a group of alternative checks. If one check with this code, limit state and group is satisfied, the "
+        "others of the group are not required. Empty if this check must be satisfied by itself"
     )
     reason: str = fact("reason why the rule does not apply; empty if it applies")
 
@@ -119,7 +119,8 @@ class Checked(KindResults):
                     f"dilatancy does not satisfy it. The outcome is open.{remarks}"
                 )
             return judge(
-                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
+                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand "
+                f"{worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
                 worst.demand,
                 worst.capacity,

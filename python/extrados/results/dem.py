@@ -78,7 +78,7 @@ class BlocksRun(KindResults):
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
     stop_time_s: float = fact("when it ended", "s")
-    still_moving: bool = fact("whether this block still moved at the end of the run")
+    still_moving: bool = fact("whether the governing block still moved at the end of the run")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse (not applied to a block that only slides)", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its position at rest under self-weight", "m")
@@ -220,7 +220,7 @@ class PairWork(ResultModel):
     name: str = fact("both blocks; the ground is one support")
     friction_J: float = fact("energy lost by friction", "J")
     damping_J: float = fact("energy lost in dashpots, or by impacts of rigid contacts", "J")
-    peak_force_N: float = fact("greatest force between them at an output time", "N")
+    peak_force_N: float = fact("greatest force between both blocks, over the output times", "N")
 
 
 class SolidDemRun(BlocksRun):
@@ -237,8 +237,8 @@ class SolidDemRun(BlocksRun):
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of any block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed at another point", "m")
-    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks at an output time", "N")
-    peak_base_shear_over_weight: float = fact("ratio of that force to the weight of the structure")
+    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks, over the output times", "N")
+    peak_base_shear_over_weight: float = fact("ratio of the greatest horizontal force of the ground to the weight of the structure")
     joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
 
 

@@ -57,7 +57,7 @@ class SolidNonDilatant(ResultModel):
         "least certified state found from any initial state of stress (serves as a warning); null without one", "g"
     )
     starts_g: list[float] = fact("loads of the certified states found from each starting point; the least is used", "g")
-    spread_g: float | None = fact("greatest less least of them", "g")
+    spread_g: float | None = fact("difference between the greatest and the least of these loads", "g")
     zero_gap_g: float | None = fact(
         "for the least state: |gamma - (work of friction - work of the weight)| per unit of work of the load", "g"
     )
@@ -81,7 +81,7 @@ class SolidTilt(KindResults):
     )
     load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
     least_acceleration_g: float = fact("least collapse acceleration in all directions that were searched", "g")
-    least_direction_deg: float = fact("direction of that", "deg")
+    least_direction_deg: float = fact("direction of the least collapse acceleration", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     moving_blocks: int = fact("blocks that move in the mechanism: faster than 1/1000 of the fastest block")
@@ -161,11 +161,12 @@ class SolidThrust(KindResults):
     """thrust of solids: admissible states of stress at a given horizontal acceleration."""
 
     gamma_g: float = fact("horizontal acceleration along the direction", "g")
-    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
+    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
     admissible_interval_g: list[float] = fact("accelerations along the direction between which a state is admissible", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "inverse of the smallest part of the contacts, about their middles, that permits a state in equilibrium; null if that part is below "
+        "inverse of the smallest part of the contacts, about their middles, that permits a state in equilibrium; null "
+        "if that part is below "
         "1 % (no horizontal demand), or if not found"
     )
     least_part_of_joints: float | None = fact("the part of the contacts, about their middles, that the most central state needs")

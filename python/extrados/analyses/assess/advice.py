@@ -15,7 +15,7 @@ def size_interventions(asker: Asker, peak_g: float, rocks: bool) -> Advice | str
     """Interventions that carry the peak of the hazard, with the outcome of rocking; why there are none, in words."""
     dropped = tuple(what for what in asker.cannot_bear("tilt") if what != "[supports] abutting_wall")
     if dropped:
-        return f"limit analysis gives the sizes of interventions, and it neglects {' and '.join(dropped)}"
+        return f"limit analysis, which gives the sizes of interventions, neglects {' and '.join(dropped)}"
     try:
         result, _ = asker.ask("strengthen", {"acceleration": f"{peak_g!r} g"})
     except Refused as error:

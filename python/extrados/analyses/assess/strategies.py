@@ -139,7 +139,10 @@ def _scatter(asked: Asked) -> dict[str, float]:
 
 def _probability(asked: Asked) -> Choice:
     if asked.motions > 1:
-        raise LeftOut("this strategy is not needed: the motions of the set vary already, and the row of the set gives their share")
+        raise LeftOut(
+            "this strategy is not needed: the motions of the set already vary, and the row of the set gives the share of "
+            "them that causes collapse"
+        )
     uncertain = asked.options.uncertain or _scatter(asked)
     if asked.building.restraints or asked.building.supports.abutting_wall is not None:
         raise LeftOut("the sizes of a building with restraints (ties, dampers, a wall) are not varied")

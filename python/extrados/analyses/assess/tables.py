@@ -82,8 +82,8 @@ class Assess(Analysis):
         False,
         (
             "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and rocking give new "
-            "safety factors, and the value at which each verdict changes. Discrete elements vary the joint stiffness and "
-            "move a support. This takes 25 % of the budget"
+            "safety factors, and the value at which each verdict changes. With discrete elements, the joint stiffness "
+            "varies and a support moves. This takes 25 % of the budget"
         ),
     )
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(

@@ -139,7 +139,7 @@ class Floor(Table):
     )
     arm: Length | None = key(None, "horizontal distance of the load behind the hinge; default: the middle of the wall", ge=0)
     sways: bool = key(True, "whether the mass of the load is accelerated with the wall; false if other walls restrain it")
-    thrust: Force = key(0.0, "horizontal thrust of the load at rest, outward")
+    thrust: Force = key(0.0, "outward horizontal thrust of the load at rest")
 
 
 class WallTie(Table):
@@ -156,7 +156,7 @@ class Wing(Table):
     thickness: Length = key(about="its thickness", gt=0)
     width: Length = key(about="its length", gt=0)
     foot: Length = key(0.0, "height of the foot of this part above the foot of the wall", ge=0)
-    setback: Length = key(0.0, "distance of the outer face of this part behind that of the wall", ge=0)
+    setback: Length = key(0.0, "distance by which the outer face of this part lies behind the outer face of the wall", ge=0)
 
     @model_validator(mode="after")
     def _upright(self) -> "Wing":

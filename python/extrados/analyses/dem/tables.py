@@ -98,7 +98,8 @@ class DemTable(BuildingAnalysis):
     time_step: Time | None = key(
         None,
         (
-            "time step. Default: the given fraction of the critical time step; for nonsmooth, 1/500 of the time of a free "
+            "time step. Default: the given fraction of the critical time step; for "
+            'solver = "nonsmooth", 1/500 of the time of a free '
             "fall over the size of the smallest block"
         ),
         gt=0,
@@ -131,7 +132,7 @@ class DemTable(BuildingAnalysis):
         """What only the other solver knows is refused."""
         given = self.model_fields_set
         if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness"})):
-            raise ValueError(f'{wrong[0]} belongs to solver = "compliant": rigid contacts have no stiffness and no damping')
+            raise ValueError(f'{wrong[0]} is used only with solver = "compliant": rigid contacts have no stiffness and no damping')
         if not self.rigid and (wrong := sorted(given & {"rebound", "quasi_static"})):
             raise ValueError(f'{wrong[0]} needs solver = "nonsmooth"')
         return self

@@ -195,7 +195,9 @@ class FrameFragility(FrameMotion):
         if (self.intensity == "sa") != (self.sa_period is not None):
             raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
         if self.by == "pushover" and self.levels is not None:
-            raise ValueError('levels belong to by = "history". N2 calculates the intensity that each motion needs to reach a limit state')
+            raise ValueError(
+                'the key levels is used only with by = "history". N2 calculates the intensity that each motion needs to reach a limit state'
+            )
         for name, value in self.uncertain.items():
             if name not in UNCERTAIN:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(UNCERTAIN)}")

@@ -122,12 +122,15 @@ class Section(Table):
     y: Length | None = key(None, "cut across y")
     z: Length | None = key(None, "level cut at this height")
     joints: list[str] | None = key(
-        None, 'names of contacts in place of a cut, or of a group of them; "ground" means all supports', min_length=1, max_length=10000
+        None, 'names of contacts, or of groups of contacts, in place of a cut; "ground" means all supports', min_length=1, max_length=10000
     )
     toward: Angle | None = key(
         None,
-        "direction in plan of the thrust, from +x to +y, on the blocks at greater x or y, or on the blocks or ground below; default across "
-        "a vertical cut, else outward from the middle of the structure",
+        (
+            "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, "
+            "or on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
+            "middle of the structure"
+        ),
         ge=-360,
         le=360,
     )
@@ -135,7 +138,7 @@ class Section(Table):
     @model_validator(mode="after")
     def _one_cut(self) -> "Section":
         if sum(one is not None for one in (self.x, self.y, self.z, self.joints)) != 1:
-            raise ValueError("expected one of x, y, z and joints")
+            raise ValueError("expected one of the keys x, y, z and joints")
         return self
 
 
@@ -149,7 +152,7 @@ class Thrust(SpatialLimit):
     chain: str | None = key(None, "arch or stack whose least and greatest thrust are calculated; default: the first arch, vault or nave")
     section: list[Section] = key(
         [],
-        "of solids: sections whose least and greatest thrust are calculated, [[analysis.section]]; default: cuts across x and y through "
+        "for solids: sections whose least and greatest thrust are calculated, [[analysis.section]]; default: cuts across x and y through "
         "the middle, and the ground",
         max_length=50,
     )
@@ -182,7 +185,7 @@ class Sweep(SpatialLimit):
     @model_validator(mode="after")
     def _range(self) -> "Sweep":
         if (self.values is None) == (self.start is None or self.stop is None):
-            raise ValueError("give either values, or start and stop")
+            raise ValueError("give either the key values, or the keys start and stop")
         return self
 
 
@@ -311,7 +314,7 @@ class MovingLoad(LimitAnalysisTable):
         source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause); CS 454 7.3.1; STANAG 2021 (verify)",
     )
     gap: Length | None = key(None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0)
-    axles: list[Length] = key([0.0], "positions of the axles behind the first axle", max_length=200)
+    axles: list[Length] = key([0.0], "distance of each axle behind the first axle", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default: equal shares", max_length=200)
     force: Force | None = key(None, "total load of the axles; adds the safety factor", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle; replaces shares and force", max_length=200)
@@ -343,13 +346,13 @@ class MovingLoad(LimitAnalysisTable):
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
             raise ValueError("axle_loads: expected one load above 0 for each of the axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
-            raise ValueError("train replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
+            raise ValueError("the key train replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
         if self.axle_loads is not None and (self.shares is not None or self.force is not None):
             raise ValueError("axle_loads replaces shares and force")
         if self.uniform and self.axle_loads is None and self.axles:
-            raise ValueError("uniform requires axle_loads, or axles = [] if there are no axles")
+            raise ValueError("the key uniform requires axle_loads, or axles = [] if there are no axles")
         if self.serviceability is not None and self.train is None and self.axle_loads is None and not self.uniform:
-            raise ValueError("serviceability requires a train, axle_loads or uniform")
+            raise ValueError("the key serviceability requires one of the keys train, axle_loads and uniform")
         if not self.axles and not self.uniform:
             raise ValueError("axles: expected at least one axle, or uniform loads")
         if self.lanes is not None and self.train != "LM1":

@@ -123,9 +123,11 @@ class Stage(Table):
     @model_validator(mode="after")
     def _one_cause(self) -> "Stage":
         if self.free and self.reference:
-            raise ValueError("free and reference exclude each other, because removed supports are the load of their stage: give two stages")
+            raise ValueError(
+                "the keys free and reference exclude each other, because removed supports are the load of their stage: give two stages"
+            )
         if not (self.free or self.reference):
-            raise ValueError("a stage requires a load that increases: give reference, or free")
+            raise ValueError("a stage requires a load that increases: give the key reference, or the key free")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
             raise ValueError(
                 "if `reference` contains an imposed displacement, it can contain no other load. To impose the "
@@ -240,7 +242,7 @@ class Staged:
         names = self.stage_names
         if not self.stages:
             if self.main_stage is not None:
-                raise ValueError("main_stage is given, but there are no `stages`")
+                raise ValueError("main_stage is given without stages: give `stages`, or remove main_stage")
             return
         if len(set(names)) < len(names):
             raise ValueError(f"stages: a name occurs twice among {', '.join(names)}")
@@ -409,7 +411,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":
         if any(load.kind == "displacement" for load in self.constant or []):
-            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could not follow B")
+            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could not move under loads B")
         reference = self.reference or []
         self.check_stages(
             {
@@ -436,9 +438,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
             raise ValueError("an incremental solution has no events: remove without_equilibrium, states and budget")
         if self.verification.model_fields_set and not self.by_inertia:
-            raise ValueError("verification requires one horizontal load by the masses only, without stages")
+            raise ValueError("the key verification requires one horizontal load by the masses only, without stages")
         if self.verification.shape == "mode":
-            raise ValueError('verification: shape = "mode" belongs to buildings: remove it')
+            raise ValueError('verification: shape = "mode" is only for buildings: remove shape')
         return self
 
     @property
