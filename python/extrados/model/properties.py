@@ -286,6 +286,10 @@ class Initial(Table):
     """The state from which dynamics start."""
 
     rotation_ratio: float = key(
-        0.0, "initial rotation divided by the critical rotation of its side; positive towards +x", source="thesis 6.2.2", gt=-1, lt=1
+        0.0,
+        ("ratio of the initial rotation to the critical rotation on the same side; positive towards +x"),
+        source="thesis 6.2.2",
+        gt=-1,
+        lt=1,
     )
     movements: list[Movement] = key([], "supports that move, [[initial.movements]]", max_length=100)

@@ -81,7 +81,7 @@ class Probe(ResultModel):
     strategy: str = fact("kind of analysis")
     changed: str = fact("difference from the deck")
     outcome: Outcome = fact("its verdict")
-    value: float | None = fact("demand divided by capacity of this further run; null if not known")
+    value: float | None = fact("ratio of demand to capacity of this further run; null if not known")
 
 
 class TurningValue(ResultModel):

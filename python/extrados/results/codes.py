@@ -213,7 +213,7 @@ class LocalMechanism(Checked):
     )
     participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1")
     participating_part: float = fact(
-        "e*: participating mass ratio, g M* divided by the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
+        "e*: participating mass ratio, the ratio of g M* to the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
     )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(

@@ -51,7 +51,7 @@ class Convergence(ResultModel):
     most_rounds: int = fact("greatest number of iterations of the contact solver in a step")
     factorisations_per_step: float = fact("sparse factorisations per step")
     worst_violation_ratio: float = fact(
-        "greatest violation of the contact law, as a velocity, divided by the velocity that gravity adds in one time step"
+        "ratio of the greatest violation of the contact law, as a velocity, to the velocity that gravity adds in one time step"
     )
     worst_violation_s: float = fact("when that was", "s")
 
@@ -97,8 +97,8 @@ class BlocksRun(KindResults):
         "more than 1/1000, scale factors up to 1 + 1e-4 are tried too. False without this check"
     )
     perturbation_growth: float | None = fact(
-        "growth of a perturbation: the motion is scaled by 1 + 1e-6, and the greatest change of a displacement up to "
-        "collapse is divided by the displacement that counts as collapse and by 1e-6; null without this check"
+        "growth of a perturbation if the motion is scaled by 1 + 1e-6: ratio of the greatest change of a displacement "
+        "up to collapse to the displacement that counts as collapse, divided by 1e-6; null without this check"
     )
     perturbed_outcome: str | None = fact("outcome under the motion scaled by 1 + 1e-6; null without this check")
     violated: list[str] = fact("violated assumptions that were checked, one sentence each, for instance on chaotic response")

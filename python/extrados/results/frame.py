@@ -91,7 +91,7 @@ class FramePush(ResultModel):
     equivalent_mass_kg: float = fact(
         "m*: sum of the products of the masses and the mode shape, which is 1 at the control displacement", "kg"
     )
-    participation_factor: float = fact("Gamma: m* divided by the sum of the masses times the squared mode shape")
+    participation_factor: float = fact("Gamma: ratio of m* to the sum of the products of the masses and the squared mode shape")
     level_mass_kg: list[float] = fact("masses on the levels, from the lowest", "kg")
     level_shape: list[float] = fact("mean of the mode shape on each level, in the sense of the load")
     storeys: list[PierLimits] = fact("limit events of the piers, for each storey of each wall")

@@ -93,7 +93,8 @@ class LoadPath(ResultModel):
     shear_stiffness_ratio: float = fact("ratio of shear stiffness to normal stiffness of the joints")
     collapse_acceleration_g: float | None = fact("collapse acceleration; null if the load path did not end in a collapse", "g")
     certified: bool = fact(
-        "whether the certificate is satisfied: equilibrium, |s| <= mu N and zero gap, calculated again independently of the solver"
+        "whether the certificate is satisfied: equilibrium, shear force |s| at most friction mu N, and zero gap. It is "
+        "calculated again independently of the solver"
     )
     zero_gap_g: float | None = fact("as in non_dilatant", "g")
     equilibrium_residual: float | None = fact("as in non_dilatant")
@@ -125,25 +126,28 @@ class NonDilatant(ResultModel):
     starts_g: list[float] = fact("collapse load found from each starting point; the least is the result", "g")
     spread_g: float = fact("difference between the greatest and the least load found: such states are not unique", "g")
     certified: bool = fact(
-        "whether the certificate is satisfied: equilibrium, |s| <= mu N and zero gap, calculated again independently of the solver"
+        "whether the certificate is satisfied: equilibrium, shear force |s| at most friction mu N, and zero gap. It is "
+        "calculated again independently of the solver"
     )
     zero_gap_g: float = fact(
         (
-            "|gamma - (work of friction - work of the weight)| per unit of work of the load; zero if forces and motion "
-            "belong to the same state"
+            "gap: difference between the collapse acceleration and the work of friction minus that of the weight, per "
+            "unit of work of the load; zero if forces and motion belong to the same state"
         ),
         "g",
     )
-    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the total load")
-    friction_residual: float = fact("greatest excess of |s| over mu N, divided by the total load")
-    tension_residual: float = fact("greatest tension (or compression beyond the strength), divided by the total load")
-    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest joint")
+    equilibrium_residual: float = fact(
+        "ratio of the greatest unbalanced force (or moment divided by the size) on a block to the total load"
+    )
+    friction_residual: float = fact("ratio of the greatest excess of the shear force |s| over the friction mu N to the total load")
+    tension_residual: float = fact("ratio of the greatest tension (or compression beyond the strength) to the total load")
+    overlap_residual: float = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest joint")
     complementarity_residual: float = fact(
-        "complementarity: force and motion at the same joint (a joint that presses and opens, or that sticks and "
-        "slides); the greatest over all joints of the lesser of the two"
+        "error of complementarity: force and motion at the same joint (a joint that presses and also opens, or that "
+        "sticks and also slides). At each joint the lesser of both counts; the value is the greatest of all joints"
     )
     work_residual: float = fact(
-        "relative error of the work: work of the load minus work of weight and friction, divided by the work of the load"
+        "ratio of the error of the work (work of the load minus work of weight and friction) to the work of the load"
     )
 
 
@@ -350,7 +354,7 @@ class ThrustLine(ResultModel):
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires")
     required_friction_joint: str = fact("the joint that needs it")
     greatest_eccentricity_ratio: float = fact(
-        "greatest eccentricity (distance from the middle of the joint) divided by the length of the joint"
+        "greatest ratio of the eccentricity (distance from the middle of the joint) to the length of the joint"
     )
     reactions: list[Reaction] = fact("forces of the ground")
     ties: list[TieForce] = maybe("forces of the ties")
@@ -407,7 +411,9 @@ class MovingLoad(KindResults):
     collapse_load_N: float = fact("least collapse load over all positions; for a train, the total load on the structure at collapse", "N")
     collapse_load_kN_per_m: float = fact("least collapse load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle at the governing position (least collapse load)", "m")
-    worst_place_over_span: float = fact("distance of the first axle from the left springing at the governing position, divided by the span")
+    worst_place_over_span: float = fact(
+        "ratio of the distance between the first axle and the left springing, at the governing position, to the span"
+    )
     worst_way: Literal["+x", "-x"] = fact("direction of travel of the train at the governing position")
     hinges: list[NamedHinge] = fact("hinges of the collapse mechanism at the governing position")
     sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism at the governing position")

@@ -83,7 +83,7 @@ class PushCurve(SlaCurve):
     sliding_level: str = maybe("the level that slides first")
     sliding: list[SlidingLevel] = maybe("sliding limits of all levels; not given without walls, or if friction excludes sliding")
     base_shear_coefficient: float | None = fact("capacity over the weight")
-    roof_drift: float | None = fact("roof drift: control displacement at the greatest load, divided by the height")
+    roof_drift: float | None = fact("roof drift: ratio of the control displacement at the greatest load to the height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
     walls: list[WallShare] = fact("base shear of each wall at the greatest load")
     flanges: Flanges = maybe("whether the transverse walls (flanges) contribute")
@@ -123,7 +123,7 @@ class Variation(ResultModel):
     factors: dict[str, float] = fact("by the deck")
     greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
     passed: bool = fact("whether that was a peak")
-    base_shear_coefficient: float | None = fact("base shear divided by the weight of this variant")
+    base_shear_coefficient: float | None = fact("ratio of the base shear to the weight of this variant")
 
 
 class Pushover(PushCurve, KindResults):

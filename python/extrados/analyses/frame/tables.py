@@ -89,7 +89,7 @@ class FramePushover(FrameAnalysis):
     )
     eccentricities: list[Annotated[float, Field(ge=-0.5, le=0.5)]] = key(
         [0.0, 0.05, -0.05],
-        "accidental eccentricities of the forces, divided by the length of the building across the direction",
+        "ratios of the accidental eccentricities of the forces to the length of the building across the direction",
         min_length=1,
         max_length=9,
         source="EN 1998-1, 4.3.2",
@@ -110,7 +110,7 @@ class FramePushover(FrameAnalysis):
         ),
         ge=1,
     )
-    target_drift: float = key(0.02, "greatest control displacement, divided by the height of the control level", gt=0, le=0.2)
+    target_drift: float = key(0.02, "ratio of the greatest control displacement to the height of the control level", gt=0, le=0.2)
     steps: int = key(200, "number of steps up to the target; a step is divided if necessary", ge=10, le=10_000)
     drop: float = key(
         0.5, "end of the run: base shear below this share of its greatest value; 0.8 means the 20 % decrease of codes", ge=0, le=0.95
@@ -168,7 +168,7 @@ class FrameFragility(FrameMotion):
         max_length=3,
     )
     target_drift: float = key(
-        0.02, 'for by = "pushover": greatest control displacement, divided by the height of the highest level', gt=0, le=0.2
+        0.02, 'for by = "pushover": ratio of the greatest control displacement to the height of the highest level', gt=0, le=0.2
     )
     count: int | None = key(None, "number of motions; default 100, or the whole set", ge=2, le=1_000_000)
     seed: int | None = key(

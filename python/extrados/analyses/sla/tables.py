@@ -182,7 +182,10 @@ class CrackOptions(Table):
     )
     ripple: float = key(
         0.05,
-        ("half-width p of the teeth, divided by the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2"),
+        (
+            "ratio p of the half-width of the teeth to the strength; the load is overestimated by up to about p/2. The "
+            "thesis uses 0.1 and 0.2"
+        ),
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
