@@ -54,21 +54,32 @@ class Material(Table):
     compressive_coupling: float = key(
         -1.0,
         (
-            "coupling of the compression along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c "
-            "t^2 / (fx fy) = 1"
+            "coupling of the compression along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + "
+            "(sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed joints; t: shear stress; fx, "
+            "fy: compressive strengths; c: the key compressive_shear"
         ),
         source="-1.05 of Page's panels, Lourenco (1996), from memory",
         gt=-2,
         lt=2,
     )
     compressive_shear: float = key(
-        1.2, "c of the same criterion", source="1.20 of Page's panels, Lourenco (1996), from memory", gt=0, le=20
+        1.2,
+        ("weight of the shear stress: c of the criterion of compressive_coupling"),
+        source="1.20 of Page's panels, Lourenco (1996), from memory",
+        gt=0,
+        le=20,
     )
     crushing_energy: Energy | None = key(
         None, "crushing energy per area, Gc; sequentially linear analysis includes crushing only if this value is given", gt=0
     )
     crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
-    lateral_reduction: bool = key(False, "reduce ft under lateral compression: s1/ft - s2/fc <= 1; requires compressive_strength")
+    lateral_reduction: bool = key(
+        False,
+        (
+            "reduce the tensile strength ft under lateral compression: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension "
+            "positive; fc: compressive strength); requires compressive_strength"
+        ),
+    )
     confinement: float = key(
         0.0, "increase of the compressive strength per lateral pressure; 4.1 for concrete", source="Richart and others (1928)", ge=0, le=10
     )
@@ -168,13 +179,18 @@ class Joints(Table):
     shear_stiffness: Stiffness | None = key(None, "shear stiffness per area; default: shear_ratio times the normal stiffness", gt=0)
     shear_ratio: float = key(1.0, "shear over normal stiffness", gt=0, le=10)
     stiffness_rule: Literal["consistent", "thesis"] = key(
-        "consistent", "rule for the default stiffness: E/L, or E B/L as printed in the thesis", source="thesis Eqs 7.10-7.12"
+        "consistent",
+        (
+            "rule for the default stiffness. consistent: E/L; thesis: E B/L, as printed in the thesis. E: elastic modulus; "
+            "L: length of block that a joint represents; B: depth"
+        ),
+        source="thesis Eqs 7.10-7.12",
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
         "edge",
         (
-            "impact frequency at which the damping is critical; or, for a single block, the damping that gives its "
-            "coefficient of restitution (found by trial runs)"
+            "impact frequency at which the damping is critical: edge, corner or rotation. restitution, for a single "
+            "block: the damping that gives its coefficient of restitution (found by trial runs)"
         ),
         source="thesis Eqs 7.13, 7.17-7.20",
     )
@@ -228,8 +244,8 @@ class Supports(Table):
     foundation: Literal["winkler", "two-spring"] = key(
         "winkler",
         (
-            "for `rocking`: springs of this stiffness along the whole base, or half of the stiffness under each edge; the "
-            "springs carry no tension"
+            "for `rocking`: place of the springs of the ground. winkler: springs of this stiffness along the whole "
+            "base; two-spring: half of the stiffness under each edge. The springs carry no tension"
         ),
         source="Psycharis and Jennings 1983",
     )

@@ -57,7 +57,10 @@ class Pulse(Motion):
     kind: Literal["pulse"]
     starter: ClassVar = {"shape": '"ricker"'}
     shape: Literal["rectangular", "half-sine", "cosine", "ricker"] = key(
-        about="shape of the pulse: constant, half of a sine, one full cosine, or the symmetric Ricker wavelet"
+        about=(
+            "shape of the pulse. rectangular: constant; half-sine: half of a sine; cosine: one full cosine; ricker: the "
+            "symmetric Ricker wavelet"
+        )
     )
     amplitude: Acceleration = key(about="greatest acceleration")
     period: Time = key(about="full period T_p (a half-sine lasts half of it); for a rectangular pulse, the duration", gt=0)
@@ -82,8 +85,8 @@ class Treated(Motion):
     columns: Literal["series", "components"] | None = key(
         None,
         (
-            "meaning of several columns in a file without times: the rows form one series, or each column is a component, "
-            "selected by `channel`"
+            "meaning of several columns in a file without times. series: the rows form one series; components: each "
+            "column is a component, selected by `channel`"
         ),
     )
     scale: float = key(1.0, "factor on the acceleration, applied after all other processing")
@@ -125,7 +128,10 @@ class Components(Table):
     second_channel: int | str | None = key(None, "channel of the other horizontal component, in `second` or in `file`")
     angle: Angle | None = key(
         None,
-        ("angle from the first component to the plane of the structure; the motion in this plane is first cos(angle) + second sin(angle)"),
+        (
+            "angle from the first component to the plane of the structure. The motion in this plane is the first component "
+            "times cos(angle) plus the second component times sin(angle)"
+        ),
     )
     vertical: str | None = key(None, "file of the vertical component", min_length=1, max_length=1024)
     vertical_channel: int | str | None = key(None, "channel of the vertical component, in `vertical` or in `file`")

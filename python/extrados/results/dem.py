@@ -64,7 +64,8 @@ class TieRun(ResultModel):
     end_force_N: float = fact("force at the end", "N")
     plastic_elongation_m: float = fact("plastic elongation at the end; shortening is negative", "m")
     state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
-        "state of the tie over the run: never loaded, below its yield or slip force, yielded or slipped at least once, or a viscous damper"
+        "state of the tie over the run. slack: never loaded; elastic: below its yield or slip force; yielded: yielded "
+        "or slipped at least once; viscous: a viscous damper"
     )
 
 
@@ -108,7 +109,9 @@ class BlocksRun(KindResults):
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
     bounces: int = fact("number of times that blocks separated from the ground or from each other")
     airborne_time_s: float = fact("longest time during which a block had no contact", "s")
-    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
+    )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
@@ -192,7 +195,9 @@ class BlocksTilt(KindResults):
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps")
-    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
+    )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
@@ -265,7 +270,9 @@ class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
     label: str = fact("name of the value that was varied, or of the other solver")
-    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
+    )
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")

@@ -59,7 +59,7 @@ class FailedElement(ResultModel):
     """An element beyond its drift limit."""
 
     element: str = fact("name of the element: wall, storey, and pier or spandrel")
-    mode: Literal["flexure", "shear"] = fact("in which it failed")
+    mode: Literal["flexure", "shear"] = fact("failure mode: flexure or shear")
     control_displacement_m: float = fact("control displacement at which the element reaches its drift limit", "m")
 
 
@@ -68,7 +68,7 @@ class FramePush(ResultModel):
 
     name: str = fact("direction, pattern and eccentricity")
     direction_deg: float = fact("on the plan", "deg")
-    sense: Literal["+", "-"] = fact("sense of the load: along the direction, or against it")
+    sense: Literal["+", "-"] = fact("sense of the load. +: along the direction; -: against it")
     pattern: str = fact("of the forces")
     eccentricity: float = fact("ratio of the accidental eccentricity to the length of the plan across the direction")
     stop: str = fact("why it ended")

@@ -51,7 +51,9 @@ class TieForce(ResultModel):
 
     name: str = fact("its name")
     force_N: float = fact("force in it, tension positive", "N")
-    state: Literal["slack", "carries", "yields"] = fact("state of the tie: no force, below the yield force, or at the yield force")
+    state: Literal["slack", "carries", "yields"] = fact(
+        "state of the tie. slack: no force; carries: below the yield force; yields: at the yield force"
+    )
 
 
 class ChainThrust(ResultModel):

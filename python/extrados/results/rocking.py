@@ -82,7 +82,9 @@ class RestraintForces(ResultModel):
     least_force_N: float = maybe("least force of a tie or damper; tension is positive", "N")
     greatest_force_N: float = maybe("greatest force of a tie or damper; tension is positive", "N")
     permanent_elongation_m: float = maybe("permanent elongation of a tie or damper at the end, by yield or slip", "m")
-    least_moment_Nm: float = maybe("least moment of an added hinge; positive for counter-clockwise rotation of the first block", "N*m")
+    least_moment_Nm: float = maybe(
+        ("least moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint"), "N*m"
+    )
     greatest_moment_Nm: float = maybe("greatest moment of an added hinge", "N*m")
     permanent_turn_rad: float = maybe("permanent rotation of an added hinge at the end, by yield", "rad")
 
@@ -109,7 +111,9 @@ class StackRocking(ResultModel):
 class SoftBaseRocking(ResultModel):
     """What a block on a compliant base has besides its rotation."""
 
-    foundation: Literal["winkler", "two-spring"] = fact("model of the base: springs along the whole base, or under its two edges")
+    foundation: Literal["winkler", "two-spring"] = fact(
+        "model of the base. winkler: springs along the whole base; two-spring: springs under its two edges"
+    )
     rocking_period_s: float = fact("natural period of small rocking with the whole base in contact, undamped", "s")
     vertical_period_s: float = fact("natural period of the vertical vibration, undamped", "s")
     sinking_at_rest_m: float = fact("settlement of the base under self-weight, below the centre of mass", "m")

@@ -51,7 +51,7 @@ class BarForce(ResultModel):
         "force of greatest magnitude in all equilibrium states, for a bar that is attached only at its ends", "N"
     )
     state: Literal["slack", "carries", "yielded"] = fact(
-        "state of the bar at the end: slack, loaded, or beyond a tooth of its strength at some point"
+        "state of the bar at the end. slack: no force; carries: loaded; yielded: beyond a tooth of its strength at some point"
     )
 
 

@@ -23,7 +23,8 @@ class IdealisedCurve(ResultModel):
         "ultimate displacement: displacement at collapse, up to which both curves enclose equal areas", "m"
     )
     ended_by: Literal["drop", "drift", "end"] = fact(
-        "end of the curve: base shear decreased by 20 %, all piers of one storey of a wall at their limit drift, or end of the calculation"
+        "end of the curve. drop: base shear decreased by 20 %; drift: all piers of one storey of a wall at their limit "
+        "drift; end: end of the calculation"
     )
 
 

@@ -78,8 +78,9 @@ class DemTable(BuildingAnalysis):
     solver: Literal["compliant", "nonsmooth"] = key(
         "compliant",
         (
-            "model of the joints: springs and dashpots, or rigid contacts without overlap or tension (Moreau 1988, Jean "
-            "1999). Rigid contacts need no stiffness and no damping, and allow large time steps. Each solver can check the "
+            "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap or "
+            "tension (Moreau 1988, Jean 1999). Rigid contacts need no stiffness and no damping, and allow large time "
+            "steps. Each solver can check the "
             "other"
         ),
     )
@@ -93,7 +94,9 @@ class DemTable(BuildingAnalysis):
         le=1,
     )
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
-    merge: Literal["none", "three-bars"] = key("none", "join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism")
+    merge: Literal["none", "three-bars"] = key(
+        "none", ("three-bars: join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism")
+    )
     fraction: float = key(0.3, "ratio of the time step to the critical time step", gt=0, le=0.9)
     time_step: Time | None = key(
         None,
@@ -169,7 +172,7 @@ class Dem(SpatialDem, Animated):
         ('for solver = "nonsmooth": neglect inertia, so that moving supports are followed through large displacements up to collapse'),
     )
     test: Literal["motion", "tilt"] = key(
-        "motion", "type of the test: apply the motion, or find the constant acceleration that causes collapse"
+        "motion", "type of the test. motion: apply the motion; tilt: find the constant acceleration that causes collapse"
     )
     end_time: Time | None = key(
         None,
@@ -180,7 +183,13 @@ class Dem(SpatialDem, Animated):
         gt=0,
     )
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
-    base: Literal["body-force", "moving"] = key("body-force", "representation of the ground motion; both options give the same result")
+    base: Literal["body-force", "moving"] = key(
+        "body-force",
+        (
+            "representation of the ground motion. body-force: inertia forces on the blocks; moving: the ground moves. Both "
+            "give the same result"
+        ),
+    )
     collapse_displacement: Length | None = key(
         None,
         (

@@ -80,8 +80,8 @@ class FramePushover(FrameAnalysis):
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
         (
-            "horizontal forces in proportion to the masses, to the masses times their height, or to the masses times the "
-            "mode of greatest participating mass"
+            "patterns of the horizontal forces. uniform: in proportion to the masses; static: to the masses times "
+            "their height; modal: to the masses times the mode of greatest participating mass"
         ),
         min_length=1,
         max_length=3,
@@ -174,7 +174,7 @@ class FrameFragility(FrameMotion):
     seed: int | None = key(
         None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
     )
-    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions: PGA [g], or SA(sa_period) [g]")
+    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(sa_period) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     levels: list[Annotated[float, Field(gt=0, le=100)]] | None = key(
         None,

@@ -49,7 +49,7 @@ class RockingTable(BuildingAnalysis):
     bears: ClassVar[tuple[str, ...]] = HOLDS
     soft_base: ClassVar = False
     form: Literal["nonlinear", "linear"] = key(
-        "nonlinear", "form of the equations: full, or linear for slender blocks", source="Housner 1963"
+        "nonlinear", "form of the equations. nonlinear: full equations; linear: linear equations for slender blocks", source="Housner 1963"
     )
 
     def rests_on(self, building: Building) -> dict[str, str | None]:

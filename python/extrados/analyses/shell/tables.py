@@ -111,7 +111,8 @@ class FrameRules(Table):
     diagonal_strength: Stress = key(about="tau_0 of diagonal cracking, without compression", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I")
     compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
-        "double", "ends of the piers that are fixed against rotation: both (between stiff spandrels), or only the lower end"
+        "double",
+        ("ends of the piers that are fixed against rotation. double: both ends (between stiff spandrels); single: only the lower end"),
     )
 
 
@@ -141,8 +142,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
         (
-            "distribution of the horizontal forces: in proportion to the masses, to the masses times their height, or to the "
-            "masses times the first mode in this direction"
+            "distribution of the horizontal forces. mass: in proportion to the masses; triangular: to the masses times "
+            "their height; modal: to the masses times the first mode in this direction"
         ),
     )
     drives: list[Drive] = key(

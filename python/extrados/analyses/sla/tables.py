@@ -28,8 +28,9 @@ class Load(Table):
 
     kind: Literal["gravity", "pressure", "line", "point", "spread", "displacement"] = key(
         about=(
-            "kind of load: self-weight; pressure, or force per length, on boundary edges; force on the nearest node, or on "
-            "all nodes of a place in equal parts; force spread evenly along an edge; imposed displacement with ratios"
+            "kind of load. gravity: self-weight; pressure: pressure on boundary edges; line: force per length on "
+            "boundary edges; point: force on the nearest node, or on all nodes of a place in equal parts; spread: "
+            "force spread evenly along an edge; displacement: imposed displacement with ratios"
         )
     )
     edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
@@ -110,7 +111,7 @@ class Stage(Table):
     )
     control: list[Watch] = key(
         [],
-        ("control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under B"),
+        ("control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under loads B"),
         max_length=50,
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
@@ -195,15 +196,16 @@ class CrackOptions(Table):
     crack_band_rule: Literal["projected", "area"] = key(
         "projected",
         (
-            "rule for the crack band: the width of the element across its crack, or the rule of the thesis: sqrt(2 A) for "
-            "linear and sqrt(A) for quadratic elements"
+            "rule for the width of the crack band. projected: the width of the element across its crack; area: the "
+            "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A"
         ),
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
         (
-            "kind of cracking: cracks that rotate with the principal strain; cracks with a fixed direction from their first "
-            "tooth, as in the thesis (overestimates the capacity, see docs/sla.md); or isotropic damage"
+            "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed "
+            "direction from their first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); "
+            "isotropic: isotropic damage"
         ),
         source="Eq. 4.10",
     )
@@ -323,7 +325,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "name of the stage whose results and figures are reported as those of the analysis; default: the last stage"
     )
     control: list[Watch] = key(
-        [], "control displacement of the curve: a sum of terms; default: the mean displacement under B", max_length=50
+        [], "control displacement of the curve: a sum of terms; default: the mean displacement under loads B", max_length=50
     )
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
@@ -351,16 +353,18 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     solution: Literal["events", "incremental"] = key(
         "events",
         (
-            "solution method: one integration point after the other; or, for comparison, steps of arc length with a secant "
-            "iteration in which all overloaded points lose teeth together (`events` then counts these steps)"
+            "solution method. events: one integration point after the other; incremental, for comparison: steps of arc "
+            "length with a secant iteration, in which all overloaded points lose teeth together (the key `events` then "
+            "limits the number of these steps)"
         ),
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
         (
-            'method if no multiplier of B is admissible at all points. "continue": equilibrium iterations in displacement '
-            'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": A '
-            'remains, and the greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
+            'method if no multiplier of loads B is admissible at all points. "continue": equilibrium iterations in displacement '
+            'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": '
+            'loads A remain, and the greatest lower limit decides. "proportional": all loads of the last equilibrium '
+            "state are "
             'reduced together (intermittent proportional loading). "force-release": the force that a tooth releases acts on '
             "the other points before the load increases again"
         ),
@@ -369,12 +373,15 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     continuation: Literal["newton", "implicit-explicit"] = key(
         "newton",
         (
-            "equilibrium iterations: Newton's method, with staggered steps if it does not converge; or damage extrapolated "
-            "from the last step (one convex problem for each step: faster and less accurate)"
+            "equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
+            "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster "
+            "and less accurate)"
         ),
         source="Oliver, Huespe and Cante 2008",
     )
-    algorithm: Literal["update", "refactor"] = key("update", "update the matrix factor at each event, or factorise again")
+    algorithm: Literal["update", "refactor"] = key(
+        "update", ("matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again")
+    )
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of events whose state is saved, in addition to the peak and the last event", max_length=200
     )
@@ -386,7 +393,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             "'least (N)' and 'greatest (N)' of several tests; lines that begin with # give the source"
         ),
     )
-    section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections of the wall", max_length=10)
+    section_x: list[Length] = key(
+        [], ("draw the admissible ranges of lambda, the multiplier of loads B, along these vertical sections of the wall"), max_length=10
+    )
     seeds: list[int] = key([], "repeat the analysis with these seeds of the random mesh and strength, for a scatter band", max_length=200)
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the strength; default: one element", gt=0)

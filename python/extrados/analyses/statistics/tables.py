@@ -86,8 +86,9 @@ class Fragility(RockingTable):
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
         "pga",
         (
-            "intensity measure of levels, cloud and hazard: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) "
-            "[g], Arias intensity [m/s], or the scale factor itself"
+            "intensity measure of the keys levels, cloud and hazard. pga: PGA [g]; pga-ratio: PGA/(g tan alpha); "
+            "pgv-ratio: p PGV/(g tan alpha); sa: SA(sa_period) [g]; arias: Arias intensity [m/s]; scale: the scale "
+            "factor itself. alpha: slenderness angle, p: frequency parameter"
         ),
         source="Dimitrakopoulos and Paraskeva 2015",
     )

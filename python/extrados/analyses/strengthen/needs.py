@@ -27,7 +27,9 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
                 yield partial(_refuse, f'by = "tilt" neglects {what}: use by = "fragility", or remove it', key)
         if is_spatial(building):
             if "[supports] abutting_wall" in building.special_keys:
-                yield partial(_refuse, "limit analysis in space neglects an abutting wall: remove it", ("supports", "abutting_wall"))
+                yield partial(
+                    _refuse, ("limit analysis in space neglects an abutting wall: remove abutting_wall"), ("supports", "abutting_wall")
+                )
             yield partial(refuse_in_space, context, options)
             yield lambda: building.refuse_weightless(building.solids())
             yield lambda: building.friction(building.solids())

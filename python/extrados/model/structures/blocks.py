@@ -117,8 +117,8 @@ class LayerTable(Table):
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
         (
-            "meaning of the layer: blocks; lines of the ground, like the layer GROUND; lines along joints, which "
-            "[[joints.types]] can then name by this layer; or a layer that is not read"
+            "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines "
+            "along joints, which [[joints.types]] can then name by this layer; left-out: this layer is not read"
         ),
     )
     material: str | None = key(None, "name in [materials] of the material of the blocks on this layer")

@@ -12,8 +12,8 @@ class FrameOptions(Table):
     heights: Literal["dolce", "lagomarsino"] = key(
         "dolce",
         (
-            "deformable height of piers: effective height by Dolce, or the mean height of the adjacent openings (for outer "
-            "piers: mean of opening and storey)"
+            "deformable height of piers. dolce: effective height by Dolce; lagomarsino: mean height of the adjacent "
+            "openings (for outer piers: mean of opening and storey)"
         ),
         source="Dolce 1991; Lagomarsino and others 2013",
     )
