@@ -182,7 +182,7 @@ class Joints(Table):
         "consistent",
         (
             "rule for the default stiffness. consistent: E/L; thesis: E B/L, as printed in the thesis. E: elastic modulus; "
-            "L: length of block that a joint represents; B: depth"
+            "L: length of block that a joint represents; B: width of the joint"
         ),
         source="thesis Eqs 7.10-7.12",
     )
