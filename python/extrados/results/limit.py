@@ -71,7 +71,7 @@ class Fracture(ResultModel):
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
     tilt_angle_deg: float = maybe("tilt of the ground with the same effect as the collapse acceleration", "deg", source="thesis Eq. 3.1")
-    ratio: float = maybe("ratio of this collapse acceleration to that of the whole (uncracked) structure")
+    ratio: float = maybe("ratio of the collapse acceleration of the cracked structure to that of the uncracked structure")
     crack_height_m: float = maybe("height above the base at which the crack begins", "m")
     crack_height_ratio: float = maybe("ratio of the height at which the crack begins to the height of the buttress")
     resultant_from_outer_face_ratio: float = maybe("ratio of the distance between resultant and outer face to the width at the base")

@@ -35,8 +35,8 @@ class Assess(Analysis):
     budget: float = key(
         60.0,
         (
-            "time limit in s: the sizes of the expensive strategies follow from it, by counted work on one core of 2024. "
-            "Steps that still run after this time are stopped and reported"
+            "time limit in s. The sizes of the expensive strategies are chosen so that their estimated time, on one "
+            "core of a computer of 2024, fits into this limit. Steps that still run after it are stopped and reported"
         ),
         ge=5,
         le=1e6,

@@ -76,7 +76,7 @@ def _read_walls(building: Building) -> None:
 def _refuse_unheld(what: str, key: Key) -> None:
     raise Refused(
         (
-            f"local-mechanism can include {what} only for the mechanism of the blocks of the deck. Remove it, or give the "
+            f'local-mechanism can include {what} only for blocks with mechanism = "building". Remove it, or give the '
             "restraint of a wall as `ties` of this table"
         ),
         key,

@@ -180,7 +180,7 @@ class Fragility(RockingTable):
         if self.cloud and self.intensity == "scale":
             raise ValueError('the motions of a cloud are not scaled, so intensity = "scale" would be the same for all of them')
         if self.rotation_limits and not self.cloud:
-            raise ValueError("rotation_limits belong to a cloud")
+            raise ValueError("rotation_limits is used only with cloud = true")
         if self.histories and (self.levels is not None or self.durations is not None):
             raise ValueError("the key histories shows the unscaled motions: remove the keys levels and durations")
         if self.hazard is not None and (self.intensity == "scale" or not (self.cloud or self.levels)):

@@ -96,7 +96,7 @@ class TieOption(Tie):
         if self.debonding_force is not None and self.source is None:
             raise ValueError("debonding_force requires its source: the document with the formula, or the test")
         if self.source is not None and self.debonding_force is None:
-            raise ValueError("source: belongs to debonding_force")
+            raise ValueError("the key source is used only with debonding_force: remove source")
         if self.debonding_force is not None and (self.yield_force is not None or self.works_in != "tension"):
             raise ValueError("debonding_force: a bonded strip acts in tension and has no yield_force")
         if self.prestress:

@@ -174,8 +174,9 @@ class Blocks(Structure):
     contact_tolerance: Length = key(
         1e-4,
         (
-            "faces closer than this value touch each other; smaller overlaps are ignored; narrower contacts of solids carry "
-            "no force. `check` reports the tolerance that would close each gap. The default for solids is at most 1/10000 of "
+            "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value "
+            "are ignored; contacts of solids that are narrower than this value carry no force. `check` reports the "
+            "tolerance that would close each gap. The default for solids is at most 1/10000 of "
             "their size"
         ),
         gt=0,

@@ -166,7 +166,9 @@ def _check(group: MeshGroup, what: str, elements: bool, key: Key) -> None:
     """BadGeometry where a group of lines or points is told what only elements have, or nothing is said."""
     told = [key for key in ("thickness", "material", "linear", "membrane", "pressure") if getattr(group, key)]
     if told and not elements:
-        raise BadGeometry(f"{what}: {told[0]} belongs to elements, and this group has none; give only support and force", (*key, told[0]))
+        raise BadGeometry(
+            (f"{what}: {told[0]} is a key for elements, and this group has none: give only the keys support and force"), (*key, told[0])
+        )
     if not (told or group.support or group.force):
         raise BadGeometry(
             f"{what}: this group has no properties; expected thickness, material, linear, membrane, support, pressure or force", key
