@@ -120,8 +120,8 @@ def test_a_hazard_curve_that_ends_too_early_is_reported() -> None:
     [
         ({"hazard": HAZARD}, "requires the key levels, or a cloud"),
         ({"cloud": True, "intensity": "scale"}, "not scaled"),
-        ({"cloud": True, "levels": [0.1]}, "remove levels"),
-        ({"rotation_limits": [0.5]}, "belong to a cloud"),
+        ({"cloud": True, "levels": [0.1]}, "remove the keys levels"),
+        ({"rotation_limits": [0.5]}, "is used only with cloud = true"),
         ({"histories": 3, "levels": [0.1]}, "unscaled motions"),
         ({"cloud": True, "hazard": {"intensities": [0.1, 0.2]}}, "give either intensities"),
         ({"cloud": True, "hazard": {**HAZARD, "file": "h.csv"}}, "give either intensities"),
