@@ -58,7 +58,7 @@ def test_a_special_vehicle_is_its_axles_and_says_that_nobody_read_the_clause() -
 
 
 def test_a_gap_belongs_to_special_vehicles() -> None:
-    with pytest.raises(DeckError, match="gap belongs to"):
+    with pytest.raises(DeckError, match="gap is used only with"):
         make_deck({"structure": BRIDGE, "analysis": {"kind": "moving-load", "train": "LM71", "gap": 5.0}})
 
 

@@ -147,7 +147,7 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     if deviation is None:
         deviation = getattr(building.structure, "contact_tolerance", None)
     if deviation is None:
-        raise Refused("give the deviation of a survey. Only `blocks` have a default for it, their contact_tolerance", ("analysis",))
+        raise Refused("give the key deviation. Only `blocks` have a default for it, their contact_tolerance", ("analysis",))
     stones = stones_of(building, options)
     plane = isinstance(stones, Assembly)
     extent = stones.length if isinstance(stones, Assembly) else stones.area / np.array([_diameter(p) for p in stones.polygon])

@@ -293,7 +293,7 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
     outlines = found.assembly.outlines
     result.arrays.update(
         {
-            "crack": Array(found.line, ("crack_end", "axis"), "m", "fracture line: inner face, outer toe"),
+            "crack": Array(found.line, ("crack_end", "axis"), "m", "fracture line: points at the inner face and at the outer toe"),
             "crack_pose": Array(
                 finite_motion(found.assembly, found.mechanism),
                 ("block", "component"),

@@ -428,7 +428,11 @@ def _between(
     key = ("structure", "corners", plan.corners.index(corner))
     if MEETS < t < wall.length - MEETS:
         raise BadGeometry(
-            (f"walls: wall '{wall.name}' passes through '{names[one]}', but a joint requires that the second wall ends on the first"), key
+            (
+                f"walls: wall '{wall.name}' passes through wall '{names[one]}'. A joint requires that wall '{wall.name}' "
+                f"ends on wall '{names[one]}'"
+            ),
+            key,
         )
     first = t <= MEETS  # it begins there
     j = 0 if first else len(grid.s) - 1
