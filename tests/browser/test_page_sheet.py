@@ -88,7 +88,7 @@ def test_a_floating_block_is_no_structure_and_says_why(page: Any) -> None:
         tap(page, *point)
     until(page, "window.extrados.draft !== null")
     assert "block 1" in page.evaluate("window.extrados.draft.trouble[0]")
-    assert "no structure yet" in page.locator(".page.answer").inner_text()
+    assert "not a structure yet" in page.locator(".page.answer").inner_text()
     page.click("[data-side=deck]")
     assert 'name = "block 1"' in page.locator(".editor textarea").input_value()
     page.click("[data-tool=support]")
