@@ -81,7 +81,7 @@ def test_a_late_refusal_of_a_fall_leaves_the_words_of_a_limit(page: Any) -> None
     settled(page)
     drag = "ask({ do: 'drag', handle: 'embrace', to: [0, 90], ends: true })"
     told = page.evaluate(f"new Promise(done => {{ window.extrados.{drag}; window.extrados.ask({{ do: 'fall' }}, {{ reply: done }}); }})")
-    assert "no collapse below" in told["bad"]
+    assert "does not collapse" in told["bad"]
     settled(page)
     assert "20 to 270 deg" in page.locator(".status").inner_text()
 
@@ -90,4 +90,4 @@ def test_no_collapse_of_what_stands(page: Any) -> None:
     settled(page)
     assert page.locator(".fall").is_hidden()
     told = page.evaluate("new Promise(done => window.extrados.ask({ do: 'fall' }, { reply: words => done(words.bad) }))")
-    assert "no collapse below" in told
+    assert "does not collapse" in told

@@ -21,7 +21,7 @@ def blank(page: Any) -> None:
 
 def at(page: Any, x: float, y: float) -> tuple[float, float]:
     """Where a place of the sheet [m] is on the screen."""
-    box = page.locator("svg.sheet").bounding_box()
+    box = page.locator("svg.sheet:not(.plan)").bounding_box()
     zero = page.evaluate(
         "(() => { const d = document.querySelector('.sheet .ground').getAttribute('d'); return Number(d.match(/M0 ([-0-9.]+)/)[1]); })()"
     )
@@ -67,7 +67,7 @@ def test_an_arch_on_two_piers_is_drawn_and_runs(page: Any) -> None:
     assert page.evaluate("window.extrados.draft") is None
     run = extrados.run(data_of(page.evaluate("window.extrados.text")))
     assert run["tilt"].collapse_acceleration_g == pytest.approx(capacity(page), rel=1e-9)
-    assert "Stands" in page.locator(".sheet-words").text_content()
+    assert "Stands" in page.locator("svg.sheet:not(.plan) .sheet-words").text_content()
     page.screenshot(path=SHOTS / "sheet-arch.png")
     page.keyboard.press("Control+z")
     settled(page)
@@ -108,7 +108,7 @@ def test_the_keyboard_draws_moves_and_removes(page: Any) -> None:
     points = [p for b in blocks(page) for p in b["points"]]
     assert max(p[0] for p in points) == 2.5 and max(p[1] for p in points) == 1.0
     page.click("[data-tool=select]")
-    page.locator("svg.sheet").focus()
+    page.locator("svg.sheet:not(.plan)").focus()
     page.keyboard.press("ArrowRight")
     settled(page)
     assert min(p[0] for b in blocks(page) for p in b["points"]) == 0.25
