@@ -40,7 +40,7 @@ def test_a_link_holds_the_deck_and_opens_it_in_another_page(page: Any, served: S
     wrong = ["%%%", "AAAA", "____", "x" * 5000]
     for opened in [*(other.evaluate("link => window.extrados.openLink('#deck=' + link)", w) for w in wrong), other.evaluate(bomb)]:
         assert opened is False
-    assert "no deck" in other.locator(".status").inner_text()
+    assert "cannot be read" in other.locator(".status").inner_text()
     settled(other)
     assert other.evaluate("window.extrados.text").startswith(ROCKING)
     other.close()
