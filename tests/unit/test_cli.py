@@ -394,7 +394,7 @@ def test_a_file_of_ones_own_is_not_written_over(tmp_path) -> None:
     assert not (tmp_path / "o-2.json").exists()
     out.write_text(out.read_text() + "\nmine")
     run = extrados(*export, str(out))
-    assert run.returncode == 0 and "o-2.json" in run.stdout and "changed after" in run.stderr
+    assert run.returncode == 0 and "o-2.json" in run.stdout and "changed later" in run.stderr
     assert out.read_text().endswith("mine") and json.loads((tmp_path / "o-2.json").read_text())
     text = path.read_text()
     assert extrados(*export, str(path)).returncode == 0 and path.read_text() == text
