@@ -99,7 +99,7 @@ def _title(r: Tilt) -> str:
     design = r.collapse_acceleration_load_path_g
     value = "" if design is None else f"{design:.4f} g (design value),\n"
     without = "" if least is None else f"\nwithout dilatancy {value}{least:.4f} g (least found)"
-    return f"Collapse to +x at or below {r.collapse_acceleration_g:.4f} g (dilatant friction: upper bound){without}"
+    return f"Collapse to +x at or below {r.collapse_acceleration_g:.4f} g\n(dilatant friction: upper bound){without}"
 
 
 def _draw_fracture(run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray, height: float) -> tuple[str, str]:
