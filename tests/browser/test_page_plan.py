@@ -46,7 +46,7 @@ def test_a_house_is_drawn_and_its_pushover_is_that_of_a_run(page: Any) -> None:
     blank(page)
     stroke(page, (1.0, 0.0), (7.0, 0.0))
     settled(page)
-    assert "no simple ring" in page.locator("svg.plan .sheet-words").text_content()
+    assert "do not form a simple ring" in page.locator("svg.plan .sheet-words").text_content()
     page.keyboard.press("Control+z")
     room(page)
     made = walls(page)

@@ -147,6 +147,17 @@ def test_a_push_beyond_the_interval_is_refused() -> None:
         states_of(limit, 0.9).central()
 
 
+def test_the_thrust_on_the_ground_of_one_block_is_its_push() -> None:
+    """A contact under the middle has no direction outward: the default section takes that of the load, a given one needs `toward`."""
+    block = {"kind": "block", "width": 1.0, "height": 3.0, "depth": 0.5}
+    found = run(block, kind="thrust", direction=30.0, gamma=0.1).results
+    ground = next(s for s in found.sections if s.name == "ground")
+    weight = 1.0 * 3.0 * 0.5 * 2000.0 * GRAVITY
+    assert max(abs(ground.least_N), abs(ground.greatest_N)) == pytest.approx(0.1 * weight, rel=1e-6)
+    refused = run(block, kind="thrust", direction=30.0, section=[{"name": "a", "joints": ["ground"]}])
+    assert refused.status == "refused" and "give toward" in refused.reason
+
+
 @pytest.mark.parametrize(
     ("section", "words"),
     [

@@ -30,7 +30,7 @@ export function sidebar(app, box) {
     if (!scene) return;
     late = pressed;
     if (pressed) return;
-    if (app.draft) { pages.answer.replaceChildren(h("p", { class: "verdict" }, h("b", {}, tr`The drawing is not a structure yet. `), app.draft.trouble.join(" "))); return; }
+    if (app.draft) { pages.answer.replaceChildren(h("p", { class: "verdict" }, h("b", {}, tr`The drawing is not a structure yet: `), app.draft.trouble.join(" "))); return; }
     if (scene.seen) { pages.answer.replaceChildren(...app.solid.page(scene.seen, scene.empty)); return; }
     if (scene.empty) { pages.answer.replaceChildren(h("p", { class: "verdict" }, scene.empty)); return; }
     const parts = [];
