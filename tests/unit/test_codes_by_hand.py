@@ -284,7 +284,7 @@ def test_return_periods_of_ntc() -> None:
     [
         ({"jurisdiction": "NTC", "edition": "2008"}, "edition: this program includes edition 2018 of NTC"),
         ({"jurisdiction": "EN1998", "limit_states": ["SLV"]}, "SLV is not a limit state of EN1998"),
-        ({"jurisdiction": "ASCE41", "knowledge_level": "LC1"}, "ASCE41 knows minimum, usual"),
+        ({"jurisdiction": "ASCE41", "knowledge_level": "LC1"}, "not a level of ASCE41; expected minimum, usual"),
         ({"jurisdiction": "ASCE41", "ground": "B"}, "ASCE41 does not use this key"),
         ({"jurisdiction": "NZSEE", "importance": "II"}, "NZSEE does not use this key"),
         ({"jurisdiction": "none", "confidence_factor": 1.2}, "none does not use this key"),

@@ -247,7 +247,7 @@ def test_exported_record_is_the_motion(tmp_path) -> None:
         ('kind = "suite"', "give only one of the keys files, pattern, folder and records"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nscaling = "sokolov"', "'thesis', 'fourier' or 'energy'"),
         ('kind = "generated"\nmmi = 6\nduration = 3\nlines = [1.0]', "expected 2 to 2000"),
-        ('kind = "compatible"\ncode = "ASCE7"\nsds = "1 g"', "needs sd1"),
+        ('kind = "compatible"\ncode = "ASCE7"\nsds = "1 g"', "requires sd1"),
         ('kind = "velocity-pulse"\nvelocity = 0.3\nperiod = 1\ncycles = 0.5', "greater than 1"),
     ],
 )
@@ -263,7 +263,7 @@ def test_wrong_decks(deck, words) -> None:
         ({"kind": "record", "file": "none.at2"}, "no such file"),
         ({"kind": "record", "file": "../x"}, "out of the deck's folder"),
         ({"kind": "suite", "pattern": "*.none"}, "no records match"),
-        ({"kind": "suite", "files": ["r.at2"], "member": 2}, "holds 1 records"),
+        ({"kind": "suite", "files": ["r.at2"], "member": 2}, "has 1 records"),
         ({"kind": "generated", "mmi": 11, "duration": 3.0}, "expected 4 to 9"),
         ({"kind": "generated", "mmi": 6, "duration": 3.0, "spectrum": "../s.csv"}, "out of the deck's folder"),
         ({"kind": "compatible", "code": "table", "table": "t.csv"}, "no such file"),

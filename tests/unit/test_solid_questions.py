@@ -172,7 +172,7 @@ def test_wrong_sections_are_refused(section: dict[str, Any], words: str) -> None
 
 def test_keys_of_the_plane_are_refused_in_space() -> None:
     assert "thrust of solids cannot include chain" in str(run(DOME, kind="thrust", chain="arch").reason)
-    assert "sweep of solids cannot take fracture" in str(
+    assert "sweep of solids cannot include fracture" in str(
         run(DOME, kind="sweep", vary="thickness", start=0.4, stop=0.5, fracture=True).reason
     )
     assert "is only for blocks in space" in str(run(ARCH, kind="thrust", section=[{"name": "a", "x": 0.0}]).reason)

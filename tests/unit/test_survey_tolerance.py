@@ -25,7 +25,7 @@ def test_a_gap_changes_no_capacity_in_silence() -> None:
     closed, apart = run({"block": leaning(0.0)}), run({"block": leaning(3e-4)})
     assert closed.warnings == [] and closed["collapse_acceleration_g"] > 1.1 * apart["collapse_acceleration_g"]
     told, both = apart.warnings
-    for words in ("'pier' and 'buttress' are 0.3 mm apart", "x = 1 m", 'contact_tolerance = "0.31 mm" would close it'):
+    for words in ("'pier' and 'buttress' are 0.3 mm apart", "x = 1 m", 'contact_tolerance = "0.31 mm" would close this gap'):
         assert words in told
     mended = run({"block": leaning(3e-4), "contact_tolerance": "0.31 mm"})
     assert mended["collapse_acceleration_g"] == pytest.approx(closed["collapse_acceleration_g"], rel=1e-3)

@@ -185,10 +185,8 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             )
         else:
             rows.append((v.label, words(v.status), "", "", "", v.reason))
-    found: list[Block] = [Words(r.statement, "answer", _foreign(words))]
-    found.append(
-        Table(_heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words"), rows, (1.6, 0.9, 1.1, 1.1, 0.9, 3.6))
-    )
+    heads = _heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words")
+    found: list[Block] = [Words(r.statement, "answer", _foreign(words)), Table(heads, rows, (1.6, 0.9, 1.1, 1.1, 0.9, 3.6))]
     found.append(
         Words(words("The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."))
     )

@@ -22,15 +22,9 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         seen = [k for k in range(1, int(number.max()) + 1) if (number == k).any()]
         for k in seen:
             here = number == k
-            ax.plot(
-                value[here],
-                tilt[here],
-                "o",
-                markersize=3.5,
-                color=section.CHAIN_COLOURS[(k - 1) % len(section.CHAIN_COLOURS)],
-                label=f"mechanism {k}" if k in seen[:MOST_NAMED] else None,
-                zorder=3,
-            )
+            colour = section.CHAIN_COLOURS[(k - 1) % len(section.CHAIN_COLOURS)]
+            label = f"mechanism {k}" if k in seen[:MOST_NAMED] else None
+            ax.plot(value[here], tilt[here], "o", markersize=3.5, color=colour, label=label, zorder=3)
         if "fractured" in run.arrays[name]:
             cracked = np.degrees(np.arctan(run.array(name, "fractured")))
             ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")

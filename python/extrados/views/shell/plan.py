@@ -108,8 +108,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     for prop in plan.props:
         w = next(i for i, wall in enumerate(plan.walls) if wall.name == prop.wall)
         nodes, _ = _level_nodes(plan, prop.storey, grids[w], number)
-        across = int(np.abs(plan.walls[w].direction).argmin())
-        held = sorted({*held, *((int(n), across) for n in nodes)})
+        held = sorted({*held, *((int(n), int(np.abs(plan.walls[w].direction).argmin())) for n in nodes)})
     kept = np.cumsum(used) - 1
     parts = [ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts]  # nodes within openings are dropped
     joints = [replace(joint, connect=kept[joint.connect]) for joint in joints]
