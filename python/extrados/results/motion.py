@@ -33,8 +33,8 @@ class DirectedPulse(ResultModel):
     period_s: float = fact("period of the pulse", "s")
     angle_deg: float = fact("from the first component to the direction of the pulse, as `angle` of a record", "deg")
     pgv_m_s: float = fact("peak velocity of the motion in that direction", "m/s")
-    pgv_ratio: float = fact("peak velocity of the motion less the pulse, over that of the motion")
-    energy_ratio: float = fact("energy of the motion less the pulse, over that of the motion")
+    pgv_ratio: float = fact("ratio of the peak velocity of the motion without the pulse to that of the whole motion")
+    energy_ratio: float = fact("ratio of the energy of the motion without the pulse to that of the whole motion")
     energy_before: float = fact("share of the energy of the motion before the pulse begins; from 0.17 on the pulse is late")
     pulse_like: bool = fact("whether the indicator is above 0 and the pulse is not late")
 

@@ -165,12 +165,12 @@ class SolidThrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations along the direction between which a state is admissible", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "inverse of the smallest part of the contacts, about their middles, that permits a state in equilibrium; null if that part is below "
+        "1 divided by the least central part of the contacts that permits a state in equilibrium; null if that part is below "
         "1 % (no horizontal demand), or if not found"
     )
-    least_part_of_joints: float | None = fact("the part of the contacts, about their middles, that the most central state needs")
+    least_part_of_joints: float | None = fact("least central part of the contacts: the part that the most central state needs")
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
-    required_friction_contact: str | None = fact("the contact that needs it")
+    required_friction_contact: str | None = fact("contact with this greatest requirement")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
@@ -179,9 +179,9 @@ class SolidThrust(KindResults):
         "and a state within friction does not prove that sliding without dilatancy is excluded"
     )
     ties: list[TieForce] = maybe("ties, chains and hoops in the most central state")
-    duality_gap: float = fact("greatest difference between the bounds of the thrusts, over the weight")
-    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")
-    friction_residual: float = fact("greatest excess of shear over friction, or of tension, at a corner, over the weight")
+    duality_gap: float = fact("greatest difference between the bounds of the thrusts, divided by the weight")
+    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the weight")
+    friction_residual: float = fact("greatest excess of shear over friction, or greatest tension, at a corner, divided by the weight")
 
     def judged(self, demand: Demand) -> Verdict:
         """The part of the contacts that the most central state needs against the whole; the ratio is the safety factor."""

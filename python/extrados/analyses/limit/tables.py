@@ -126,8 +126,8 @@ class Section(Table):
     )
     toward: Angle | None = key(
         None,
-        "direction in plan of the thrust, from +x to +y, on the blocks at greater x or y, or on the blocks or ground below; default across "
-        "a vertical cut, else outward from the middle of the structure",
+        "direction of the thrust in plan, from +x to +y; the thrust acts on the blocks at greater x or y, or on the blocks or ground "
+        "below; default across a vertical cut, otherwise outward from the middle of the structure",
         ge=-360,
         le=360,
     )
