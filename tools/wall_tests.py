@@ -6,7 +6,7 @@ FILE is a table with one wall a row: sizes, strengths, axial stress, ratio of sh
 are those of `read_walls`. Each wall becomes one deck per method, as a user would write it:
 
     limit     bricks in running bond, joints without cohesion that crush; the load acts at the shear span
-    codes     `code-checks` of a panel, by each code; the least applicable strength of each
+    codes     `code-checks` of a panel, by NTC 2018, the code of decks that name none; its least lateral strength
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
     units     `sla` of its units and joints, likewise; walls of more than 200 units have units twice as long and as high. The
               failure mode is that of the state at the peak: does more than half of the displacement of the top come from the rotation
@@ -224,7 +224,7 @@ def by_codes(wall: Wall) -> dict[str, Predicted]:
     found: dict[str, Predicted] = {}
     for rule, check in answer["checks"].items():
         code = next((name for name in CODES if rule.startswith(name)), None)
-        if code is None or check["capacity"] is None or check["unit"] != "N" or "once cracked" in rule:
+        if code is None or check["capacity"] is None or check["quantity"] != "lateral strength":
             continue
         flexure = any(word in rule for word in ("rocking", "flexure", "toe crushing"))
         if not check["capacity"] >= found.get(code, Predicted(math.inf)).strength:

@@ -9,6 +9,7 @@ from operator import attrgetter
 from typing import Any
 
 from extrados import room
+from extrados.schema.constants import IN_SPACE
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rod
 STRANDS = "views.solids.strands:strands_of"
 FRAME_OPTIONS = "views.frame.options:FrameOptions"
 MESH_OPTIONS, SHELL_OPTIONS = "views.mesh.options:MeshOptions", "views.shell.options:ShellOptions"
-NO_SECTION = Lacks("this structure has no plane section; its solids can be analysed by `tilt` and `dem`")
+NO_SECTION = Lacks(f"this structure has no plane section; {IN_SPACE}")
 NO_STONES = Lacks("a mesh file contains elements, not blocks: describe the wall as `panel` or `blocks`")
 NO_PIERS = Lacks("only walls of the kinds panel and brickwork have piers")
 NO_FRAME = Lacks("only a building in plan (kind building) has a frame of piers and spandrels")

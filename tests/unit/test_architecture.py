@@ -19,7 +19,7 @@ LAYERS = {
     "schema": set(),
     "interrupts": set(),
     "room": set(),
-    "kinds": {"room"},
+    "kinds": {"room", "schema"},
     "core": {"interrupts", "schema"},
     "model": {"schema"},
     "motions": {"core", "schema"},

@@ -340,6 +340,7 @@ WHILE_RUNNING = {
         "crushes the pier",
         PANEL + 'compressive_strength = "1 MPa"\n[[analysis]]\nkind = "code-checks"\naxial_load = "1 MN" # here\n',
     ),
+    "a ratio that what cracks keep exceeds": ("1e+12 is too large", PANEL + SLA + "mechanism_ratio = 1e12 # here\n"),
 }
 
 

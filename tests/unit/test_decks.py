@@ -89,6 +89,31 @@ def test_complaint(old: str, new: str, line: int, words: list[str]) -> None:
     assert any(c.startswith(f"deck.toml:{line}:") and all(w in c for w in words) for c in found), found
 
 
+#: A tie of `strengthen` and a span of a bridge whose keys contradict one another: rules of tables in lists
+NESTED = {
+    "debonding_force requires its source": (
+        '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\n'
+        'debonding_force = "10 kN" # here\n'
+    ),
+    "places requires start_to or far_to": (
+        '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\nplaces = 5 # here\n'
+    ),
+    "intrados belongs to shape": (
+        '[structure]\nkind = "bridge"\n[[structure.spans]]\nshape = "segmental"\nspan = 2.0\nrise = 1.0\nthickness = 0.5\n'
+        "intrados = [[0, 0], [0.5, 0.8], [1, 1], [2, 0]] # here\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("words", NESTED)
+def test_a_rule_of_a_table_in_a_list_has_the_line_of_the_key_that_it_names(words: str) -> None:
+    rows = NESTED[words].splitlines()
+    line = 1 + next(k for k, row in enumerate(rows) if "# here" in row)
+    found = complaints(NESTED[words])
+    key = words.split()[0]
+    assert any(c.startswith(f"deck.toml:{line}:") and f"{key}: {words}" in c for c in found), found
+
+
 def test_columns_of_a_frame_do_not_overlap() -> None:
     frame = '[structure]\nkind = "frame"\nwidth = 0.5\nheight = 4\nspacing = 0.4\nlintel_height = 0.5\n[analysis]\nkind = "tilt"'
     (found,) = complaints(frame)

@@ -168,6 +168,18 @@ def test_a_barrel_in_bond_by_the_programme_of_the_forces() -> None:
     assert pushed(SolidLimit(solids, 0.7)).gamma == pytest.approx(outside(solids, 0.7, 0.0, [], 0.0), abs=1e-6)
 
 
+@pytest.mark.parametrize(("z", "words"), [(8.0, "Move the load"), (1.0, "move the load into one of them")])
+def test_a_load_in_no_block_or_between_two_has_its_own_advice(z: float, words: str) -> None:
+    """Not that of the end of a tie, whose block a key names."""
+    deck = {
+        "structure": {"kind": "column", "width": 1.0, "height": 2.0, "depth": 1.0, "drums": 2},
+        "analysis": {"kind": "tilt", "direction": 0.0, "load": [{"x": 0.0, "y": 0.0, "z": z, "force": 1e3}]},
+    }
+    result = run_analyses(Context(make_deck(deck), threads=1))[0]
+    assert result.status == "refused" and words in result.reason
+    assert "load 1" in result.reason and "anchored" not in result.reason and "_stone" not in result.reason
+
+
 def tied_corner(share: float) -> SolidLimit:
     """The corner of the reference with an anchor against the push along +y, which yields at a share of the weight."""
     solids = assemble(corner())

@@ -1,6 +1,7 @@
 """Solids: mass properties, contacts, kinds, files, and the words for what is amiss."""
 
 import json
+import re
 import struct
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from extrados import kinds
 from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
@@ -18,6 +20,7 @@ from extrados.model.geometry.solids.contacts import touching
 from extrados.model.geometry.solids.polyhedra import Polyhedron, box, cut, hull, moments, overlap_depth, prism
 from extrados.model.structures.cross_vault import LEAST_PIECE
 from extrados.running.check import check_building, write_solids
+from extrados.schema.constants import IN_SPACE
 from extrados.views.building import Building
 
 CUBE = box((0, 0, 0), (1, 1, 1))
@@ -291,8 +294,14 @@ def test_kinds_in_space_refuse_what_looks_at_a_section() -> None:
     with pytest.raises(DeckError, match="rocking cannot analyse a structure of kind 'dome': this structure has no plane section"):
         make_deck({"structure": SOLIDS["dome"], "motion": {"kind": "constant", "amplitude": "0.1 g"}, "analysis": {"kind": "rocking"}})
     for name, words in (("skew barrel", "skew arch"), ("round column", "round drums")):
-        with pytest.raises(NoView, match=words):
+        with pytest.raises(NoView, match=f"{words}.*{re.escape(IN_SPACE)}"):
             building(SOLIDS[name]).blocks()
+
+
+def test_refusals_name_the_analyses_that_take_solids() -> None:
+    """All but `assess`, which runs these."""
+    takes = {kind for kind in kinds.ANALYSES if kinds.table("analysis", kind).solid} - {"assess"}
+    assert set(re.findall("`(.+?)`", IN_SPACE)) == takes
 
 
 def obj(bodies: dict[str, Polyhedron]) -> str:
@@ -373,7 +382,10 @@ def test_every_file_gives_the_same_solids(folder: Path) -> None:
 
 def test_a_compas_assembly_without_a_plane_is_looked_at_in_space(folder: Path) -> None:
     """The upper stone is no prism: tilt and thrust take the solids of themselves, what needs a section says why it cannot."""
-    tables = {"structure": {"kind": "blocks", "file": "stack.json"}, "analysis": [{"kind": "tilt"}, {"kind": "thrust"}, {"kind": "moving-load"}]}
+    tables = {
+        "structure": {"kind": "blocks", "file": "stack.json"},
+        "analysis": [{"kind": "tilt"}, {"kind": "thrust"}, {"kind": "moving-load"}],
+    }
     tilt, thrust, moving = run_analyses(Context(make_deck(tables, folder), threads=1))
     assert tilt.status == "ok" and tilt.results["blocks"] == 2
     assert thrust.status == "ok" and moving.status == "refused" and "prisms across one plane" in moving.reason

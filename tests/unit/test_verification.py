@@ -171,6 +171,11 @@ def test_conditions_of_the_verdict(factor, ended, violated, outcome):
     assert (verdict.outcome, verdict.ratio) == (outcome, pytest.approx(factor))
 
 
+def test_a_capacity_that_the_strength_ratio_limits_is_said_so():
+    limited = made(2.0)
+    assert "zeta_E 2, limited by q* (1.5; at most 3); peak ground" in limited.told(limited.checks[0])
+
+
 @pytest.mark.parametrize(
     ("code", "method"),
     [

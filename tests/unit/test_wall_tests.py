@@ -102,3 +102,14 @@ def test_a_wall_of_many_units_has_units_twice_as_large(tmp_path, monkeypatch) ->
         tool.by_units(walls(tmp_path, row)[0])
     sizes = [(deck["structure"]["unit_length"], deck["structure"]["unit_height"]) for deck in decks]
     assert sizes == [pytest.approx((0.5, 0.125)), pytest.approx((0.25, 0.0625))]
+
+
+def test_a_residual_strength_is_not_that_of_a_wall(tmp_path, monkeypatch) -> None:
+    (wall,) = walls(tmp_path, "1,x,A,brick,3,1,0.25,250,65,5,,,0.3,0.9,1,0.2,F,40,40")
+    strength = {"quantity": "lateral strength", "unit": "N", "capacity": 40e3}
+    checks = {
+        "ASCE 41 rocking of a pier": strength,
+        "ASCE 41 residual sliding": strength | {"quantity": "residual strength", "capacity": 9e3},
+    }
+    monkeypatch.setattr(tool, "_answer", lambda deck: {"checks": checks})
+    assert tool.by_codes(wall)["ASCE 41"].strength == 40e3

@@ -364,11 +364,11 @@ class _Checker:
             text = str(problem.get("ctx", {}).get("error", problem["msg"]))
             if inner := _leads(text, problem["input"]):
                 at, text = (*at, *inner), text.partition(": ")[2]
-            elif not place:  # a rule over several keys: shown at the first one that it names
+            else:  # a rule over several keys: shown at the first one that it names
                 given = problem["input"]
                 found = ((re.search(rf"\b{re.escape(key)}\b", text), key) for key in (given if isinstance(given, dict) else {}))
                 named = min(((match.start(), key) for match, key in found if match), default=None)
-                at = (*path, named[1]) if named else at
+                at = (*at, named[1]) if named else at
             self.complain(at, text)
         elif sort in ("too_short", "too_long") and len(problems) == 1:
             limits = problem["ctx"]

@@ -203,7 +203,7 @@ class Assess(KindResults):
     parts: dict[str, str] = fact("analyses of this run that the assessment requested: name and description")
     probes: list[Probe] = fact("further runs")
     sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts to each uncertain value; the most decisive value comes first")
-    advice: Advice = maybe("strengthening, if any strategy predicts collapse")
+    advice: Advice = maybe("strengthening, if not all strategies give the verdict `stands`")
     not_done: list[str] = fact("steps for which the budget of time did not suffice, and further runs that did not decide anything")
     least_margin: float | None = fact(
         "least critical scale factor of the hazard among all strategies; 0 if the building cannot stand; null if no factor is known"

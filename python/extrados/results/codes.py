@@ -249,7 +249,7 @@ class LocalMechanism(Checked):
 
     def subject(self) -> str:
         """The mechanism that is checked."""
-        bends = {"vertical-bending": "The wall between its transverse walls", "horizontal-bending": "The wall between its side walls"}
+        bends = {"vertical-bending": "The wall between its floors", "horizontal-bending": "The wall between its side walls"}
         if self.mechanism == "building":
             return "The mechanism of the structure"
         return bends.get(self.mechanism, f"The {self.mechanism}")

@@ -180,7 +180,7 @@ class SolidThrust(KindResults):
     )
     least_part_of_joints: float | None = fact("central part of the contacts that the most central state needs")
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
-    required_friction_contact: str | None = fact("the contact that needs it")
+    required_friction_contact: str | None = fact("contact with this greatest requirement")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     weight_N: float = fact("weight of the structure with the weights that rest on it", "N")

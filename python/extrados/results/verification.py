@@ -118,7 +118,7 @@ class Verification(ResultModel):
         ratio = ""
         limit = check.greatest_strength_ratio
         if limit is not None and check.strength_ratio is not None and check.factor * check.strength_ratio > 0.999 * limit:
-            ratio = f", limited by q* ( {check.strength_ratio:.3g}; at most {limit:g})"
+            ratio = f", limited by q* ({check.strength_ratio:.3g}; at most {limit:g})"
         return (
             f"{self.code} at {check.limit_state}: the displacement check {check.verdict} (push {check.push}, {self.method}). "
             f"Demand {demand}, capacity {1e3 * check.capacity_m:.3g} mm; {index} {value}{ratio}; peak ground acceleration "

@@ -84,10 +84,11 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
     if load.z is not None:
         point = np.array([load.x, load.y, load.z])
         try:
-            return solid_at(assembly, point, None, f"load {number + 1}", key, "z"), point
+            return solid_at(
+                assembly, point, None, f"load {number + 1}", key, "z", ("Move the load", "move the load into one of them")
+            ), point
         except BadGeometry as error:
-            of_a_tie = "If the tie is anchored outside its block, give the name of the block by z_stone"
-            raise Refused(str(error).replace(of_a_tie, "Move the load"), key) from None
+            raise Refused(str(error), key) from None
     best, top = -1, -np.inf
     for part, block in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         first = part.vertices[[face[0] for face in part.faces]]

@@ -268,7 +268,7 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
     if ratio > MOST_OF_FLOOR / floor:
         raise BadGeometry(
-            f"mechanism_ratio {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would carry the load. "
+            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would carry the load. "
             f"Give at most {MOST_OF_FLOOR / floor:g}"
         )
     most = MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes

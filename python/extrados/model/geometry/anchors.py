@@ -51,19 +51,29 @@ def named_stone(names: Sequence[str], name: str, what: str, key: Key, end: str) 
     return names.index(name)
 
 
-def only_stone(names: Sequence[str], centroid: np.ndarray, found: Sequence[int], point: np.ndarray, what: str, key: Key, end: str) -> int:
+def only_stone(
+    names: Sequence[str],
+    centroid: np.ndarray,
+    found: Sequence[int],
+    point: np.ndarray,
+    what: str,
+    key: Key,
+    end: str,
+    cures: tuple[str, str] | None = None,
+) -> int:
     """The one block of those `found` at a point (2 or 3) [m]; BadGeometry, see `stone_at`, of none, with the nearest of the
-    centroids (blocks, 2 or 3) [m], or of several."""
+    centroids (blocks, 2 or 3) [m], or of several. cures: advice for none and for several; without it that of an anchored end."""
+    outside, between = cures or (
+        f"If this end is anchored outside its block, give the name of the block by {end}_stone",
+        "give the name of the block in which this end is anchored",
+    )
     place = ", ".join(f"{axis} = {value:.4g}" for axis, value in zip("xyz", point, strict=False)) + " m"
     if not found:
         near = names[int(np.linalg.norm(centroid - point, axis=1).argmin())]
-        raise BadGeometry(
-            f"{what}: no block is at {place}. If this end is anchored outside its block, give the name of the block by {end}_stone; '{near}' is the nearest",
-            (*key, end),
-        )
+        raise BadGeometry(f"{what}: no block is at {place}. {outside}; '{near}' is the nearest", (*key, end))
     if len(found) > 1:
         said = ", ".join(f"'{names[i]}'" for i in found)
-        raise BadGeometry(f"{what}: {place} lies between {said}; give the name of the block in which this end is anchored", (*key, end))
+        raise BadGeometry(f"{what}: {place} lies between {said}; {between}", (*key, end))
     return found[0]
 
 

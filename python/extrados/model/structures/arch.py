@@ -11,6 +11,7 @@ from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.sectors import ring_sector, sector_outlines
 from extrados.model.structure import Structure
+from extrados.schema.constants import IN_SPACE
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
 
@@ -117,7 +118,7 @@ class Arch(Structure):
 
     def assembly(self, density: float, folder: Path) -> ArchAssembly:
         if self.skew:
-            raise NoView("a skew arch has no plane section; its solids can be analysed by `tilt` and `dem`", ("structure", "skew"))
+            raise NoView(f"a skew arch has no plane section; {IN_SPACE}", ("structure", "skew"))
         return self.section(density)
 
     def section(self, density: float) -> ArchAssembly:

@@ -22,6 +22,7 @@ from extrados.model.geometry.linework import MOST_PAIRS
 from extrados.model.geometry.polygons import properties
 from extrados.model.structure import Structure
 from extrados.model.structures.earthwork import Fill, Spandrels, Surfacing, covered, refuse_without_fill
+from extrados.schema.constants import IN_SPACE
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
 
@@ -218,9 +219,7 @@ class Blocks(Structure):
             drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine)
             return drawing, None
         if sort in SOLID:
-            raise NoView(
-                f"{self.file} contains solids, which have no plane section; `tilt` and `dem` analyse them in space", ("structure", "file")
-            )
+            raise NoView(f"{self.file} contains solids, which have no plane section; {IN_SPACE}", ("structure", "file"))
         if sort != ".json":
             raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")
         if self.layers is not None or self.layer:

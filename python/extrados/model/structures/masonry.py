@@ -11,6 +11,7 @@ from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.polygons import properties
 from extrados.model.structure import RocksAs, Structure
+from extrados.schema.constants import IN_SPACE
 from extrados.schema.quantities import Force, Length
 from extrados.schema.table import key
 
@@ -111,9 +112,7 @@ class Column(Structure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.section == "round":
-            raise NoView(
-                "a column of round drums has no plane section; its solids can be analysed by `tilt` and `dem`", ("structure", "section")
-            )
+            raise NoView(f"a column of round drums has no plane section; {IN_SPACE}", ("structure", "section"))
         if self.dowels is not None:
             raise NoView("dowels exist only in space: give `tilt` a direction, or remove the dowels", ("structure", "dowels"))
         return make_column(self.width, self.drum_heights, self.top_width, density, self.depth)

@@ -562,7 +562,7 @@ class _Maker:
             beam = next(b for b in self.plan.ring_beams if b.storey == strip.storey and wall in self.plan.of_ring_beam(b))
             if beam.material not in self.building.materials:
                 raise BadGeometry(
-                    f"ring beam of storey {beam.storey}: there is no [materials.{beam.material}]", ("structure", "ring_beams")
+                    f"ring beam of storey {beam.storey}: the deck has no [materials.{beam.material}]", ("structure", "ring_beams")
                 )
             material = self.building.materials[beam.material]
             young = material.young

@@ -96,7 +96,7 @@ def read_shell(structure: MeshFile, building: Description, options: ShellOptions
                 thickness[b][rows] = group.thickness
             if group.material is not None:
                 if group.material not in names:
-                    raise BadGeometry(f"{what}: there is no [materials.{group.material}]", (*GROUPS, g, "material"))
+                    raise BadGeometry(f"{what}: the deck has no [materials.{group.material}]", (*GROUPS, g, "material"))
                 material[b][rows] = 1 + names.index(group.material)
             linear[b][rows] |= group.linear or group.membrane
             bends[b][rows] &= not group.membrane

@@ -476,7 +476,7 @@ def _thickness_at(plan: Plan, wall: PlanWall, height: np.ndarray) -> np.ndarray:
 
 def _named(name: str, names: list[str], what: str) -> int:
     if name not in names:
-        raise BadGeometry(f"{what}: there is no [materials.{name}]")
+        raise BadGeometry(f"{what}: the deck has no [materials.{name}]")
     return 1 + names.index(name)
 
 

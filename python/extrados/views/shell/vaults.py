@@ -13,6 +13,7 @@ from extrados.model.structures.arch import Arch
 from extrados.model.structures.cross_vault import CrossVault
 from extrados.model.structures.dome import Dome
 from extrados.model.structures.vault import Vault
+from extrados.schema.constants import IN_SPACE
 from extrados.views.mesh.options import LARGEST_MESH
 from extrados.views.shell.mesh import Foot, ShellMesh, ShellPart
 from extrados.views.shell.options import ShellOptions
@@ -219,7 +220,7 @@ def shell_of_arch(building: Description, options: ShellOptions) -> ShellMesh:
     arch = building.structure
     assert isinstance(arch, Arch)
     if arch.skew:
-        raise NoView("a skew arch cannot be modelled by shells; its solids can be analysed by `tilt`", ("structure", "skew"))
+        raise NoView(f"a skew arch cannot be modelled by shells; {IN_SPACE}", ("structure", "skew"))
     return mesh_barrel(building, options, arch.radius, arch.thickness * arch.thickness_factor, arch.embrace, arch.depth)
 
 

@@ -69,14 +69,19 @@ class Strand:
         return along / np.linalg.norm(along)
 
 
-def solid_at(assembly: SolidAssembly, point: np.ndarray, name: str | None, what: str, key: Key, end: str) -> int:
-    """The block at a point (3) [m], or the one of a name; BadGeometry, which begins with `what`, where that is not one."""
+def solid_at(
+    assembly: SolidAssembly, point: np.ndarray, name: str | None, what: str, key: Key, end: str, cures: tuple[str, str] | None = None
+) -> int:
+    """The block at a point (3) [m], or the one of a name; BadGeometry, which begins with `what`, where that is not one.
+
+    cures: see `only_stone`.
+    """
     if name is not None:
         return named_stone(assembly.block_names, name, what, key, end)
     hair = HAIR * assembly.size
     holding = [k for k, part in enumerate(assembly.parts) if _outside(part, point) < hair]
     found = sorted({int(assembly.owner[k]) for k in holding})
-    return only_stone(assembly.block_names, assembly.centroid, found, point, what, key, end)
+    return only_stone(assembly.block_names, assembly.centroid, found, point, what, key, end, cures)
 
 
 def _outside(part: Polyhedron, point: np.ndarray) -> float:
