@@ -70,10 +70,8 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-curve"),
-                "Tilt at collapse. Dotted: changes of mechanism. Crosses: values at which the structure collapses "(
-                    "under self-weight. Points on the axis: values without a result, or values at which the structure does "
-                    "not collapse at any tilt."
-                ),
+                "Tilt at collapse. Dotted: changes of mechanism. Crosses: values at which the structure collapses under self-weight. "
+                "Points on the axis: values without a result, or values at which the structure does not collapse at any tilt.",
             )
         ]
     if "example" not in run.arrays[name]:  # solids
