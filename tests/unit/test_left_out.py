@@ -119,7 +119,13 @@ DECKS = {
     "frame-pushover": (
         HOUSE,
         None,
-        {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0], "frame": {"flanges": "whole", "diagonal_strength": 1e5}},
+        {
+            "directions": [0.0],
+            "senses": ["+"],
+            "patterns": ["uniform"],
+            "eccentricities": [0.0],
+            "frame": {"flanges": "whole", "diagonal_strength": 1e5},
+        },
     ),
     "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
     "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}, "frame": {"diagonal_strength": 1e5}}),

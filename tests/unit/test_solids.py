@@ -373,7 +373,10 @@ def test_every_file_gives_the_same_solids(folder: Path) -> None:
 
 def test_a_compas_assembly_without_a_plane_is_looked_at_in_space(folder: Path) -> None:
     """The upper stone is no prism: tilt and thrust take the solids of themselves, what needs a section says why it cannot."""
-    tables = {"structure": {"kind": "blocks", "file": "stack.json"}, "analysis": [{"kind": "tilt"}, {"kind": "thrust"}, {"kind": "moving-load"}]}
+    tables = {
+        "structure": {"kind": "blocks", "file": "stack.json"},
+        "analysis": [{"kind": "tilt"}, {"kind": "thrust"}, {"kind": "moving-load"}],
+    }
     tilt, thrust, moving = run_analyses(Context(make_deck(tables, folder), threads=1))
     assert tilt.status == "ok" and tilt.results["blocks"] == 2
     assert thrust.status == "ok" and moving.status == "refused" and "prisms across one plane" in moving.reason
