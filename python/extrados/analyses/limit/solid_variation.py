@@ -6,11 +6,11 @@ import numpy as np
 
 from extrados.analyses.batches import stacked
 from extrados.analyses.context import Refused
+from extrados.analyses.limit.outcome import LOCKED, MOVES, Outcome, Signature, measures_of
 from extrados.analyses.limit.solid_loads import solid_limit
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.limit.solids import dilating_contacts, moving_blocks
 from extrados.analyses.limit.tables import Imperfections, SpatialLimit
-from extrados.analyses.limit.variation import LOCKED, MOVES, Outcome, Signature, measures_of
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.model.errors import BadGeometry

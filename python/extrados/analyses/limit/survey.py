@@ -10,8 +10,9 @@ from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context
 from extrados.analyses.limit.asked import sections_of
+from extrados.analyses.limit.outcome import Outcome, outcomes_of
 from extrados.analyses.limit.tables import Survey
-from extrados.analyses.limit.variation import Outcome, evaluate, outcomes_of, spoken
+from extrados.analyses.limit.variation import evaluate, spoken
 from extrados.model.errors import BadGeometry
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData

@@ -12,8 +12,9 @@ from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import values_of
 from extrados.analyses.limit.common import packed
+from extrados.analyses.limit.outcome import LOCKED, Outcome, Signature, outcomes_of
 from extrados.analyses.limit.tables import Sweep
-from extrados.analyses.limit.variation import LOCKED, Outcome, Signature, evaluate, outcomes_of, spoken
+from extrados.analyses.limit.variation import evaluate, spoken
 from extrados.analyses.needs import in_space
 from extrados.limit.errors import CannotStand
 from extrados.limit.finite_motion import finite_motion

@@ -1,14 +1,13 @@
 """One section among many: its structure from changed deck keys, its capacity, mechanism or the reason for none."""
 
-import json
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
-from extrados.analyses.batches import Swept
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import fracture_of, limit_of
+from extrados.analyses.limit.outcome import LOCKED, MOVES, Outcome, Signature, measures_of
+from extrados.analyses.limit.solid_variation import evaluate_solids
 from extrados.analyses.limit.tables import LimitAnalysisTable, SpatialLimit
 from extrados.analyses.needs import in_space
 from extrados.limit.answer import cannot_stand
@@ -16,79 +15,7 @@ from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly, part_of
-from extrados.results import limit as out
 from extrados.views.building import Building
-
-if TYPE_CHECKING:
-    from extrados.limit.solids import Programme
-    from extrados.model.geometry.solids.assembly import SolidAssembly
-
-Signature = tuple[tuple[str, str], ...]
-#: Stands for a structure that no load of the kind brings down
-LOCKED: Signature = (("all", "locked"),)
-#: Marks the blocks that move in a mechanism of solids, in words
-MOVES = "m"
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What one section gives: its collapse acceleration gamma [g], 0 with the proof as reason where it cannot stand, None
-    with a reason where there is no answer."""
-
-    gamma: float | None = None
-    fractured: float | None = None
-    signature: Signature = ()
-    gap: float = 0.0
-    reason: str = ""
-    assembly: "Assembly | SolidAssembly | None" = None
-    mechanism: "Mechanism | Programme | None" = None
-    notes: list[str] = field(default_factory=list)
-    locked: bool = False  # no load of the kind brings it down: it stands, but has no capacity to give
-    dilating: bool = False  # pressed joints slide in its mechanism: gamma is an upper bound by dilatant friction
-    measures: dict[str, float] = field(default_factory=dict)  # derived lengths of the section [m]
-    alone: float | None = None  # of the leeward buttress by itself
-
-    @property
-    def status(self) -> out.SectionStatus:
-        """Whether it has a capacity, cannot stand, is locked, or has no answer."""
-        if self.locked:
-            return "locked"
-        return "no-answer" if self.gamma is None else "cannot-stand" if self.reason else "ok"
-
-    def row(self) -> dict[str, np.ndarray]:
-        """What a sweep keeps of it: all but the assembly and its mechanism."""
-        words = [self.signature, self.reason, self.notes, self.measures]
-        numbers = [
-            np.nan if self.gamma is None else self.gamma,
-            np.nan if self.fractured is None else self.fractured,
-            self.gap,
-            np.nan if self.alone is None else self.alone,
-        ]
-        marks = np.array([self.locked, self.dilating])
-        return {"numbers": np.array(numbers), "marks": marks, "words": np.array(json.dumps(words))}
-
-
-def outcome_of(row: dict[str, np.ndarray]) -> Outcome:
-    """The outcome of a kept row."""
-    gamma, fractured, gap, alone = (None if np.isnan(x) else float(x) for x in row["numbers"])
-    marks, reason, notes, measures = json.loads(str(row["words"]))
-    return Outcome(
-        gamma,
-        fractured,
-        tuple((name, mark) for name, mark in marks),
-        gap or 0.0,
-        reason,
-        notes=notes,
-        locked=bool(row["marks"][0]),
-        dilating=bool(row["marks"][1]),
-        measures=measures,
-        alone=alone,
-    )
-
-
-def outcomes_of(swept: Swept) -> list[Outcome]:
-    """The outcomes of all members."""
-    return [outcome_of({name: rows[k] for name, rows in swept.arrays.items()}) for k in range(len(swept.members))]
 
 
 def signature(assembly: Assembly, mechanism: Mechanism) -> Signature:
@@ -121,8 +48,6 @@ def evaluate(
     """Build the section and load it to +x, or solids along their direction."""
     try:
         if isinstance(options, SpatialLimit) and in_space(building, options):
-            from extrados.analyses.limit.solid_variation import evaluate_solids  # with a solver that takes a while to load
-
             return evaluate_solids(building, options)
         assembly, limit = building.blocks(), limit_of(building, options)
     except (BadGeometry, Refused, ValueError) as error:
@@ -195,8 +120,3 @@ def _evaluate(
         dilating=bool(limit.dilating(mechanism)),
         measures=measures_of(assembly),
     )
-
-
-def measures_of(assembly: "Assembly | SolidAssembly") -> dict[str, float]:
-    """Derived lengths of a section."""
-    return {k: float(v) for k, v in assembly.measures.items()}

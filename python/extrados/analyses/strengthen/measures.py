@@ -10,7 +10,8 @@ from extrados.analyses.changes import changed, lacking
 from extrados.analyses.conclude import MotionDemand
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import collapse_beside, hinge_rows, limit_of
-from extrados.analyses.limit.variation import Signature, signature
+from extrados.analyses.limit.outcome import Signature
+from extrados.analyses.limit.variation import signature
 from extrados.analyses.sequence import run_one
 from extrados.analyses.strengthen.alternatives import TieAlternative
 from extrados.analyses.strengthen.tables import Strengthen
