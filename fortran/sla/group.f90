@@ -321,13 +321,15 @@ module sla_group
          logical, intent(out) :: couples     !! else k is zero
       end subroutine couple_interface
 
-      !> The histories follow the displacements; the energy that this costs is added
-      pure subroutine update_interface(group, u, lost)
+      !> The histories follow the displacements, or go `ahead` by a multiple of their growth beyond `rate`; the energy
+      !> that this costs is added
+      pure subroutine update_interface(group, u, lost, ahead)
          import :: history_group, wp
          implicit none (type, external)
          class(history_group), intent(inout) :: group
          real(wp), intent(in) :: u(0:)
          real(wp), intent(inout) :: lost     !! [J]
+         real(wp), intent(in), optional :: ahead
       end subroutine update_interface
 
       !> Axes, teeth and stiffness of the points by their histories, for `report` and `state`

@@ -19,7 +19,7 @@ module sla_iterations
    use sla_assembly, only : position
    use sla_c_bindings, only : extrados_sparse_again, extrados_sparse_indefinite
    use sla_coaxial, only : by_frozen, by_secant, by_tangent
-   use sla_group, only : damage_rows, element_group, friction_group, history_group, most_entries, unbounded
+   use sla_group, only : element_group, friction_group, history_group, most_entries, unbounded
    use sla_model, only : element_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -437,12 +437,12 @@ contains
          if (before > 0.0_wp) ratio = model%path%residual / before
          before = model%path%residual
          if (ratio < slow .or. iterations < many_loops) cycle
-         call go_ahead(model, min(most_ahead, ratio / max(1.0_wp - ratio, 0.1_wp)))
+         call update_all(model, lost, ahead=min(most_ahead, ratio / max(1.0_wp - ratio, 0.1_wp)))
          before = 0.0_wp
       end do
    end subroutine staggered_step
 
-   !> Histories of this loop, from which `go_ahead` goes on
+   !> Histories of this loop, beyond which damage goes ahead
    subroutine remember(model)
       type(element_model), intent(inout) :: model
       integer :: g
@@ -453,20 +453,6 @@ contains
          end select
       end do
    end subroutine remember
-
-   !> Damage goes on by a multiple of its growth since `remember`
-   subroutine go_ahead(model, times)
-      type(element_model), intent(inout) :: model
-      real(wp), intent(in) :: times
-      integer :: g, rows
-      do g = 1, size(model%mesh%holders)
-         select type (group => model%mesh%holders(g)%group)
-         class is (history_group)
-            rows = min(size(group%history, 1), damage_rows)
-            group%history(1:rows, :) = group%history(1:rows, :) + times * (group%history(1:rows, :) - group%rate(1:rows, :))
-         end select
-      end do
-   end subroutine go_ahead
 
    !> The one equilibrium at the present damage: Newton's method on a convex energy
    subroutine frozen_solution(model, length, status)
@@ -576,14 +562,15 @@ contains
    end function loads_run_away
 
    !> All histories follow the displacements
-   subroutine update_all(model, lost)
+   subroutine update_all(model, lost, ahead)
       type(element_model), intent(inout) :: model
       real(wp), intent(inout) :: lost          !! [J]
+      real(wp), intent(in), optional :: ahead  !! see history_group
       integer :: g
       do g = 1, size(model%mesh%holders)
          select type (group => model%mesh%holders(g)%group)
          class is (history_group)
-            call group%update(model%path%u, lost)
+            call group%update(model%path%u, lost, ahead)
          end select
       end do
    end subroutine update_all

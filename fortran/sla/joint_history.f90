@@ -4,7 +4,7 @@ module sla_joint_history
    use common_kinds, only : wp
    use common_status, only : status_ok
    use sla_coaxial, only : by_secant, by_tangent
-   use sla_group, only : most_entries
+   use sla_group, only : damage_rows, most_entries
    use sla_joint_law, only : joint_material, joint_response, joint_rows, joint_state
    use sla_joint_points, only : bond, bond_of, is_closed, joint_points, jump, nodal, shear, slides_up, slides_down, &
       sticks
@@ -176,14 +176,22 @@ contains
       end do
    end subroutine couple
 
-   pure subroutine update(group, u, lost)
+   !> See history_group. The next update counts the energy from the start of the step, what went ahead included
+   pure subroutine update(group, u, lost, ahead)
       class(joint_history), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: lost
+      real(wp), intent(in), optional :: ahead
       real(wp) :: local(most_entries)
       type(joint_material) :: law
       type(joint_state) :: state
       integer :: e, p
+      if (present(ahead)) then
+         associate (now => group%history(1:damage_rows, :))
+            now(:, :) = now + ahead * (now - group%rate(1:damage_rows, :))
+         end associate
+         return
+      end if
       do e = 1, group%elements
          law = law_of(group, e)
          call group%gather(e, u, local)

@@ -114,10 +114,11 @@ contains
 
    !> See history_group. The energy of one open crack is that of its law; a second one in tension shares the damage of
    !> the first and loses in proportion to the square of its strain
-   pure subroutine update_plane(group, u, lost)
+   pure subroutine update_plane(group, u, lost, ahead)
       class(plane_history), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: lost
+      real(wp), intent(in), optional :: ahead
       real(wp) :: local(most_entries), eps(3, most_per), gain(2)
       type(coaxial_law) :: law
       type(coaxial_state) :: state
@@ -128,6 +129,7 @@ contains
          do p = (e - 1) * group%per + 1, e * group%per
             law = law_of(group, e, p)
             call coaxial_response(law, eps(:, p - (e - 1) * group%per), group%history(:, p), by_secant, state)
+            if (present(ahead)) state%history = group%history(:, p) + ahead * (group%history(:, p) - group%rate(:, p))
             gain = law%lost_energy(state%history) - law%lost_energy(group%history(:, p))
             lost = lost + group%weight(p) * (gain(1) * (1.0_wp + state%shared) + gain(2))
             group%history(:, p) = state%history

@@ -124,6 +124,7 @@ mesh.size = "0.1 m"
 [[analysis.stages]]
 hold = [{ edge = "top", fix = "y" }]
 reference = [{ kind = "displacement", direction = "x", parts = [{ edge = "top" }] }]
+target_displacement = "0.505 mm"
 [[analysis.stages]]
 reference = [{ kind = "displacement", direction = "x", parts = [{ edge = "top", ratio = -1.0 }] }]
 """,

@@ -170,6 +170,17 @@ def test_a_stage_without_an_end_ends_the_run() -> None:
     assert any("not run: push" in warning for warning in result.warnings)
 
 
+@pytest.mark.parametrize(("limit", "why"), [({"budget": 0.01}, "budget of processor time"), ({"events": 20}, "number of events")])
+def test_a_stage_that_a_limit_ends_before_its_target_ends_the_run(limit: dict, why: str) -> None:
+    """A part of the support is still there: the wall is not pushed on it."""
+    go = {"name": "go", "free": [{"edge": "bottom", "x": [0.5, 1.0], "fix": "y"}]}
+    push = {"name": "push", "reference": [{"kind": "spread", "edge": "top", "fx": 1e3}]}
+    result = run_deck(wall([PRESS, go, push], **limit))
+    press, last = result.results["stages"]
+    assert (press["stop"], last["name"]) == ("target load", "go")
+    assert any(f"before its target ({why})" in text and "not run: push" in text for text in result.warnings)
+
+
 @pytest.mark.parametrize(
     ("stage", "words"),
     [

@@ -165,16 +165,18 @@ class Curve:
         return softer > MECHANISM or self.already + max(ends) * self.unit <= (1.0 + FALLEN) * peak
 
     def leads_on(self, left: list[str]) -> bool:
-        """Does this stage end in a state from which another can go on? If not, a warning names those that are `left`."""
+        """Does this stage end in a state from which another can go on, not before its own end by the budget or the number of
+        events? If not, a warning names those that are `left`."""
         events = self.events
         if events.interrupted:
             return False
-        if len(events) and self.state[-1] and events.reason not in ("mechanism", AXIAL, DRIFTED):
+        limited = events.reason in (SPENT, "")
+        if len(events) and self.state[-1] and not limited and events.reason not in ("mechanism", AXIAL, DRIFTED):
             return True
         if left:
+            how = "before its target" if limited else "without an equilibrium state from which the run could continue"
             self.warnings.append(
-                f"stage {self.name} ended without an equilibrium state from which the run could continue "
-                f"({events.reason or 'number of events'}). These stages were not run: {', '.join(left)}"
+                f"stage {self.name} ended {how} ({events.reason or 'number of events'}). These stages were not run: {', '.join(left)}"
             )
         return False
 
