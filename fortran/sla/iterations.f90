@@ -29,9 +29,6 @@ module sla_iterations
    !> Residual over the largest nodal force: of Newton's method, of staggered steps, which approach it slowly, of the
    !> convex problems
    real(wp), parameter :: tolerance = 1.0e-4_wp, staggered_tolerance = 1.0e-3_wp, inner_tolerance = 1.0e-5_wp
-   !> Iterations after which Newton's method gives up, if the residual is still far from the tolerance
-   integer, parameter :: enough = 7
-   real(wp), parameter :: far_off = 30.0_wp
    !> Times the damage of a staggered loop by which damage goes on at most, and the ratio of residuals from which it does
    real(wp), parameter :: most_ahead = 3.0_wp, slow = 0.5_wp
    !> Loops before that: damage ahead of a snap that soon ends lowers the load by some per cent
@@ -365,7 +362,6 @@ contains
          model%path%residual = ratio
          found = ratio < tolerance .and. iterations > 0
          if (found .or. .not. ratio <= unbounded) return
-         if (iterations >= enough .and. ratio > far_off * tolerance) return
          call correct(model, model%path%drive + length, status)
          if (status == status_not_positive_definite) then
             status = status_ok

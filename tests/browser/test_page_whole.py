@@ -95,7 +95,9 @@ def test_the_ten_lessons(page: Any) -> None:
         settled(page)
         page.click(".exercise .first")
         page.wait_for_selector(".told.good", timeout=20_000)
-        assert "prediction was right" in page.locator(".history").inner_text() or "right is" in page.locator(".history").inner_text()
+        assert (
+            "prediction was right" in page.locator(".history").inner_text() or "The right answer" in page.locator(".history").inner_text()
+        )
         page.screenshot(path=SHOTS / f"lesson-{k + 1}.png")
 
 

@@ -298,7 +298,7 @@ def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checke
     assert [v.status for v in r.verdicts] == ["ok"] * 4 and r.verdicts[3].part == "pushover-2"
     assert run["pushover"].direction_deg == 0.0 and run["pushover-2"].direction_deg == 90.0
     assert run["local-mechanism"].walls[0].wall in ("left", "right"), "the thin ones"
-    assert any("building on a plan" in text for text in r.not_done)
+    assert any("building in plan" in text for text in r.not_done)
     assert run["pushover"].peak_load_N is None, "300 events are few"
     told = next(one for one in r.reasons if one.rule == "frame-and-shells")
     assert ["frame", "push-x"] in told.explains and "kN" in told.text
@@ -642,7 +642,7 @@ def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(perturbed, "chaos_of", lambda other, grown, turns: chaos_of("collapse", 1e5, turns))
     r = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "dem"], "budget": 20}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
-    assert rows["dem"].outcome == "open" and "Chaotic" in rows["dem"].statement
+    assert rows["dem"].outcome == "open" and "chaotic" in rows["dem"].statement
     (one,) = [x for x in r.reasons if x.rule == "last-digits"]
     assert one.numbers["growth"] == 1e5 and not any("times" in probe.changed for probe in r.probes)
 

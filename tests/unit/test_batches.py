@@ -189,7 +189,7 @@ def test_another_version_resumes_nothing(tmp_path: Path, monkeypatch) -> None:
     out = tmp_path / "run"
     sweep(context(out), "t", Squares(), 10, "squares")
     monkeypatch.setattr(checkpoint, "program", lambda: "9.9.9 another")
-    with pytest.raises(StoreError, match=r"begun by extrados .*, this one is 9\.9\.9 another"):
+    with pytest.raises(StoreError, match=r"begun by extrados .*, and the present version is 9\.9\.9 another"):
         sweep(context(out, resume=True), "t", Squares(), 10, "squares")
 
 

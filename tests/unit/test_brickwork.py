@@ -169,7 +169,7 @@ def test_panel_as_stones() -> None:
     assert "no blocks form one" in refused.reason
     (refused,) = run(PANEL, {"kind": "tilt"})
     assert refused.status == "refused" and "give unit_length and unit_height" in refused.reason
-    with pytest.raises(DeckError, match="give unit_length and unit_height, or neither"):
+    with pytest.raises(DeckError, match="give both unit_length and unit_height, or neither"):
         run({**PANEL, "unit_length": 0.25}, {"kind": "tilt"})
 
 

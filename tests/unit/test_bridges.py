@@ -427,7 +427,7 @@ def test_a_train_of_the_deck_is_the_one_of_the_code() -> None:
         ({"axles": [0.0, 1.0], "axle_loads": [1e5]}, "one load above 0 for each"),
         ({"uniform": [{"load": 1e4}]}, "requires axle_loads"),
         ({"axles": []}, "expected at least one axle"),
-        ({"train": "LM71", "lanes": 2}, "belongs to train"),
+        ({"train": "LM71", "lanes": 2}, "is used only with train"),
         ({"axles": [], "uniform": [{"start": 2.0, "stop": 1.0, "load": 1e4}]}, "stop behind start"),
     ],
 )

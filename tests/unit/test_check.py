@@ -85,7 +85,7 @@ WRONG = {
         BLOCK + GENERATED + FRAGILITY + '[analysis.hazard]\nintensities = ["0.1 m", "0.2 m"] # here\nannual_rates = [0.1, 0.01]\n',
     ),
     "unit of levels": ("'m' is not a unit", BLOCK + GENERATED + FRAGILITY.replace('"0.1 g"]', '"0.1 m"] # here')),
-    "uncertain value of another structure": ("does not belong", BLOCK + GENERATED + FRAGILITY + "uncertain = { radius = 0.1 } # here\n"),
+    "uncertain value of another structure": ("has no such value", BLOCK + GENERATED + FRAGILITY + "uncertain = { radius = 0.1 } # here\n"),
     "movement of an unknown joint, rocking": (
         "joint 'none'",
         BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + ROCKING,
@@ -114,7 +114,7 @@ WRONG = {
     "survey without its table": ("none.csv", ARCH + '[[analysis]]\nkind = "survey"\nfile = "none.csv" # here\n'),
     "fracture without a buttress": ("requires a buttress", ARCH + TILT + "fracture = true # here\n"),
     "train too wide": ("exceeds the depth", ARCH + '[[analysis]]\nkind = "moving-load"\nwidth = 9.0 # here\n'),
-    "imperfections without a tolerance": ("give the deviation", ARCH + '[[analysis]] # here\nkind = "imperfections"\n'),
+    "imperfections without a tolerance": ("give the key deviation", ARCH + '[[analysis]] # here\nkind = "imperfections"\n'),
     "supports at rest": ("no support moves", ARCH + '[[analysis]] # here\nkind = "supports"\nspread = 0\n'),
     "block to follow": ("no block has the name 'none'", BLOCK + DEM + 'track = ["none"] # here\n'),
     "bars of a block": ("requires an arch", BLOCK + PULSE + DEM + 'merge = "three-bars" # here\n'),
@@ -253,7 +253,7 @@ WRONG = {
     "speed of no film": ("requires animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
     "wall without a load": ("give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n'),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
-    "energy ratio of an arch": ("energy_ratio belongs to a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
+    "energy ratio of an arch": ("energy_ratio is only for a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
     "energy ratio of spectra": ("square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n'),
     "spectra on a soft base": (
         "rigid ground",

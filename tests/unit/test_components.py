@@ -72,12 +72,12 @@ def test_treatment_and_factor_are_one_for_all(three: list[Path]) -> None:
 def test_components_must_fit(tmp_path: Path, three: list[Path]) -> None:
     first, second, up = map(read_record, three)
     coarse = read_record(put(tmp_path / "coarse.at2", SECOND, 0.01))
-    with pytest.raises(RecordError, match=r"steps of 0\.02 and 0\.01 s \(coarse"):
+    with pytest.raises(RecordError, match=r"time steps, 0\.02 and 0\.01 s \(coarse\); expected the same step"):
         record_motion(first, second=coarse, angle=10.0, vertical=up)
     short = read_record(put(tmp_path / "short.at2", UP[:-7]))
     motion = record_motion(first, second=second, angle=10.0, vertical=short)
     assert motion.ground.samples.shape == (2, 294) and motion.horizontal.shape == (2, 294)
-    assert "301, 301, 294 samples, cut" in motion.notes[0]
+    assert "301, 301, 294 samples and are cut" in motion.notes[0]
     with pytest.raises(RecordError, match="two components"):
         deck_motion(tmp_path, kind="record", file="first.at2", vertical="first.at2")
     for keys in ({"second": "second.at2"}, {"angle": 30.0}):
@@ -156,5 +156,5 @@ def test_a_missing_partner_stays_its_own(tmp_path: Path) -> None:
     up = result.tables["ensemble"].columns["vertical_pga_g"]
     assert up[:2] == pytest.approx([0.4, 0.4], rel=1e-2) and np.isnan(up[2])
     assert "rotd50_pga_g" not in result.tables["ensemble"].columns
-    with pytest.raises(DeckError, match="give only one of files"):
+    with pytest.raises(DeckError, match="give only one of the keys files"):
         make_deck({"motion": {**suite(tmp_path), "pattern": "*"}, "analysis": {"kind": "motion"}}, tmp_path)

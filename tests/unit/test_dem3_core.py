@@ -382,9 +382,9 @@ def test_wrong_models_are_refused() -> None:
         Law(0.0, 1e9, 0.6)
     with pytest.raises(ValueError, match="law that does not exist"):
         dem3.run(replace(good, joints={(0, 1): 3}), options)
-    with pytest.raises(IndexError, match="joints names 7"):
+    with pytest.raises(IndexError, match="joints contains the index 7"):
         dem3.run(replace(good, joints={(0, 7): 0}), options)
-    with pytest.raises(IndexError, match="owner names 5"):
+    with pytest.raises(IndexError, match="owner contains the index 5"):
         dem3.run(replace(good, owner=[0, 5]), options)
     with pytest.raises(ValueError, match="not finite"):
         dem3.run(replace(good, vertices=[good.vertices[0] * np.nan, good.vertices[1]]), options)

@@ -387,7 +387,7 @@ def test_a_start_that_it_cannot_take_is_refused() -> None:
     deck = {"structure": ARCH, "motion": PULSE, "initial": {"rotation_ratio": 0.2}}
     glued = {"kind": "dem", "end_time": 0.1, "merge": "three-bars"}
     refused, ran = answers({**deck, "analysis": [glued, {**glued, "initial": {"rotation_ratio": 0.0}}]})
-    assert refused.status == "refused" and "glued" in refused.reason
+    assert refused.status == "refused" and "merged cannot start with a rotation" in refused.reason
     assert ran.status == "ok"
 
 

@@ -183,7 +183,7 @@ def test_dowels_of_a_deck(tmp_path) -> None:
     assert rocks.results.dowels_out == 1 and ", 1 of 1 came out" in rocks.answer
     weak = answered(tmp_path, doweled.replace("unbroken", "1 kN"))
     assert weak.results.dowel_slip_m > 1e-3
-    assert "; dowels moved by up to " in weak.answer
+    assert "; dowels slipped by up to " in weak.answer
     refused = answered(tmp_path, doweled + 'solver = "nonsmooth"\n')
     assert refused.status == "refused" and "have no dowels" in refused.reason
 

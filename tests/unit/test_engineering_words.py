@@ -58,5 +58,5 @@ def test_a_floor_is_one_condition_and_no_warning() -> None:
     deck = {"structure": WALL, "motion": {**PULSE, "floor": FLOOR}, "analysis": [{"kind": "tilt"}, {"kind": "rocking"}]}
     run = extrados.run(deck)
     (condition,) = run.summary["deck"]["conditions"]
-    assert "6 m" in condition and "9 m" in condition and "T_1 0.26 s" in condition
+    assert "6 m" in condition and "9 m" in condition and "T_1 = 0.26 s" in condition
     assert not any("floor" in w.lower() for a in run.summary["analyses"] for w in a["warnings"])

@@ -152,7 +152,7 @@ def test_sections_of_a_survey_stand_by_their_capacity() -> None:
 def test_of_a_run_without_a_name_the_words_are_reported_and_an_unknown_one_is_refused() -> None:
     words, arrays = shown(run_of("mechanism"), None)
     assert arrays == {} and [row["name"] for row in words["analyses"]] == ["local-mechanism"]
-    with pytest.raises(StoreError, match="no analysis has the name 'tilt'"):
+    with pytest.raises(StoreError, match="the run has no analysis 'tilt'"):
         shown(run_of("mechanism"), "tilt")
 
 

@@ -163,6 +163,20 @@ def test_an_elastic_ring_beam_makes_piers_rock_at_both_ends():
     assert shear == pytest.approx(load * 2.0 / height, rel=2e-2)
 
 
+def test_a_ring_beam_is_no_masonry_of_a_spandrel_below_a_door():
+    """0.8 m between both doors less a beam of 0.3 m, as below a sill of a millimetre; tension without a limit is said."""
+    beam = {"storey": 1, "depth": 0.3, "material": "concrete"}
+    depths = []
+    for sill in (0.0, 0.001):
+        upper = {"storey": 2, "x": [2.0, 3.0], "z": [sill, 2.2]}
+        walls = [{"name": "wall", "start": [0, 0], "end": [5, 0], "thickness": 0.3, "openings": [DOOR, upper]}]
+        frame = building(walls, STIFF, cohesion=0.05e6, ring_beams=[beam], storeys=[3.0, 3.0]).frame(FREE)
+        stiffness = [e.shear_stiffness for s, e in zip(frame.strips, frame.elements, strict=True) if s.kind == "spandrel" and s.storey == 1]
+        depths += [k / frame.elements[0].young for k in stiffness]
+        assert any("not limited" in remark for remark in frame.remarks)
+    assert depths[0] == pytest.approx(depths[1], rel=3e-3)
+
+
 def test_pressure_beside_a_spandrel_enters_through_interlocking():
     """f_ft = f_v0 + mu sigma/phi, sigma half the pressure of the loads above on the piers beside."""
     values = {"cohesion": 0.02e6, "shear": "none"}

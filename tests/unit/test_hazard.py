@@ -118,10 +118,10 @@ def test_a_hazard_curve_that_ends_too_early_is_reported() -> None:
 @pytest.mark.parametrize(
     ("keys", "said"),
     [
-        ({"hazard": HAZARD}, "requires levels, or a cloud"),
+        ({"hazard": HAZARD}, "requires the key levels, or a cloud"),
         ({"cloud": True, "intensity": "scale"}, "not scaled"),
-        ({"cloud": True, "levels": [0.1]}, "remove levels"),
-        ({"rotation_limits": [0.5]}, "belong to a cloud"),
+        ({"cloud": True, "levels": [0.1]}, "remove the keys levels"),
+        ({"rotation_limits": [0.5]}, "is used only with cloud = true"),
         ({"histories": 3, "levels": [0.1]}, "unscaled motions"),
         ({"cloud": True, "hazard": {"intensities": [0.1, 0.2]}}, "give either intensities"),
         ({"cloud": True, "hazard": {**HAZARD, "file": "h.csv"}}, "give either intensities"),
@@ -298,7 +298,7 @@ def test_buildings_of_the_sample_that_cannot_stand_count_as_collapsed() -> None:
 
 def test_what_a_building_does_not_know_is_refused() -> None:
     assert "one rigid block" in run({"count": 4, "uncertain": {"density": 0.1}}).reason
-    assert "does not belong" in run({"count": 4, "uncertain": {"corners": 0.1}}).reason
+    assert "has no such value" in run({"count": 4, "uncertain": {"corners": 0.1}}).reason
     column = {"kind": "column", "width": 0.4, "height": 2.0, "drums": 4}
     assert run({"count": 4, "uncertain": {"density": 0.1, "width": 0.05}}, column).status == "ok"
     thesis = {"uncertain": {"imperfection": 0.02}, "joints": {"restitution": "thesis"}}

@@ -185,12 +185,12 @@ def test_an_impact_that_loses_too_much_energy_is_reported() -> None:
     def told(structure: dict, motion: dict, **keys) -> tuple[list[str], dict[str, str]]:
         run = extrados.run({"structure": structure, "motion": motion, "analysis": [{"kind": "rocking", "hand_over": False, **keys}]})
         outcomes = {one.rule: one.outcome for one in getattr(run["rocking"], "outcomes_by_rule", None) or ()}
-        return [w for w in run.results[0].warnings if "discrete elements" in w], outcomes
+        return [w for w in run.results[0].warnings if "lose too much energy" in w], outcomes
 
     arch1 = {"kind": "arch", "radius": 0.2, "thickness": 0.024, "embrace": 162.0, "voussoirs": 16}
     shake = {"kind": "harmonic", "amplitude": "0.5 g", "frequency": 6.0, "carrier": 0.1, "duration": 5.0}
     (warning,), outcomes = told(arch1, shake)
-    assert "above 5 Hz" in warning and outcomes["inelastic"] == "recovery" and outcomes["1.000"] == "collapse"
+    assert "more than 5 Hz" in warning and outcomes["inelastic"] == "recovery" and outcomes["1.000"] == "collapse"
     quiet, _ = told(arch1, {**shake, "frequency": 3.0, "amplitude": "0.23 g"})
     assert not quiet
     wide = {"kind": "arch", "radius": 1.0, "thickness": 0.144, "embrace": 170.0, "voussoirs": 34}
@@ -201,7 +201,7 @@ def test_an_impact_that_loses_too_much_energy_is_reported() -> None:
         {"kind": "failure-curves", "cycles": [1, 6], "durations": [0.1, 0.2], "amplitudes": 3, "accuracy": 0.05},
     ):
         warnings = extrados.run({"structure": arch1, "analysis": [analysis]}).results[0].warnings
-        assert sum("above 5 Hz" in warning for warning in warnings) == 1
+        assert sum("more than 5 Hz" in warning for warning in warnings) == 1
     stocky = {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 140.0, "voussoirs": 13}
     (general, special), outcomes = told(stocky, {"kind": "step-pulse", "amplitude": "1.0 g", "duration": 0.1})
     assert "stocky" in general and "with 0.587 the outcome is recovery" in special and outcomes["0.587"] == "recovery"
@@ -220,7 +220,7 @@ def test_a_run_on_the_edge_says_so() -> None:
         low, high = (low, middle) if fell else (middle, high)
     edge = extrados.run(deck(0.15, 157.5, high))
     assert edge["rocking"].decided_by_last_digits
-    assert any("Chaotic" in text for text in edge.results[0].warnings) and edge.results[0].verdict.outcome == "open"
+    assert any("chaotic" in text for text in edge.results[0].warnings) and edge.results[0].verdict.outcome == "open"
     assert not extrados.run(deck(0.15, 157.5, 1.2 * high))["rocking"].decided_by_last_digits
 
 

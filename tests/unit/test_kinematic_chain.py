@@ -297,7 +297,7 @@ def test_e_star_by_links_is_said_where_it_differs_from_that_by_stones() -> None:
         return run["local-mechanism"].participating_part, run.analyses[0]["warnings"]
 
     part, warnings = told(3)
-    assert part == pytest.approx(81.0 / 105.0) and any("e* is 1, and a_0* -23 %" in text for text in warnings)
+    assert part == pytest.approx(81.0 / 105.0) and any("e* is 1, and a_0* changes by -23 %" in text for text in warnings)
     part, warnings = told(1)
     assert part == pytest.approx(1.0) and not warnings
 

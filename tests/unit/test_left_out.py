@@ -119,10 +119,16 @@ DECKS = {
     "frame-pushover": (
         HOUSE,
         None,
-        {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0], "frame": {"flanges": "whole"}},
+        {
+            "directions": [0.0],
+            "senses": ["+"],
+            "patterns": ["uniform"],
+            "eccentricities": [0.0],
+            "frame": {"flanges": "whole", "diagonal_strength": 1e5},
+        },
     ),
     "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
-    "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}}),
+    "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}, "frame": {"diagonal_strength": 1e5}}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),
     "rocking of a stack": (STACK_OF_TWO, SINE, {"kind": "rocking"}),
     "sla of rows": (STACK, None, {"kind": "sla", "mesh": {"size": 0.5, "joints": "rows"}, "events": 30}),

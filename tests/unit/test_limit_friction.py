@@ -177,7 +177,7 @@ def test_the_bound_without_friction_is_reported_without_a_sign() -> None:
         "analysis": [{"kind": "tilt", "friction_rule": "non-associated", "starts": 1}],
     }
     (result,) = run_analyses(Context(make_deck(data)))
-    assert "bounds: 0.0000 g without friction, 0.6500 g with dilatancy" in result.answer
+    assert "without friction is 0.0000 g, and the upper bound with dilatancy is 0.6500 g" in result.answer
 
 
 def test_certificate_obeys_virtual_work() -> None:

@@ -357,8 +357,8 @@ def test_a_surveyed_intrados_carries_what_the_curve_carries_that_it_was_measured
     [
         ({"intrados": [[0, 0], [2, 1], [1, 1], [4, 0]]}, "x must increase"),
         ({"intrados": [[0, 0], [1, 1], [3, 1], [4, 0.5]]}, "one level"),
-        ({"span": 4.0}, "remove it"),
-        ({"shape": "segmental", "span": 4.0, "rise": 1.0}, "belongs to shape"),
+        ({"span": 4.0}, "remove this key"),
+        ({"shape": "segmental", "span": 4.0, "rise": 1.0}, "is only for shape"),
         ({"intrados": [[0, 0], [1, 1]]}, "intrados"),
         ({"intrados": [[0, 0], [1], [3, 1], [4, 0]]}, "points"),
     ],

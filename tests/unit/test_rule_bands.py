@@ -31,7 +31,7 @@ def test_fragility_over_levels_has_the_probabilities_by_each_rule() -> None:
         assert one.restitution == pytest.approx(alone.restitution)
         assert one.collapse_probability == pytest.approx(alone.collapse_probability)
     assert r.rule_band == pytest.approx(np.ptp(every, axis=0).max()) and r.rule_band > 0.3
-    assert any("impact rule decides" in text for text in found.verdict.violated)
+    assert any("depends on the impact rule" in text for text in found.verdict.violated)
     assert found.arrays["stripe_rule_most"].data == pytest.approx(every.max(axis=0))
 
 

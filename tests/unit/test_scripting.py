@@ -231,7 +231,7 @@ def test_figures_are_objects(tmp_path: Path) -> None:
     assert len(drawn) and drawn[next(iter(drawn))].axes and repr(drawn).startswith("<Drawn: ")
     assert drawn._repr_html_().count("<img") == len(drawn)
     assert all(path.stat().st_size > 1000 for path in drawn.save(tmp_path / "figures", "svg"))
-    with pytest.raises(KeyError, match="there are tilt, rocking"):
+    with pytest.raises(KeyError, match="the names are: tilt, rocking"):
         run.plot("sla")
     assert len(repr(run)) < 200
 

@@ -152,9 +152,9 @@ def test_a_conditional_period_outside_the_band_is_refused(suite: Path) -> None:
 
 def test_a_factor_cut_to_its_bound_is_stated(suite: Path) -> None:
     first = members_of(suite, count=6, greatest_factor=0.3)[0]
-    cut = [note for note in first.notes if "cut to greatest_factor = 0.3" in note]
+    cut = [note for note in first.notes if "limited to greatest_factor = 0.3" in note]
     assert first.factor == 0.3 and first.unbounded > 0.3 and len(cut) == 1 and f"({first.unbounded:.3g})" in cut[0]
-    assert not any("cut to" in note for note in members_of(suite, greatest_factor=100.0, least_factor=1e-4)[0].notes)
+    assert not any("limited to" in note for note in members_of(suite, greatest_factor=100.0, least_factor=1e-4)[0].notes)
 
 
 def test_the_factor_refers_to_the_ground_also_under_a_floor(suite: Path) -> None:

@@ -207,7 +207,7 @@ def test_a_membrane_is_a_floor(tmp_path):
     [
         ([{"name": "back", "support": "fixed"}], "'back': the file has no such group; its groups are front, ground, side"),
         ([{"name": "front", "thickness": 0.2}], "the structure has no support: give a group `support`"),
-        ([{"name": "ground", "thickness": 0.2}], "group 'ground': thickness belongs to elements"),
+        ([{"name": "ground", "thickness": 0.2}], "group 'ground': thickness is a key for elements"),
         ([{"name": "ground"}], "this group has no properties"),
         ([{"name": "front", "material": "steel"}, {"name": "ground", "support": "fixed"}], r"no \[materials.steel\]"),
         ([{"name": "front", "membrane": True}, {"name": "ground", "support": "fixed"}], "a membrane must be horizontal"),
@@ -237,7 +237,7 @@ def test_files_that_do_not_fit_are_reported(tmp_path):
     with pytest.raises(BadGeometry, match=r"no\.msh: this is not a mesh"):
         read(tmp_path / "no.msh", ground)
     flat = written(tmp_path, "vtu")
-    with pytest.raises(BadGeometry, match="groups belong to shells"):
+    with pytest.raises(BadGeometry, match="groups is only for shells"):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).mesh()
     with pytest.raises(BadGeometry, match=r"remove mesh\.size"):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).shell(ShellOptions(size=0.5))

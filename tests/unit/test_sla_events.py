@@ -489,7 +489,7 @@ def test_refusals(path, value, says) -> None:
         ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
         ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
         ("analysis.0.reference", [], "at least 1, found 0"),
-        ("material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
+        ("material", {"young": 1e9, "tensile_strength": 1e5}, "require each other"),
         ("material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
         ("supports.held", [{"fix": "x"}], "the place is missing"),
         ("supports.held", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),

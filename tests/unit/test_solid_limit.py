@@ -242,7 +242,7 @@ def test_tilt_reports_refuses_and_draws(tmp_path) -> None:
     for name in ("figures/tilt-mechanism.png", "figures/tilt-rose.png", "mechanism.glb", "mechanism.pvd", "mechanism/frame_0000.vtu"):
         assert (tmp_path / "out" / name).stat().st_size > 100
     dome = {"kind": "dome", "radius": 5, "thickness": 0.5, "rings": 5, "lunes": 8}
-    assert "cannot take fracture into account" in run(dome, fracture=True).reason
+    assert "cannot include fracture" in run(dome, fracture=True).reason
     strong = make_deck({"structure": dome, "material": {"compressive_strength": 1e6}, "analysis": {"kind": "tilt"}})
     assert "compressive_strength" in run_analyses(Context(strong, threads=1))[0].reason
 

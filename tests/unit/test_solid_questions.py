@@ -147,6 +147,17 @@ def test_a_push_beyond_the_interval_is_refused() -> None:
         states_of(limit, 0.9).central()
 
 
+def test_the_thrust_on_the_ground_of_one_block_is_its_push() -> None:
+    """A contact under the middle has no direction outward: the default section takes that of the load, a given one needs `toward`."""
+    block = {"kind": "block", "width": 1.0, "height": 3.0, "depth": 0.5}
+    found = run(block, kind="thrust", direction=30.0, gamma=0.1).results
+    ground = next(s for s in found.sections if s.name == "ground")
+    weight = 1.0 * 3.0 * 0.5 * 2000.0 * GRAVITY
+    assert max(abs(ground.least_N), abs(ground.greatest_N)) == pytest.approx(0.1 * weight, rel=1e-6)
+    refused = run(block, kind="thrust", direction=30.0, section=[{"name": "a", "joints": ["ground"]}])
+    assert refused.status == "refused" and "give toward" in refused.reason
+
+
 @pytest.mark.parametrize(
     ("section", "words"),
     [
@@ -161,10 +172,10 @@ def test_wrong_sections_are_refused(section: dict[str, Any], words: str) -> None
 
 def test_keys_of_the_plane_are_refused_in_space() -> None:
     assert "thrust of solids cannot include chain" in str(run(DOME, kind="thrust", chain="arch").reason)
-    assert "sweep of solids cannot take fracture" in str(
+    assert "sweep of solids cannot include fracture" in str(
         run(DOME, kind="sweep", vary="thickness", start=0.4, stop=0.5, fracture=True).reason
     )
-    assert "belongs to blocks in space" in str(run(ARCH, kind="thrust", section=[{"name": "a", "x": 0.0}]).reason)
+    assert "is only for blocks in space" in str(run(ARCH, kind="thrust", section=[{"name": "a", "x": 0.0}]).reason)
 
 
 def test_a_sweep_of_an_extruded_arch_is_that_of_its_section() -> None:

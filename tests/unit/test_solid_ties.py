@@ -250,10 +250,10 @@ def test_a_deck_with_hoops() -> None:
         ({"start": [9.0, 1.0], "ground": [12.0, 1.0]}, "for blocks in space"),
         ({"start": [0.0, 0.0, 0.0], "hoop": True}, "between two bed joints"),
         ({"start": [0.0, 0.0, 0.5], "ground": [0.0, 0.0, -1.0]}, "no block is at"),
-        ({"start": [0.0, 0.0, 0.5], "hoop": True, "end": [0.0, 1.0, 0.5]}, "a closed hoop has no end"),
+        ({"start": [0.0, 0.0, 0.5], "hoop": True, "end": [0.0, 1.0, 0.5]}, "a closed hoop takes none of the keys"),
         ({"start": [0.0, 0.5], "hoop": True}, "where z is its height"),
         ({"start": [9.0, 0.0, 1.0], "ground": [12.0, 1.0]}, "the same number of coordinates"),
-        ({"start": [9.0, 0.0, 1.0], "ground": [12.0, 1.0, 0.0], "bonded": True}, "belongs to a hoop"),
+        ({"start": [9.0, 0.0, 1.0], "ground": [12.0, 1.0, 0.0], "bonded": True}, "is only for a hoop"),
     ],
 )
 def test_what_is_wrong_is_refused(tie: dict[str, Any], told: str) -> None:

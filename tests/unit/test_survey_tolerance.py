@@ -25,7 +25,7 @@ def test_a_gap_changes_no_capacity_in_silence() -> None:
     closed, apart = run({"block": leaning(0.0)}), run({"block": leaning(3e-4)})
     assert closed.warnings == [] and closed["collapse_acceleration_g"] > 1.1 * apart["collapse_acceleration_g"]
     told, both = apart.warnings
-    for words in ("'pier' and 'buttress' are 0.3 mm apart", "x = 1 m", 'contact_tolerance = "0.31 mm" would close it'):
+    for words in ("'pier' and 'buttress' are 0.3 mm apart", "x = 1 m", 'contact_tolerance = "0.31 mm" would close this gap'):
         assert words in told
     mended = run({"block": leaning(3e-4), "contact_tolerance": "0.31 mm"})
     assert mended["collapse_acceleration_g"] == pytest.approx(closed["collapse_acceleration_g"], rel=1e-3)
@@ -87,7 +87,7 @@ def test_random_surveys_give_a_band() -> None:
             "analysis": {"kind": "imperfections"},
         }
     )
-    assert "give the deviation" in run_analyses(Context(arch, threads=1))[0].reason
+    assert "give the key deviation" in run_analyses(Context(arch, threads=1))[0].reason
     assert "1/4 of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
 
 

@@ -107,7 +107,7 @@ def test_a_crowd_of_blocks_in_one_place_is_refused_with_the_bound(tmp_path: Path
     with pytest.raises(BadGeometry, match=r"1000 outlines.*more than 100,000 pairs"):
         Blocks(kind="blocks", file="b.json").assembly(2300.0, tmp_path)
     (tmp_path / "b.json").write_text(json.dumps({"blocks": blocks[:3]}))
-    with pytest.raises(BadGeometry, match="3 overlaps: 'b0' and 'b1' overlap by 500 mm"):
+    with pytest.raises(BadGeometry, match="3 overlaps: blocks 'b0' and 'b1' overlap by 500 mm"):
         Blocks(kind="blocks", file="b.json").assembly(2300.0, tmp_path)
 
 
@@ -154,7 +154,7 @@ def test_check_makes_buildings_that_are_no_surveys_too(tmp_path: Path) -> None:
     assert found.exit_code == 2 and "vault.toml:1: structure: buttress: " in found.output
     deck.write_text(text.format("") + '[[joints.types]]\njoints = ["none"]\nfriction = 0.3\n')
     found = CliRunner().invoke(app, ["check", str(deck)])
-    assert found.exit_code == 2 and "joint 'none' does not exist" in found.output
+    assert found.exit_code == 2 and "joint 'none', which does not exist" in found.output
 
 
 def test_joint_types_of_layers_reach_every_strategy() -> None:

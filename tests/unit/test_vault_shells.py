@@ -238,13 +238,13 @@ def test_limits_of_a_vault_are_reported(tmp_path, stages, change, words):
 @pytest.mark.parametrize(
     "keys, words",
     [
-        ({"settlements": [{"out": 0.01}]}, "either wall"),
+        ({"settlements": [{"out": 0.01}]}, "either the key wall"),
         ({"settlements": [{"foot": "left"}]}, "does not move"),
         ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "give two stages"),
         ({"stages": [{"name": "a"}, {"name": "a"}]}, "occurs twice"),
         ({"stages": [{}], "directions": ["+", "-"]}, "together with stages"),
         ({"stages": [{}], "without_equilibrium": "proportional"}, 'without_equilibrium = "proportional" cannot be used together with'),
-        ({"main_stage": "a"}, "there are no `stages`"),
+        ({"main_stage": "a"}, "without stages"),
     ],
 )
 def test_wrong_stages_are_reported(keys, words):

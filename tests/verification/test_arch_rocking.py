@@ -196,7 +196,7 @@ def test_bad_arguments_are_refused(oppenheim) -> None:
         rocking.history(oppenheim.body, rocking.Ground(samples=np.array([[0.0, np.nan, 1.0]]), step=0.1), 1.0, 0.1)
     with pytest.raises(ValueError, match="positive"):
         rocking.history(oppenheim.body, ground, -1.0, 0.1)
-    with pytest.raises(IndexError, match="run_body names 1"):
+    with pytest.raises(IndexError, match="run_body contains the index 1"):
         rocking.ensemble([oppenheim.body], [ground], [1], [0], 1.0, 1.0)
 
 

@@ -54,21 +54,32 @@ class Material(Table):
     compressive_coupling: float = key(
         -1.0,
         (
-            "coupling of the compression along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c "
-            "t^2 / (fx fy) = 1"
+            "coupling of the compression along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + "
+            "(sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed joints; t: shear stress; fx, "
+            "fy: compressive strengths; c: the key compressive_shear"
         ),
         source="-1.05 of Page's panels, Lourenco (1996), from memory",
         gt=-2,
         lt=2,
     )
     compressive_shear: float = key(
-        1.2, "c of the same criterion", source="1.20 of Page's panels, Lourenco (1996), from memory", gt=0, le=20
+        1.2,
+        ("weight of the shear stress: c of the criterion of compressive_coupling"),
+        source="1.20 of Page's panels, Lourenco (1996), from memory",
+        gt=0,
+        le=20,
     )
     crushing_energy: Energy | None = key(
         None, "crushing energy per area, Gc; sequentially linear analysis includes crushing only if this value is given", gt=0
     )
     crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
-    lateral_reduction: bool = key(False, "reduce ft under lateral compression: s1/ft - s2/fc <= 1; requires compressive_strength")
+    lateral_reduction: bool = key(
+        False,
+        (
+            "reduce the tensile strength ft under lateral compression: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension "
+            "positive; fc: compressive strength); requires compressive_strength"
+        ),
+    )
     confinement: float = key(
         0.0, "increase of the compressive strength per lateral pressure; 4.1 for concrete", source="Richart and others (1928)", ge=0, le=10
     )
@@ -87,7 +98,7 @@ class Material(Table):
             if self.crushing_energy is None:
                 raise ValueError("compressive_strength_parallel needs compressive_strength and crushing_energy")
             if self.confinement:
-                raise ValueError("confinement requires a single compressive strength: remove compressive_strength_parallel")
+                raise ValueError("the key confinement requires a single compressive strength: remove compressive_strength_parallel")
         self._check_bedding()
         return self
 
@@ -103,7 +114,7 @@ class Material(Table):
         if self.tensile_strength is None:
             raise ValueError("tensile_strength_parallel requires tensile_strength, the strength across the bed joints")
         if self.lateral_reduction:
-            raise ValueError("lateral_reduction requires a single tensile strength: remove tensile_strength_parallel")
+            raise ValueError("the key lateral_reduction requires a single tensile strength: remove tensile_strength_parallel")
         most = (self.tensile_strength * self.tensile_strength_parallel) ** 0.5
         if self.shear_strength is not None and self.shear_strength > most * (1.0 + 1e-9):
             raise ValueError(
@@ -168,13 +179,18 @@ class Joints(Table):
     shear_stiffness: Stiffness | None = key(None, "shear stiffness per area; default: shear_ratio times the normal stiffness", gt=0)
     shear_ratio: float = key(1.0, "shear over normal stiffness", gt=0, le=10)
     stiffness_rule: Literal["consistent", "thesis"] = key(
-        "consistent", "rule for the default stiffness: E/L, or E B/L as printed in the thesis", source="thesis Eqs 7.10-7.12"
+        "consistent",
+        (
+            "rule for the default stiffness. consistent: E/L; thesis: E B/L, as printed in the thesis. E: elastic modulus; "
+            "L: length of block that a joint represents; B: width of the joint"
+        ),
+        source="thesis Eqs 7.10-7.12",
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
         "edge",
         (
-            "impact frequency at which the damping is critical; or, for a single block, the damping that gives its "
-            "coefficient of restitution (found by trial runs)"
+            "impact frequency at which the damping is critical: edge, corner or rotation. restitution, for a single "
+            "block: the damping that gives its coefficient of restitution (found by trial runs)"
         ),
         source="thesis Eqs 7.13, 7.17-7.20",
     )
@@ -228,8 +244,8 @@ class Supports(Table):
     foundation: Literal["winkler", "two-spring"] = key(
         "winkler",
         (
-            "for `rocking`: springs of this stiffness along the whole base, or half of the stiffness under each edge; the "
-            "springs carry no tension"
+            "for `rocking`: place of the springs of the ground. winkler: springs of this stiffness along the whole "
+            "base; two-spring: half of the stiffness under each edge. The springs carry no tension"
         ),
         source="Psycharis and Jennings 1983",
     )
@@ -260,14 +276,14 @@ class Supports(Table):
     @model_validator(mode="after")
     def _thrown_back_by_a_wall(self) -> "Supports":
         if self.rebound is not None and self.abutting_wall is None:
-            raise ValueError("rebound requires abutting_wall, the side of the wall")
+            raise ValueError("the key rebound requires abutting_wall, the side of the wall")
         return self
 
     @model_validator(mode="after")
     def _gives_way(self) -> "Supports":
         for name in ("foundation", "damping_ratio"):
             if name in self.model_fields_set and self.stiffness is None:
-                raise ValueError(f"{name} requires stiffness, the stiffness of the ground")
+                raise ValueError(f"{name} requires the key stiffness, the stiffness of the ground")
         return self
 
 
@@ -286,6 +302,10 @@ class Initial(Table):
     """The state from which dynamics start."""
 
     rotation_ratio: float = key(
-        0.0, "initial rotation divided by the critical rotation of its side; positive towards +x", source="thesis 6.2.2", gt=-1, lt=1
+        0.0,
+        ("ratio of the initial rotation to the critical rotation on the same side; positive towards +x"),
+        source="thesis 6.2.2",
+        gt=-1,
+        lt=1,
     )
     movements: list[Movement] = key([], "supports that move, [[initial.movements]]", max_length=100)

@@ -39,7 +39,7 @@ class Tie(Table):
         None, "name of the block at `end`; required if this point lies between two blocks or outside all blocks", max_length=80
     )
     works_in: Literal["tension", "compression", "both"] = key(
-        "tension", "senses in which it acts: a tie is slack in compression, a strut in tension; a spring acts in both senses"
+        "tension", "senses in which the tie acts: a tie is slack in compression, a strut in tension; a spring acts in both senses"
     )
     yield_force: Force | None = key(
         None, "yield force, which remains constant after yielding; without this value the tie never yields", gt=0
@@ -58,19 +58,21 @@ class Tie(Table):
     def _whole(self) -> "Tie":
         if self.hoop:
             if self.end is not None or self.ground is not None or self.via or self.start_stone or self.end_stone:
-                raise ValueError("hoop: a closed hoop has no end, ground, via or block names; `start` gives its height")
+                raise ValueError(
+                    "hoop: a closed hoop takes none of the keys end, ground, via, start_stone and end_stone; `start` gives its height"
+                )
             if len(self.start) != 3:
                 raise ValueError("start: a hoop requires [x, y, z], where z is its height")
         elif (self.end is None) == (self.ground is None):
-            raise ValueError("expected either end (in another block) or ground")
+            raise ValueError("expected either the key end (anchorage in another block) or the key ground")
         if len({len(point) for point in (self.start, *self.via, *([] if self.hoop else [self.far]))}) != 1:
             raise ValueError("start: expected the same number of coordinates for all points of a tie")
         if self.bonded and not self.hoop and not self.via:
-            raise ValueError("bonded belongs to a hoop, or to a chain with `via`")
+            raise ValueError("the key bonded is only for a hoop, or for a chain with `via`")
         if self.start == self.far:
             raise ValueError("start: both ends have the same position")
         if self.ground is not None and self.end_stone is not None:
-            raise ValueError("end_stone belongs to end, not to ground")
+            raise ValueError("end_stone can be given only with the key end, and this tie has the key ground: remove end_stone")
         if self.prestress > self.most or self.prestress < self.least:
             raise ValueError(
                 f"prestress: {self.prestress:g} N exceeds the range that the tie can carry, {self.least:g} to {self.most:g} N "

@@ -87,7 +87,7 @@ def line_frequencies(lines: int | Sequence[float], spacing: str, band: tuple[flo
         return np.linspace(*band, lines) if spacing == "uniform" else np.geomspace(*band, lines)
     given = np.array(lines, dtype=float)
     if given.ndim != 1 or len(given) < 2 or np.any(np.diff(given) <= 0.0) or given[0] <= 0.0:
-        raise ValueError("lines must be at least two increasing frequencies above zero")
+        raise ValueError("the key lines must contain at least two increasing frequencies above zero")
     return given
 
 
@@ -150,7 +150,7 @@ def generated(
     table = load_spectrum(spectrum, folder)
     frequency = line_frequencies(lines, spacing, table.band)
     if frequency[-1] >= 0.5 / step:
-        raise ValueError(f"a line at {frequency[-1]:g} Hz requires a time step below {0.5 / frequency[-1]:g} s")
+        raise ValueError(f"a spectral line at {frequency[-1]:g} Hz requires a time step below {0.5 / frequency[-1]:g} s")
     points = int(np.ceil((window.lead + duration + window.tail) / step - 1e-9)) + 1
     shape = envelope_parameters(window.envelope, duration, window.lead, window.rise, window.decay)
     envelope = core.envelope(window.envelope, shape, points, step)

@@ -47,7 +47,7 @@ class Harmonic(Motion):
     @model_validator(mode="after")
     def _one_envelope(self) -> "Harmonic":
         if self.ramp > 0.0 and self.carrier is not None:
-            raise ValueError("give ramp or carrier, not both")
+            raise ValueError("give either the key ramp or the key carrier, not both")
         return self
 
 
@@ -57,7 +57,10 @@ class Pulse(Motion):
     kind: Literal["pulse"]
     starter: ClassVar = {"shape": '"ricker"'}
     shape: Literal["rectangular", "half-sine", "cosine", "ricker"] = key(
-        about="shape of the pulse: constant, half of a sine, one full cosine, or the symmetric Ricker wavelet"
+        about=(
+            "shape of the pulse. rectangular: constant; half-sine: half of a sine; cosine: one full cosine; ricker: the "
+            "symmetric Ricker wavelet"
+        )
     )
     amplitude: Acceleration = key(about="greatest acceleration")
     period: Time = key(about="full period T_p (a half-sine lasts half of it); for a rectangular pulse, the duration", gt=0)
@@ -82,8 +85,8 @@ class Treated(Motion):
     columns: Literal["series", "components"] | None = key(
         None,
         (
-            "meaning of several columns in a file without times: the rows form one series, or each column is a component, "
-            "selected by `channel`"
+            "meaning of several columns in a file without times. series: the rows form one series; components: each "
+            "column is a component, selected by `channel`"
         ),
     )
     scale: float = key(1.0, "factor on the acceleration, applied after all other processing")
@@ -106,7 +109,7 @@ class Treated(Motion):
     @model_validator(mode="after")
     def _one_target(self) -> "Treated":
         if sum(v is not None for v in (self.pga, self.pgv, self.arias, self.sa)) > 1:
-            raise ValueError("give only one of pga, pgv, arias and sa")
+            raise ValueError("give only one of the keys pga, pgv, arias and sa")
         if (self.sa is None) != (self.sa_period is None):
             raise ValueError("sa and sa_period go together")
         if self.low_cut is not None and self.high_cut is not None and self.low_cut >= self.high_cut:
@@ -125,7 +128,10 @@ class Components(Table):
     second_channel: int | str | None = key(None, "channel of the other horizontal component, in `second` or in `file`")
     angle: Angle | None = key(
         None,
-        ("angle from the first component to the plane of the structure; the motion in this plane is first cos(angle) + second sin(angle)"),
+        (
+            "angle from the first component to the plane of the structure. The motion in this plane is the first component "
+            "times cos(angle) plus the second component times sin(angle)"
+        ),
     )
     vertical: str | None = key(None, "file of the vertical component", min_length=1, max_length=1024)
     vertical_channel: int | str | None = key(None, "channel of the vertical component, in `vertical` or in `file`")
@@ -133,7 +139,7 @@ class Components(Table):
     @model_validator(mode="after")
     def _plane(self) -> "Components":
         if (self.angle is not None) != (self.second is not None or self.second_channel is not None):
-            raise ValueError("angle requires second or second_channel, the other horizontal component")
+            raise ValueError("the key angle requires second or second_channel, which gives the other horizontal component")
         return self
 
 
@@ -210,9 +216,9 @@ class Suite(Treated):
     @model_validator(mode="after")
     def _one_source(self) -> "Suite":
         if any("*" in name or "?" in name for name in self.files or []):
-            raise ValueError('files takes names without wildcards; for wildcards give pattern = "records/*.AT2"')
+            raise ValueError('the key files takes names without wildcards; for wildcards give pattern = "records/*.AT2"')
         if sum(v is not None for v in (self.files, self.pattern, self.folder, self.records)) != 1:
-            raise ValueError("give only one of files, pattern, folder and records")
+            raise ValueError("give only one of the keys files, pattern, folder and records")
         return self
 
 
@@ -233,9 +239,17 @@ class Generated(Motion):
         source="thesis Fig. 6-5",
     )
     lines: int | list[Frequency] = key(15, "number of sine lines over the band of the spectrum, or their frequencies")
-    spacing: Literal["log", "uniform"] = key("log", "spacing of the lines: equal ratios, or equal distances")
+    spacing: Literal["log", "uniform"] = key(
+        "log", ("spacing of the spectral lines: equal ratios of the frequencies (log), or equal distances (uniform)")
+    )
     scaling: Literal["thesis", "fourier", "energy"] = key(
-        "energy", "rule for the amplitude of a line: factor |X| df, 2 |X| df, or 2 |X| sqrt(df / int P^2 dt)", source="thesis Eq. 6.6"
+        "energy",
+        (
+            "rule for the amplitude of each spectral line. thesis: factor |X| df; fourier: 2 |X| df; energy: 2 |X| sqrt(df "
+            "/ int P^2 dt), which keeps the energy of the spectrum. |X|: amplitude of the Fourier spectrum, df: frequency "
+            "step, P: envelope, factor: the key `factor`"
+        ),
+        source="thesis Eq. 6.6",
     )
     factor: float = key(1.0, 'factor on the amplitudes; with scaling = "thesis", also the unit of the frequency step', gt=0)
     dispersion: float = key(
@@ -245,10 +259,17 @@ class Generated(Motion):
         "arctangent", "envelope of the amplitude over time", source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974"
     )
     rise: Time | None = key(
-        None, ("width of the rise of the arctangent envelope (0.1 s); for other envelopes, time to full amplitude (0.15 or 0.2 t_d)"), gt=0
+        None,
+        (
+            "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time to full amplitude "
+            "(default 0.15 or 0.2 times t_d)"
+        ),
+        gt=0,
     )
     decay: Time | None = key(
-        None, "duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d down to 5 % (0.4 t_d)", gt=0
+        None,
+        ("duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d, down to 5 % (default 0.4 times t_d)"),
+        gt=0,
     )
     lead: Time = key(0.5, "time before t_d, t_0", ge=0, le=60)
     tail: Time = key(2.0, "time after t_d", ge=0, le=600)
@@ -284,5 +305,5 @@ class Compatible(TargetSpectrum, Motion):
         if self.code == "ASCE7" and self.damping != 0.05:
             raise ValueError("the spectrum of ASCE 7 is defined for 5 % damping only")
         if self.longest <= 2.0 * self.shortest:
-            raise ValueError("longest must be more than twice shortest")
+            raise ValueError("the period longest must be more than twice the period shortest")
         return self

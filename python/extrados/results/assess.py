@@ -81,7 +81,7 @@ class Probe(ResultModel):
     strategy: str = fact("kind of analysis")
     changed: str = fact("difference from the deck")
     outcome: Outcome = fact("its verdict")
-    value: float | None = fact("demand divided by capacity of this further run; null if not known")
+    value: float | None = fact("ratio of demand to capacity of this further run; null if not known")
 
 
 class TurningValue(ResultModel):
@@ -93,26 +93,32 @@ class TurningValue(ResultModel):
     unit: str = fact("unit of the value")
     low: float = fact("a value below")
     high: float = fact("a value above")
-    tilt_base: float | None = fact("safety factor by limit analysis at the value in the deck; null without a result")
-    rocking_base: float | None = fact("safety factor by rocking at the value in the deck; null without a result")
-    tilt_low: float | None = fact("safety factor by limit analysis at the lower value; null without a result")
-    tilt_high: float | None = fact("safety factor by limit analysis at the higher value")
-    rocking_low: float | None = fact("safety factor by rocking at the lower value")
-    rocking_high: float | None = fact("safety factor by rocking at the higher value")
-    tilt_turns: float | None = fact("value at which the verdict of limit analysis changes; null if no calculated value changes the verdict")
-    rocking_turns: float | None = fact("value at which the verdict of rocking changes; null if no calculated value changes the verdict")
+    tilt_base: float | None = fact("safety factor by limit analysis with the value of this key in the deck; null without a result")
+    rocking_base: float | None = fact("safety factor by rocking with the value of this key in the deck; null without a result")
+    tilt_low: float | None = fact("safety factor by limit analysis with the lower value of this key, `low`; null without a result")
+    tilt_high: float | None = fact("safety factor by limit analysis with the higher value of this key, `high`")
+    rocking_low: float | None = fact("safety factor by rocking with the lower value of this key, `low`")
+    rocking_high: float | None = fact("safety factor by rocking with the higher value of this key, `high`")
+    tilt_turns: float | None = fact(
+        "value of this key at which the verdict of limit analysis changes; null if no calculated value changes the verdict"
+    )
+    rocking_turns: float | None = fact(
+        "value of this key at which the verdict of rocking changes; null if no calculated value changes the verdict"
+    )
     dem_base: float | None = fact(
-        "ratio of the displacement by discrete elements to the displacement that counts as collapse, at the value in the "
-        "deck; null without a run"
+        "ratio of the displacement by discrete elements to the displacement that counts as collapse, with the value of "
+        "this key in the deck; null without a run"
     )
     dem_low: float | None = fact(
-        "ratio of the displacement by discrete elements to the displacement that counts as collapse, at the lower value"
+        "ratio of the displacement by discrete elements to the displacement that counts as collapse, with the lower "
+        "value of this key, `low`"
     )
     dem_high: float | None = fact(
-        "ratio of the displacement by discrete elements to the displacement that counts as collapse, at the higher value"
+        "ratio of the displacement by discrete elements to the displacement that counts as collapse, with the higher "
+        "value of this key, `high`"
     )
     dem_turns: float | None = fact(
-        "value at which the verdict of discrete elements changes; null if no calculated value changes the verdict, or if "
+        "value of this key at which the verdict of discrete elements changes; null if no calculated value changes the verdict, or if "
         "the response is chaotic"
     )
 

@@ -27,8 +27,8 @@ class Check(ResultModel):
     )
     scope: str = fact("element, restraint and height to which the rule applies")
     alternative: str = fact(
-        "group of alternative checks: of the checks with the same code, limit state and word here, one that is satisfied "
-        "suffices; empty if this check must be satisfied by itself"
+        "name of a group of alternative checks. If one check with this code, limit state and group is satisfied, the "
+        "others of the group are not required. Empty if this check must be satisfied by itself"
     )
     reason: str = fact("reason why the rule does not apply; empty if it applies")
 
@@ -119,7 +119,8 @@ class Checked(KindResults):
                     f"dilatancy does not satisfy it. The outcome is open.{remarks}"
                 )
             return judge(
-                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
+                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand "
+                f"{worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
                 worst.demand,
                 worst.capacity,
@@ -212,7 +213,7 @@ class LocalMechanism(Checked):
     )
     participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1")
     participating_part: float = fact(
-        "e*: participating mass ratio, g M* divided by the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
+        "e*: participating mass ratio, the ratio of g M* to the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
     )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(

@@ -51,7 +51,7 @@ class Convergence(ResultModel):
     most_rounds: int = fact("greatest number of iterations of the contact solver in a step")
     factorisations_per_step: float = fact("sparse factorisations per step")
     worst_violation_ratio: float = fact(
-        "greatest violation of the contact law, as a velocity, divided by the velocity that gravity adds in one time step"
+        "ratio of the greatest violation of the contact law, as a velocity, to the velocity that gravity adds in one time step"
     )
     worst_violation_s: float = fact("when that was", "s")
 
@@ -64,7 +64,8 @@ class TieRun(ResultModel):
     end_force_N: float = fact("force at the end", "N")
     plastic_elongation_m: float = fact("plastic elongation at the end; shortening is negative", "m")
     state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
-        "state of the tie over the run: never loaded, below its yield or slip force, yielded or slipped at least once, or a viscous damper"
+        "state of the tie over the run. slack: never loaded; elastic: below its yield or slip force; yielded: yielded "
+        "or slipped at least once; viscous: a viscous damper"
     )
 
 
@@ -78,7 +79,7 @@ class BlocksRun(KindResults):
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
     stop_time_s: float = fact("when it ended", "s")
-    still_moving: bool = fact("whether this block still moved at the end of the run")
+    still_moving: bool = fact("whether the governing block still moved at the end of the run")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse (not applied to a block that only slides)", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its position at rest under self-weight", "m")
@@ -97,8 +98,8 @@ class BlocksRun(KindResults):
         "more than 1/1000, scale factors up to 1 + 1e-4 are tried too. False without this check"
     )
     perturbation_growth: float | None = fact(
-        "growth of a perturbation: the motion is scaled by 1 + 1e-6, and the greatest change of a displacement up to "
-        "collapse is divided by the displacement that counts as collapse and by 1e-6; null without this check"
+        "growth of a perturbation if the motion is scaled by 1 + 1e-6: ratio of the greatest change of a displacement "
+        "up to collapse to the displacement that counts as collapse, divided by 1e-6; null without this check"
     )
     perturbed_outcome: str | None = fact("outcome under the motion scaled by 1 + 1e-6; null without this check")
     violated: list[str] = fact("violated assumptions that were checked, one sentence each, for instance on chaotic response")
@@ -108,7 +109,9 @@ class BlocksRun(KindResults):
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
     bounces: int = fact("number of times that blocks separated from the ground or from each other")
     airborne_time_s: float = fact("longest time during which a block had no contact", "s")
-    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
+    )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
@@ -192,7 +195,9 @@ class BlocksTilt(KindResults):
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps")
-    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
+    )
     ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
@@ -220,7 +225,7 @@ class PairWork(ResultModel):
     name: str = fact("both blocks; the ground is one support")
     friction_J: float = fact("energy lost by friction", "J")
     damping_J: float = fact("energy lost in dashpots, or by impacts of rigid contacts", "J")
-    peak_force_N: float = fact("greatest force between them at an output time", "N")
+    peak_force_N: float = fact("greatest force between both blocks, over the output times", "N")
 
 
 class SolidDemRun(BlocksRun):
@@ -237,8 +242,8 @@ class SolidDemRun(BlocksRun):
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of any block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed at another point", "m")
-    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks at an output time", "N")
-    peak_base_shear_over_weight: float = fact("ratio of that force to the weight of the structure")
+    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks, over the output times", "N")
+    peak_base_shear_over_weight: float = fact("ratio of the greatest horizontal force of the ground to the weight of the structure")
     joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
 
 
@@ -265,7 +270,9 @@ class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
     label: str = fact("name of the value that was varied, or of the other solver")
-    solver: Literal["compliant", "nonsmooth"] = fact("model of the joints: springs, or rigid contacts (without stiffness)")
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
+    )
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")

@@ -59,7 +59,7 @@ class FailedElement(ResultModel):
     """An element beyond its drift limit."""
 
     element: str = fact("name of the element: wall, storey, and pier or spandrel")
-    mode: Literal["flexure", "shear"] = fact("in which it failed")
+    mode: Literal["flexure", "shear"] = fact("failure mode: flexure or shear")
     control_displacement_m: float = fact("control displacement at which the element reaches its drift limit", "m")
 
 
@@ -68,7 +68,7 @@ class FramePush(ResultModel):
 
     name: str = fact("direction, pattern and eccentricity")
     direction_deg: float = fact("on the plan", "deg")
-    sense: Literal["+", "-"] = fact("sense of the load: along the direction, or against it")
+    sense: Literal["+", "-"] = fact("sense of the load. +: along the direction; -: against it")
     pattern: str = fact("of the forces")
     eccentricity: float = fact("ratio of the accidental eccentricity to the length of the plan across the direction")
     stop: str = fact("why it ended")
@@ -91,7 +91,7 @@ class FramePush(ResultModel):
     equivalent_mass_kg: float = fact(
         "m*: sum of the products of the masses and the mode shape, which is 1 at the control displacement", "kg"
     )
-    participation_factor: float = fact("Gamma: m* divided by the sum of the masses times the squared mode shape")
+    participation_factor: float = fact("Gamma: ratio of m* to the sum of the products of the masses and the squared mode shape")
     level_mass_kg: list[float] = fact("masses on the levels, from the lowest", "kg")
     level_shape: list[float] = fact("mean of the mode shape on each level, in the sense of the load")
     storeys: list[PierLimits] = fact("limit events of the piers, for each storey of each wall")
@@ -209,7 +209,9 @@ class FrameHistory(KindResults):
     peak_drift: float = fact("greatest drift (chord rotation) of a pier")
     peak_drift_element: str = fact("that pier")
     failed: list[FailedElement] = fact("elements beyond their drift limits, in order, with the control displacement at each instant")
-    period_s: float = fact("period of the mode with the greatest participating mass in the direction, at rest", "s")
+    period_s: float = fact(
+        ("initial period (undamaged frame at rest) of the mode with the greatest participating mass in the direction of the motion"), "s"
+    )
     damping: list[float] = fact("Rayleigh damping: factor of the mass [1/s] and factor of the last tangent stiffness [s]")
     weight_N: float = fact("weight of walls and floors", "N")
     steps: int = fact("time steps")

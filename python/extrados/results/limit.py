@@ -51,7 +51,9 @@ class TieForce(ResultModel):
 
     name: str = fact("its name")
     force_N: float = fact("force in it, tension positive", "N")
-    state: Literal["slack", "carries", "yields"] = fact("state of the tie: no force, below the yield force, or at the yield force")
+    state: Literal["slack", "carries", "yields"] = fact(
+        "state of the tie. slack: no force; carries: below the yield force; yields: at the yield force"
+    )
 
 
 class ChainThrust(ResultModel):
@@ -69,7 +71,7 @@ class Fracture(ResultModel):
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
     tilt_angle_deg: float = maybe("tilt of the ground with the same effect as the collapse acceleration", "deg", source="thesis Eq. 3.1")
-    ratio: float = maybe("ratio of this collapse acceleration to that of the whole (uncracked) structure")
+    ratio: float = maybe("ratio of the collapse acceleration of the cracked structure to that of the uncracked structure")
     crack_height_m: float = maybe("height above the base at which the crack begins", "m")
     crack_height_ratio: float = maybe("ratio of the height at which the crack begins to the height of the buttress")
     resultant_from_outer_face_ratio: float = maybe("ratio of the distance between resultant and outer face to the width at the base")
@@ -93,7 +95,8 @@ class LoadPath(ResultModel):
     shear_stiffness_ratio: float = fact("ratio of shear stiffness to normal stiffness of the joints")
     collapse_acceleration_g: float | None = fact("collapse acceleration; null if the load path did not end in a collapse", "g")
     certified: bool = fact(
-        "whether the certificate is satisfied: equilibrium, |s| <= mu N and zero gap, calculated again independently of the solver"
+        "whether the certificate is satisfied: equilibrium, shear force |s| at most friction mu N, and zero gap. It is "
+        "calculated again independently of the solver"
     )
     zero_gap_g: float | None = fact("as in non_dilatant", "g")
     equilibrium_residual: float | None = fact("as in non_dilatant")
@@ -125,25 +128,28 @@ class NonDilatant(ResultModel):
     starts_g: list[float] = fact("collapse load found from each starting point; the least is the result", "g")
     spread_g: float = fact("difference between the greatest and the least load found: such states are not unique", "g")
     certified: bool = fact(
-        "whether the certificate is satisfied: equilibrium, |s| <= mu N and zero gap, calculated again independently of the solver"
+        "whether the certificate is satisfied: equilibrium, shear force |s| at most friction mu N, and zero gap. It is "
+        "calculated again independently of the solver"
     )
     zero_gap_g: float = fact(
         (
-            "|gamma - (work of friction - work of the weight)| per unit of work of the load; zero if forces and motion "
-            "belong to the same state"
+            "gap: difference between the collapse acceleration and the work of friction minus that of the weight, per "
+            "unit of work of the load; zero if forces and motion belong to the same state"
         ),
         "g",
     )
-    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the total load")
-    friction_residual: float = fact("greatest excess of |s| over mu N, divided by the total load")
-    tension_residual: float = fact("greatest tension (or compression beyond the strength), divided by the total load")
-    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest joint")
+    equilibrium_residual: float = fact(
+        "ratio of the greatest unbalanced force (or moment divided by the size) on a block to the total load"
+    )
+    friction_residual: float = fact("ratio of the greatest excess of the shear force |s| over the friction mu N to the total load")
+    tension_residual: float = fact("ratio of the greatest tension (or compression beyond the strength) to the total load")
+    overlap_residual: float = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest joint")
     complementarity_residual: float = fact(
-        "complementarity: force and motion at the same joint (a joint that presses and opens, or that sticks and "
-        "slides); the greatest over all joints of the lesser of the two"
+        "error of complementarity: force and motion at the same joint (a joint that presses and also opens, or that "
+        "sticks and also slides). At each joint the lesser of both counts; the value is the greatest of all joints"
     )
     work_residual: float = fact(
-        "relative error of the work: work of the load minus work of weight and friction, divided by the work of the load"
+        "ratio of the error of the work (work of the load minus work of weight and friction) to the work of the load"
     )
 
 
@@ -350,7 +356,7 @@ class ThrustLine(ResultModel):
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires")
     required_friction_joint: str = fact("the joint that needs it")
     greatest_eccentricity_ratio: float = fact(
-        "greatest eccentricity (distance from the middle of the joint) divided by the length of the joint"
+        "greatest ratio of the eccentricity (distance from the middle of the joint) to the length of the joint"
     )
     reactions: list[Reaction] = fact("forces of the ground")
     ties: list[TieForce] = maybe("forces of the ties")
@@ -407,7 +413,9 @@ class MovingLoad(KindResults):
     collapse_load_N: float = fact("least collapse load over all positions; for a train, the total load on the structure at collapse", "N")
     collapse_load_kN_per_m: float = fact("least collapse load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle at the governing position (least collapse load)", "m")
-    worst_place_over_span: float = fact("distance of the first axle from the left springing at the governing position, divided by the span")
+    worst_place_over_span: float = fact(
+        "ratio of the distance between the first axle and the left springing, at the governing position, to the span"
+    )
     worst_way: Literal["+x", "-x"] = fact("direction of travel of the train at the governing position")
     hinges: list[NamedHinge] = fact("hinges of the collapse mechanism at the governing position")
     sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism at the governing position")
@@ -424,7 +432,9 @@ class MovingLoad(KindResults):
     )
     load_N: float = maybe("load given in the deck", "N")
     safety_factor: float = maybe("ratio of the collapse load to the load given in the deck")
-    train: str = maybe('name of the train; "load" for axles that share one force, "train" for the axle loads of the deck')
+    train: str = maybe(
+        'name of the train; "load" if one total force is divided among the axles, "train" if the deck gives the load of each axle'
+    )
     adequacy_factor: float = maybe("multiple of the factored train (or load) that causes collapse")
     live_load_factor: float = maybe(
         "live-load factor: partial factor times dynamic factor, applied to the train before the adequacy factor"
@@ -639,21 +649,27 @@ class Survey(KindResults):
 
 
 class Imperfections(KindResults):
-    """imperfections: capacities of random surveys of the same stones, the lesser of the two senses of each."""
+    """imperfections: capacities of random geometries of the same stones, the lesser of the two senses of each."""
 
-    count: int = fact("number of random surveys")
-    deviation_m: float = fact("greatest distance of each measured point from its position in the given survey", "m")
-    given_collapse_acceleration_g: float = fact("collapse acceleration of the survey that the deck gives", "g")
+    count: int = fact("number of random geometries")
+    deviation_m: float = fact("greatest distance of each point of a random geometry from its position in the given geometry", "m")
+    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry that the deck gives", "g")
     median_collapse_acceleration_g: float = fact("median capacity", "g")
     low_collapse_acceleration_g: float = fact(
-        "5th percentile of the capacity: lower end of the band that contains 90 % of the surveys", "g"
+        "5th percentile of the capacity: lower end of the band that contains 90 % of the random geometries", "g"
     )
-    high_collapse_acceleration_g: float = fact("95th percentile of the capacity: upper end of this band", "g")
-    least_collapse_acceleration_g: float = fact("least capacity; 0 if a survey cannot stand", "g")
+    high_collapse_acceleration_g: float = fact(
+        ("95th percentile of the capacity: upper end of the band that contains 90 % of the random geometries"), "g"
+    )
+    least_collapse_acceleration_g: float = fact("least capacity; 0 if a geometry cannot stand", "g")
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
-    cannot_stand: int = fact("surveys that cannot carry their own weight, by a certificate; they count with a capacity of 0 g")
-    without_answer: int = fact("surveys for which the linear programmes gave no result; they are not counted")
-    upper_bounds: int = fact("surveys in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)")
+    cannot_stand: int = fact(
+        "number of random geometries that cannot carry their own weight, by a certificate; they count with a capacity of 0 g"
+    )
+    without_answer: int = fact("number of random geometries for which the linear programmes gave no result; they are not counted")
+    upper_bounds: int = fact(
+        "number of random geometries in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The 5th percentile of the capacities, or the given capacity if that is less, against the peak ground acceleration of the

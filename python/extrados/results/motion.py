@@ -29,9 +29,9 @@ class WaveletPulse(ResultModel):
 class DirectedPulse(ResultModel):
     """A velocity pulse in its own direction (Shahi and Baker 2014)."""
 
-    indicator: float = fact("pulse indicator: above 0 pulse-like", source="Shahi and Baker 2014")
+    indicator: float = fact("pulse indicator: above 0 the motion is pulse-like", source="Shahi and Baker 2014")
     period_s: float = fact("period of the pulse", "s")
-    angle_deg: float = fact("from the first component to the direction of the pulse, as `angle` of a record", "deg")
+    angle_deg: float = fact("angle from the first component to the direction of the pulse; same meaning as `angle` of a record", "deg")
     pgv_m_s: float = fact("peak velocity of the motion in that direction", "m/s")
     pgv_ratio: float = fact("ratio of the peak velocity of the motion without the pulse to that of the whole motion")
     energy_ratio: float = fact("ratio of the energy of the motion without the pulse to that of the whole motion")
@@ -65,7 +65,7 @@ class OneMotion(KindResults):
     impulses: list[Impulse] = fact("the strongest impulses")
     wavelet_pulse: WaveletPulse = fact("the strongest velocity pulse", source="Baker 2007")
     directed_pulses: list[DirectedPulse] = maybe(
-        "of a record with both horizontal components: up to five candidates over all directions, strongest first",
+        "for a record with both horizontal components: up to five candidate pulses over all directions, the strongest first",
         source="Shahi and Baker 2014",
     )
     vertical_pga_g: float = maybe("greatest vertical acceleration", "g")

@@ -46,7 +46,7 @@ class Conditions(ResultModel):
         "for one run: location and time at which the thrust line first passes outside a joint by more than 1 % of its length"
     )
     thrust_line_outside: float | None = maybe(
-        "for one run: greatest distance of the thrust line beyond the end of a joint, divided by the length of the "
+        "for one run: greatest ratio of the distance of the thrust line beyond the end of a joint to the length of the "
         "joint; negative if the line stays inside; null if a joint is in tension"
     )
     sliding: int = maybe("for many runs: number of runs in which blocks slide")
@@ -82,7 +82,9 @@ class RestraintForces(ResultModel):
     least_force_N: float = maybe("least force of a tie or damper; tension is positive", "N")
     greatest_force_N: float = maybe("greatest force of a tie or damper; tension is positive", "N")
     permanent_elongation_m: float = maybe("permanent elongation of a tie or damper at the end, by yield or slip", "m")
-    least_moment_Nm: float = maybe("least moment of an added hinge; positive for counter-clockwise rotation of the first block", "N*m")
+    least_moment_Nm: float = maybe(
+        ("least moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint"), "N*m"
+    )
     greatest_moment_Nm: float = maybe("greatest moment of an added hinge", "N*m")
     permanent_turn_rad: float = maybe("permanent rotation of an added hinge at the end, by yield", "rad")
 
@@ -109,7 +111,9 @@ class StackRocking(ResultModel):
 class SoftBaseRocking(ResultModel):
     """What a block on a compliant base has besides its rotation."""
 
-    foundation: Literal["winkler", "two-spring"] = fact("model of the base: springs along the whole base, or under its two edges")
+    foundation: Literal["winkler", "two-spring"] = fact(
+        "model of the base. winkler: springs along the whole base; two-spring: springs under its two edges"
+    )
     rocking_period_s: float = fact("natural period of small rocking with the whole base in contact, undamped", "s")
     vertical_period_s: float = fact("natural period of the vertical vibration, undamped", "s")
     sinking_at_rest_m: float = fact("settlement of the base under self-weight, below the centre of mass", "m")
@@ -155,14 +159,14 @@ class Rocking(KindResults):
     impacts: int = fact("number of impacts")
     impact_times_s: list[float] = fact("when they happen", "s")
     peak_rotation_rad: float = fact("greatest rotation, positive to +x", "rad")
-    peak_rotation_ratio: float = fact("greatest rotation divided by the critical rotation, beyond which gravity causes collapse")
+    peak_rotation_ratio: float = fact("ratio of the greatest rotation to the critical rotation, beyond which gravity causes collapse")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     energy_taken_up_J: float = maybe("energy dissipated by dampers and yielding restraints", "J")
     restraints: list[RestraintForces] = maybe("restraints besides self-weight")
     rebound: float = maybe("rocking against a wall: angular velocity after / before the rebound, as given or by three impacts")
-    energy_residual_ratio: float = fact("greatest error of the energy balance, divided by the energy in motion")
+    energy_residual_ratio: float = fact("ratio of the greatest error of the energy balance to the energy in motion")
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("rejected steps")
     restitution: float | None = fact(
@@ -194,8 +198,8 @@ class Rocking(KindResults):
         "perturbation of 1e-6 to 1e-4 changes the outcome"
     )
     perturbation_growth: float = fact(
-        "growth of a perturbation: greatest difference of the rotations, divided by the critical rotation, if the motion "
-        "is scaled by 1 +- 1e-6; divided by 1e-6"
+        "growth of a perturbation if the motion is scaled by 1 + 1e-6 or 1 - 1e-6: ratio of the greatest difference of "
+        "the rotations to the critical rotation, divided by 1e-6"
     )
     conditions: Conditions = maybe("check of the conditions: whether joints slide or hinges form at other joints")
     hand_over: HandOver = maybe(
@@ -233,7 +237,7 @@ class ModeCurve(ResultModel):
         "lowest amplitude that causes collapse, at each duration; null if it exceeds the cap of the deck", "g"
     )
     amplitude_ratios: list[float | None] = maybe(
-        "for a block: lowest amplitudes that cause collapse, divided by the uplift acceleration on a rigid base"
+        "for a block: ratios of the lowest amplitudes that cause collapse to the uplift acceleration on a rigid base"
     )
 
 
@@ -298,7 +302,7 @@ class FailureDomain(KindResults):
     )
     frequency_ratio: list[float] = maybe("for a block: frequency ratio omega/p of the pulses")
     pocket_begins_ratio: list[float | None] = maybe(
-        "for a block: amplitude at which the first safe region begins, divided by the uplift acceleration on a rigid base"
+        "for a block: ratio of the amplitude at which the first safe region begins to the uplift acceleration on a rigid base"
     )
     mode_names: str = maybe("for a block: names of the two modes in the literature")
 

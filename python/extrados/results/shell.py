@@ -83,7 +83,7 @@ class PushCurve(SlaCurve):
     sliding_level: str = maybe("the level that slides first")
     sliding: list[SlidingLevel] = maybe("sliding limits of all levels; not given without walls, or if friction excludes sliding")
     base_shear_coefficient: float | None = fact("capacity over the weight")
-    roof_drift: float | None = fact("roof drift: control displacement at the greatest load, divided by the height")
+    roof_drift: float | None = fact("roof drift: ratio of the control displacement at the greatest load to the height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
     walls: list[WallShare] = fact("base shear of each wall at the greatest load")
     flanges: Flanges = maybe("whether the transverse walls (flanges) contribute")
@@ -101,7 +101,9 @@ class StageOfPush(PushCurve):
 
     name: str = fact("its name, or its number")
     of: Literal["push", "settlement"] = fact("quantity")
-    prefix: str = fact("first part of the names of the arrays of this stage; empty for the stage that represents the analysis")
+    prefix: str = fact(
+        "prefix of the array names of this stage; empty for the stage whose results are reported as the results of the analysis"
+    )
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 
@@ -121,7 +123,7 @@ class Variation(ResultModel):
     factors: dict[str, float] = fact("by the deck")
     greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
     passed: bool = fact("whether that was a peak")
-    base_shear_coefficient: float | None = fact("base shear divided by the weight of this variant")
+    base_shear_coefficient: float | None = fact("ratio of the base shear to the weight of this variant")
 
 
 class Pushover(PushCurve, KindResults):

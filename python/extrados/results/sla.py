@@ -51,7 +51,7 @@ class BarForce(ResultModel):
         "force of greatest magnitude in all equilibrium states, for a bar that is attached only at its ends", "N"
     )
     state: Literal["slack", "carries", "yielded"] = fact(
-        "state of the bar at the end: slack, loaded, or beyond a tooth of its strength at some point"
+        "state of the bar at the end. slack: no force; carries: loaded; yielded: beyond a tooth of its strength at some point"
     )
 
 
@@ -84,7 +84,7 @@ class SlaCurve(ResultModel):
     crushing_events: int = fact("events of crushing")
     last_load_N: float | None = fact("load of the last event that is in equilibrium", "N")
     last_displacement_m: float | None = fact("control displacement of that event", "m")
-    energy_residual_ratio: float = fact("error of the energy balance divided by the work of the loads")
+    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the work of the loads")
     external_work_J: float | None = fact(
         "work of all loads up to the last event in equilibrium, along straight lines from event to event", "J"
     )
@@ -116,9 +116,12 @@ class SlaCurve(ResultModel):
     unbalanced_steps: int = maybe("number of these steps whose residual exceeds the tolerance; they are not equilibrium states")
     equilibrium_solutions: int = maybe("number of linear systems solved in these steps")
     equilibrium_from_m: float = maybe("control displacement at which the equilibrium iterations began", "m")
-    step_residual_ratio: float = maybe("greatest residual of a state in these steps, divided by the largest nodal force of an element")
+    step_residual_ratio: float = maybe(
+        "greatest ratio, over the states in these steps, of the residual to the largest nodal force of an element"
+    )
     step_balance_ratio: float = maybe(
-        "greatest error of the energy balance in these states, divided by the work: work of all loads minus stored and dissipated energy"
+        "greatest ratio, over these states, of the error of the energy balance (work of all loads minus stored and "
+        "dissipated energy) to the work"
     )
     released_energy_J: float = maybe(
         "energy released as motion in these steps when the load drops to another equilibrium; part of dissipated_energy_J", "J"
@@ -159,7 +162,9 @@ class SlaStage(SlaCurve):
     """One stage of several; loads are those in the direction of its own, with what stages before have left on."""
 
     name: str = fact("its name, or its number")
-    prefix: str = fact("first part of the names of the arrays of this stage; empty for the stage that represents the analysis")
+    prefix: str = fact(
+        "prefix of the array names of this stage; empty for the stage whose results are reported as the results of the analysis"
+    )
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 
@@ -186,7 +191,7 @@ class Comparison(ResultModel):
     inside_ratio: float | None = fact(
         "share of the measured points at which the envelope lies between the least and the greatest measured load"
     )
-    half_band_ratio: float = fact("mean half width of the measured band, divided by the mean measured load")
+    half_band_ratio: float = fact("ratio of the mean half width of the measured band to the mean measured load")
 
 
 class Sla(SlaCurve, KindResults):

@@ -14,8 +14,12 @@ class OpenContact(ResultModel):
 
     joint: int = fact("number of the contact")
     name: str = fact("its name")
-    opening: float = fact("rate at which the corner that opens fastest opens, divided by the rate of the fastest point of the mechanism")
-    sliding: float = fact("rate at which the corner that slides fastest slides, divided by the rate of the fastest point of the mechanism")
+    opening: float = fact(
+        "ratio of the rate at which the contact opens, at its fastest corner, to the velocity of the fastest point of the mechanism"
+    )
+    sliding: float = fact(
+        "ratio of the rate at which the contact slides, at its fastest corner, to the velocity of the fastest point of the mechanism"
+    )
     x_m: float = fact("x of its middle", "m")
     y_m: float = fact("y of its middle", "m")
     z_m: float = fact("z of its middle, upward", "m")
@@ -57,15 +61,19 @@ class SolidNonDilatant(ResultModel):
         "least certified state found from any initial state of stress (serves as a warning); null without one", "g"
     )
     starts_g: list[float] = fact("loads of the certified states found from each starting point; the least is used", "g")
-    spread_g: float | None = fact("greatest less least of them", "g")
+    spread_g: float | None = fact("difference between the greatest and the least of these loads", "g")
     zero_gap_g: float | None = fact(
-        "for the least state: |gamma - (work of friction - work of the weight)| per unit of work of the load", "g"
+        (
+            "for the least state: difference between the collapse acceleration and the work of friction minus that of the "
+            "weight, per unit of work of the load"
+        ),
+        "g",
     )
     equilibrium_residual: float | None = fact(
-        "for the least state: greatest unbalanced force (or moment divided by the size) on a block, divided by the weight"
+        "for the least state: ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight"
     )
-    friction_residual: float | None = fact("greatest excess of shear over friction, or greatest tension, divided by the weight")
-    overlap_residual: float | None = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
+    friction_residual: float | None = fact("ratio of the greatest excess of shear over friction, or of the greatest tension, to the weight")
+    overlap_residual: float | None = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest contact")
 
 
 class SolidTilt(KindResults):
@@ -81,7 +89,7 @@ class SolidTilt(KindResults):
     )
     load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
     least_acceleration_g: float = fact("least collapse acceleration in all directions that were searched", "g")
-    least_direction_deg: float = fact("direction of that", "deg")
+    least_direction_deg: float = fact("direction of the least collapse acceleration", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     moving_blocks: int = fact("blocks that move in the mechanism: faster than 1/1000 of the fastest block")
@@ -90,9 +98,11 @@ class SolidTilt(KindResults):
     weight_N: float = fact("weight of the structure, including the weights that rest on it", "N")
     upper_bound_g: float = fact("upper bound of the collapse acceleration, by the virtual work of the mechanism", "g")
     duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
-    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the weight")
-    friction_residual: float = fact("greatest excess of shear over friction, or greatest tension, at a corner, divided by the weight")
-    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
+    equilibrium_residual: float = fact("ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight")
+    friction_residual: float = fact(
+        "ratio of the greatest excess of shear over friction, or of the greatest tension, at a corner to the weight"
+    )
+    overlap_residual: float = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest contact")
     dilating_contacts: int = fact(
         "contacts in compression that slide in the mechanisms (along the direction, opposite, and of the least "
         "capacity). If there are any, the capacity is an upper bound (dilatant friction)"
@@ -161,27 +171,29 @@ class SolidThrust(KindResults):
     """thrust of solids: admissible states of stress at a given horizontal acceleration."""
 
     gamma_g: float = fact("horizontal acceleration along the direction", "g")
-    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
+    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
     admissible_interval_g: list[float] = fact("accelerations along the direction between which a state is admissible", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "1 divided by the least central part of the contacts that permits a state in equilibrium; null if that part is below "
-        "1 % (no horizontal demand), or if not found"
+        "geometric safety factor: 1 divided by the smallest central part of the contacts that permits a state in "
+        "equilibrium; null if this part is below 1 % (no horizontal demand), or if it was not found"
     )
-    least_part_of_joints: float | None = fact("least central part of the contacts: the part that the most central state needs")
+    least_part_of_joints: float | None = fact("central part of the contacts that the most central state needs")
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
     required_friction_contact: str | None = fact("contact with this greatest requirement")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
     dilating: bool = fact(
-        "whether contacts slide in the mechanisms at the ends of the admissible interval: these are upper bounds (dilatant friction), "
-        "and a state within friction does not prove that sliding without dilatancy is excluded"
+        "whether contacts slide in the mechanisms at the ends of the admissible interval. These ends are then upper "
+        "bounds (dilatant friction), and an admissible state does not exclude sliding without dilatancy"
     )
     ties: list[TieForce] = maybe("ties, chains and hoops in the most central state")
-    duality_gap: float = fact("greatest difference between the bounds of the thrusts, divided by the weight")
-    equilibrium_residual: float = fact("greatest unbalanced force (or moment divided by the size) on a block, divided by the weight")
-    friction_residual: float = fact("greatest excess of shear over friction, or greatest tension, at a corner, divided by the weight")
+    duality_gap: float = fact("ratio of the greatest difference between the bounds of the thrusts to the weight")
+    equilibrium_residual: float = fact("ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight")
+    friction_residual: float = fact(
+        "ratio of the greatest excess of shear over friction, or of the greatest tension, at a corner to the weight"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The part of the contacts that the most central state needs against the whole; the ratio is the safety factor."""

@@ -56,7 +56,7 @@ class Annual(KindResults):
 class RotationLimit(ResultModel):
     """The curve of rotations beyond a limit."""
 
-    rotation_ratio: float = fact("limit of the rotation, divided by the critical rotation")
+    rotation_ratio: float = fact("ratio of the limit of the rotation to the critical rotation")
     median: float = fact("median of the lognormal fragility curve for this limit, in intensity_unit")
     dispersion: float = fact("its dispersion, of the logarithm")
     median_interval: list[float | None] = fact("profile-likelihood interval of that median")
@@ -98,7 +98,7 @@ class Ensemble(Annual):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
+    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
     motions: int = fact("number of motions")
     conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
     handed_over: int = maybe(
@@ -211,7 +211,7 @@ class OverLevels(Annual):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
+    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
     median: float | None = maybe(
         "median of the lognormal curve of the probability of collapse at a level, in intensity_unit", source="Baker 2015"
     )
@@ -316,7 +316,7 @@ class OverDurations(KindResults):
     uplifted: list[int] = fact("number of motions under which rocking starts, at each duration")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
+    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
     median_pga_g: list[float | None] = fact("median peak acceleration of the motions, at each duration", "g")
     conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
     handed_over: int = maybe(
@@ -346,7 +346,7 @@ class Resonance(KindResults):
     cap_g: float = fact("cap of the ground acceleration", "g")
     cap_ratio: float = fact("cap over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    initial_rotation_ratio: float = fact("rotation at the start divided by the critical rotation")
+    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
     half_cycles: int = fact("number of changes of sign of the motion")
     collapse_time_s: float | None = fact("time after which the rotation can no longer recover", "s")
     switch_times_s: list[float] = fact("when the motion changes sign", "s")
@@ -361,12 +361,16 @@ class Resonance(KindResults):
         "collapse occurs within this number"
     )
     least_cap_g: float | None = maybe("for a block: least acceleration cap at which the rotation grows; null if the two toes differ", "g")
-    least_cap_ratio: float | None = maybe("least acceleration cap divided by the uplift acceleration")
+    least_cap_ratio: float | None = maybe("ratio of the least acceleration cap to the uplift acceleration")
     least_cap_ratios: list[list[float]] = maybe(
-        "least acceleration caps divided by the uplift acceleration, for each aspect (rows) and initial ratio", source="thesis Fig. 6-3"
+        (
+            "ratios of the least acceleration caps to the uplift acceleration, for each aspect ratio (rows) and each "
+            "initial ratio of the rotation (columns)"
+        ),
+        source="thesis Fig. 6-3",
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
-    initial_ratios: list[float] = maybe("rotations at the start, divided by the critical rotation", source="thesis Fig. 6-3")
+    initial_ratios: list[float] = maybe("ratios of the rotations at the start to the critical rotation", source="thesis Fig. 6-3")
     impulse_amplitude_g: float = maybe("for a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
     share_of_starts_that_add: dict[str, float] = maybe(
         "share of the initial states in which an impulse adds energy, for each ratio of its period to the natural period",

@@ -555,7 +555,7 @@ def read(folder: str | Path) -> Stored:
             name: {title: _array(place.absolute(), name, title, one) for title, one in group.items()} for name, group in found.items()
         }
         if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
-            raise StoreError(f"{place}: this folder contains '{min(untold)}', which is not listed in {SUMMARY}")
+            raise StoreError(f"{place}: this file contains '{min(untold)}', which is not listed in {SUMMARY}")
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, partial(dict, head), summary["analyses"], arrays)
     except files.BadFile as error:

@@ -12,8 +12,8 @@ class GoverningRange(ResultModel):
 
     first: float = fact("size from which this mechanism governs, in the unit of the intervention")
     last: float = fact("size at which another mechanism begins to govern, or at which the curve ends")
-    capacity_first: float = fact("capacity at the first size, in the unit of the target")
-    capacity_last: float = fact("capacity at the last size, in the unit of the target")
+    capacity_first: float = fact("capacity at the size from which this mechanism governs, in the unit of the target")
+    capacity_last: float = fact("capacity at the size up to which this mechanism governs, in the unit of the target")
     direction: str = fact("direction of the load: +x or -x; in space, its angle in plan")
     mechanism: str = fact("the mechanism in words")
 

@@ -15,7 +15,7 @@ class IdealisedCurve(ResultModel):
     push: str = fact("sense of the push, or name of the pushover")
     equivalent_mass_kg: float = fact("m* = sum m phi", "kg", source="NTC 2018 C7.3.4.2")
     participation_factor: float = fact("participation factor: Gamma = m*/sum m phi^2, with phi = 1 at the control point")
-    mass_ratio: float = fact("mass ratio: participating mass m* Gamma divided by the total mass")
+    mass_ratio: float = fact("mass ratio: ratio of the participating mass m* Gamma to the total mass")
     period_s: float = fact("T* = 2 pi sqrt(m*/k*)", "s")
     yield_load_N: float = fact("base shear of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
@@ -23,7 +23,8 @@ class IdealisedCurve(ResultModel):
         "ultimate displacement: displacement at collapse, up to which both curves enclose equal areas", "m"
     )
     ended_by: Literal["drop", "drift", "end"] = fact(
-        "end of the curve: base shear decreased by 20 %, all piers of one storey of a wall at their limit drift, or end of the calculation"
+        "end of the curve. drop: base shear decreased by 20 %; drift: all piers of one storey of a wall at their limit "
+        "drift; end: end of the calculation"
     )
 
 
@@ -34,7 +35,7 @@ class DisplacementCheck(ResultModel):
     limit_state: str = fact("limit state: SLO, SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; ULS")
     demand_m: float | None = fact("displacement demand at the control point; null without a demand, or beyond collapse", "m")
     capacity_m: float | None = fact("displacement capacity at the control point; null if the code gives none", "m")
-    strength_ratio: float | None = fact("strength ratio q*: elastic force divided by yield force; null without a demand")
+    strength_ratio: float | None = fact("strength ratio q*: ratio of elastic force to yield force; null without a demand")
     greatest_strength_ratio: float | None = fact("greatest q* that the code allows; null without a limit")
     factor: float | None = fact(
         "factor on the seismic action at which the check of displacement and q* is just satisfied; null if not found"

@@ -121,7 +121,10 @@ def _agreement(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         saved = style.save(fig, folder, f"{name}-agreement")
     return (
         saved,
-        "Verdicts of the strategies (diagonal) and their agreement in pairs: = same verdict, x different verdicts, ~ same verdict with different margins, ? one verdict is open.",
+        (
+            "Verdicts of the strategies (diagonal) and their agreement in pairs: = same verdict, x different verdicts, ~ "
+            "same verdict with different margins, ? one verdict is open."
+        ),
     )
 
 
@@ -212,7 +215,7 @@ def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
     ]
     told = f" Verdicts change at: {'; '.join(turned)}." if turned else " No calculated value changes a verdict."
     if any(row.dem_base is not None for row in rows):
-        told += " Discrete elements: displacement of the blocks / displacement that counts as collapse."
+        told += " Discrete elements: ratio of the displacement of the blocks to the displacement that counts as collapse."
     return saved, f"Margins when one value of the deck varies and all others are unchanged.{told}"
 
 

@@ -185,10 +185,8 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             )
         else:
             rows.append((v.label, words(v.status), "", "", "", v.reason))
-    found: list[Block] = [Words(r.statement, "answer", _foreign(words))]
-    found.append(
-        Table(_heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words"), rows, (1.6, 0.9, 1.1, 1.1, 0.9, 3.6))
-    )
+    heads = _heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words")
+    found: list[Block] = [Words(r.statement, "answer", _foreign(words)), Table(heads, rows, (1.6, 0.9, 1.1, 1.1, 0.9, 3.6))]
     found.append(
         Words(words("The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."))
     )
@@ -242,7 +240,10 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         ]
         if shaken:
             found.append(
-                Words("Values that only discrete elements consider: displacement of the blocks / displacement that counts as collapse.")
+                Words(
+                    "Values that affect only discrete elements: ratio of the displacement of the blocks to the "
+                    "displacement that counts as collapse."
+                )
             )
             head = ("key", "value", "moved", "at the value", "varied", "rotates at")
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
@@ -357,7 +358,10 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             h = run.results_of(a["name"], Assess).hazard
-            text = f"{h.told[:1].upper()}{h.told[1:]}. Static strategies use the constant acceleration {h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
+            text = (
+                f"{h.told[:1].upper()}{h.told[1:]}. Static strategies use the constant acceleration "
+                f"{h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
+            )
             if h.pulse_amplitude_g is not None and h.pulse_period_s is not None:
                 text += f" The primary impulse has {h.pulse_amplitude_g:.3g} g over {h.pulse_period_s:.3g} s."
             found.append(Words(text, lang=_foreign(words)))
@@ -435,7 +439,8 @@ def _stresses(run: Stored, a: dict[str, Any], words: Language) -> list[Block]:
         Heading(f"{words('Forces and stresses')} {words(said)}", 2),
         Words(
             words(
-                "The joints with the greatest stress. Mean stress: compressive force / (2 x distance of the force from the nearer edge x depth)."
+                "The joints with the greatest stress. Mean stress: compressive force / (2 x distance of the force from "
+                "the nearer edge x depth)."
             )
         ),
         Table(head, rows, (2.0, 1.2, 0.9, 1.1, 1.2, 1.1)),

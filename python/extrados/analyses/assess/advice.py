@@ -15,7 +15,7 @@ def size_interventions(asker: Asker, peak_g: float, rocks: bool) -> Advice | str
     """Interventions that carry the peak of the hazard, with the outcome of rocking; why there are none, in words."""
     dropped = tuple(what for what in asker.cannot_bear("tilt") if what != "[supports] abutting_wall")
     if dropped:
-        return f"limit analysis gives the sizes of interventions, and it neglects {' and '.join(dropped)}"
+        return f"limit analysis, which gives the sizes of interventions, neglects {' and '.join(dropped)}"
     try:
         result, _ = asker.ask("strengthen", {"acceleration": f"{peak_g!r} g"})
     except Refused as error:
@@ -103,7 +103,7 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
     met = [one for one in r.interventions if one.meets_target]
     for one in met:
         then = f"; afterwards {one.next_mechanism}" if one.next_mechanism else ""
-        moves = f" (under the hazard the strengthened building {rocking[one.name]})" if one.name in rocking else ""
+        moves = f" (under the hazard, the strengthened building {rocking[one.name]})" if one.name in rocking else ""
         said.append(f"{one.name}, {size_told(one)}{then}{moves}.")
     if not met:
         said.append("none: no tie and no thickness of those considered is sufficient.")

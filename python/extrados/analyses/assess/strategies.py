@@ -139,7 +139,10 @@ def _scatter(asked: Asked) -> dict[str, float]:
 
 def _probability(asked: Asked) -> Choice:
     if asked.motions > 1:
-        raise LeftOut("this strategy is not needed: the motions of the set vary already, and the row of the set gives their share")
+        raise LeftOut(
+            "this strategy is not needed: the motions of the set already vary, and the row of the set gives the share of "
+            "them that causes collapse"
+        )
     uncertain = asked.options.uncertain or _scatter(asked)
     if asked.building.restraints or asked.building.supports.abutting_wall is not None:
         raise LeftOut("the sizes of a building with restraints (ties, dampers, a wall) are not varied")
@@ -161,7 +164,7 @@ def _push(asked: Asked, direction: float) -> Choice:
     assert isinstance(plan, Plan)
     materials = [building.material, *building.materials.values()]
     if not any(m.tensile_strength is not None and m.fracture_energy is not None for m in materials):
-        raise LeftOut("the walls can crack only if the deck gives [material] tensile_strength and fracture_energy")
+        raise LeftOut("the walls can crack only if tensile_strength and fracture_energy are given in [material]")
     name = "push-x" if direction == 0.0 else "push-y"
     size = round(min(float(np.sqrt(plan.wall_area / SHELL_ELEMENTS)), OF_A_STOREY * min(plan.storeys)), 3)
     elements = plan.wall_area / size**2
@@ -238,7 +241,7 @@ def _sla(asked: Asked) -> Choice:
             return Choice({"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, loaded away from the abutting wall")
         return Choice({"directions": ["+", "-"]}, "blocks with joints that open and slide, loaded in both senses")
     if building.material.tensile_strength is None:
-        raise LeftOut("the wall can crack only if the deck gives [material] tensile_strength and fracture_energy")
+        raise LeftOut("the wall can crack only if tensile_strength and fracture_energy are given in [material]")
     size = getattr(building.structure, "size", None)
     keys: dict[str, Any] = {"directions": ["+"], "events": int(asked.share("sla") / EVENT_SECONDS), "stop_fraction": FALLEN}
     if size is not None:
@@ -328,7 +331,7 @@ _ALL: tuple[tuple[StrategyName, str, str, Axis, validity.Validity, Callable[[Ask
 )
 ALL = tuple(Strategy(name, kind, label, axis, assumed.assumes, choose) for name, kind, label, axis, assumed, choose in _ALL)
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
-SCALED = Strategy("scaled", "fragility", "rocking at scale factors of the hazard", "probability", "", _levels)
+SCALED = Strategy("scaled", "fragility", "rocking under the hazard multiplied by scale factors", "probability", "", _levels)
 
 
 def reckon_with(options: Assess, building: Building) -> set[str]:

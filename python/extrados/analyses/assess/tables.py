@@ -35,8 +35,8 @@ class Assess(Analysis):
     budget: float = key(
         60.0,
         (
-            "time limit in s: the sizes of the expensive strategies follow from it, by counted work on one core of 2024. "
-            "Steps that still run after this time are stopped and reported"
+            "time limit in s. The sizes of the expensive strategies are chosen so that their estimated time, on one "
+            "core of a computer of 2024, fits into this limit. Steps that still run after it are stopped and reported"
         ),
         ge=5,
         le=1e6,
@@ -82,8 +82,8 @@ class Assess(Analysis):
         False,
         (
             "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and rocking give new "
-            "safety factors, and the value at which each verdict changes. Discrete elements vary the joint stiffness and "
-            "move a support. This takes 25 % of the budget"
+            "safety factors, and the value at which each verdict changes. With discrete elements, the joint stiffness "
+            "varies and a support moves. This takes 25 % of the budget"
         ),
     )
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
@@ -92,8 +92,8 @@ class Assess(Analysis):
     advise: bool = key(
         True,
         (
-            "also find the least tie force and the least thickness with which the building carries the peak of the hazard as "
-            'a sustained load; only if not all strategies give the verdict "stands"'
+            'if at least one strategy does not give the verdict "stands": also find the least tie force and the least '
+            "thickness with which the building carries the peak of the hazard as a sustained load"
         ),
     )
     options: dict[Strategy, dict[str, Any]] = key(

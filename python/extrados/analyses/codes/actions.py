@@ -142,7 +142,10 @@ def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism | Verifi
                 ("analysis", name),
             )
     if getattr(options, "collapse_spectrum", None) is not None and code_of(context).jurisdiction != "NTC":
-        raise Refused("collapse_spectrum belongs to SLC, a limit state of NTC only: remove it", ("analysis", "collapse_spectrum"))
+        raise Refused(
+            ("collapse_spectrum is the spectrum of SLC, a limit state of NTC only: remove collapse_spectrum"),
+            ("analysis", "collapse_spectrum"),
+        )
 
 
 def demanded_spectrum(context: Context, model: CodeSpectrum | None, of_motion: bool) -> Spectrum | None:

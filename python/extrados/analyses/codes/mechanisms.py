@@ -122,7 +122,7 @@ def _refuse_sizes(options: LocalMechanism) -> None:
     for name, users in ONLY.items():
         if name in options.model_fields_set and getattr(options, name) and options.mechanism not in users:
             raise Refused(
-                f"mechanism '{options.mechanism}' does not use {name}: remove this key. It belongs to {', '.join(users)} only",
+                f"mechanism '{options.mechanism}' does not use {name}: remove this key, which is used only with {', '.join(users)}",
                 ("analysis", name),
             )
     if options.interlocking is not None and options.side_walls is not None:

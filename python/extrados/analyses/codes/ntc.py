@@ -222,7 +222,7 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
     if compared:
         lines.append(activation(f"NTC activation ({where})", alternative=state))
     known = (
-        ("the displacement is checked instead: q applies only if no more than the multiplier of the mechanism is known (C8.7.1.2.1.7)")
+        ("the displacement is checked instead: q applies only if the multiplier is the only known result of the mechanism (C8.7.1.2.1.7)")
         if compared
         else ""
     )
@@ -264,7 +264,8 @@ def _nonlinear(found: Capacities, state: str, spectrum: Spectrum | None, place: 
         share * found.d0,
         demand,
         "m",
-        f"NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_{state} = {share:g} d_0 >= S_D(T_{state}) at {100 * damping:.0f} %, T_{state} = {factor:g} pi "
+        f"NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_{state} = {share:g} d_0 >= S_D(T_{state}) at {100 * damping:.0f} %, "
+        f"T_{state} = {factor:g} pi "
         f"sqrt(d_{state}/a(d_{state})) [C8.7.1.{11 if late else 10}], [C8.7.1.12]",
         f"T_{state} = {period:.3f} s",
         CODE,

@@ -58,7 +58,7 @@ class CodeChecks(BuildingAnalysis):
         None, "phi = h_b/l of a pier of regular masonry; adds the check of stepped cracking", gt=0, le=5, source="Circ. 7/2019 [C8.7.1.17]"
     )
     unit_strength: Stress | None = key(None, "f_b, compressive strength of the units, which limits the shear strength of the pier", gt=0)
-    fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top of the pier: free, or fixed")
+    fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top of the pier. cantilever: free; double: fixed")
 
     def reckons_with(self, building: "Building") -> set[str]:
         """Strength and cohesion are of piers, impacts and the start of what rocks."""
@@ -78,8 +78,9 @@ class Verification(Table):
     method: Literal["N2", "capacity-spectrum", "coefficient"] | None = key(
         None,
         (
-            "method for the displacement demand: N2 (EN 1998-1: its Annex B), capacity spectrum, or the coefficient method "
-            "of ASCE 41; default: coefficient (ASCE41), N2 (others)"
+            "method for the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); capacity-spectrum: "
+            "capacity spectrum method; coefficient: coefficient method of ASCE 41. Default: coefficient (ASCE41), N2 "
+            "(others)"
         ),
     )
     secant: float = key(
@@ -99,8 +100,8 @@ class Verification(Table):
     shape: Literal["displaced", "mode"] = key(
         "displaced",
         (
-            "shape phi for the equivalent mass: elastic displacement under the horizontal forces, or the mode with the "
-            "greatest participating mass in the direction (which can be small with flexible floors)"
+            "shape phi for the equivalent mass. displaced: elastic displacement under the horizontal forces; mode: "
+            "mode with the greatest participating mass in the direction (with flexible floors this mass can be small)"
         ),
         source="Circ. 7/2019 C7.3.4.2: first mode",
     )
@@ -139,7 +140,7 @@ class Floor(Table):
     )
     arm: Length | None = key(None, "horizontal distance of the load behind the hinge; default: the middle of the wall", ge=0)
     sways: bool = key(True, "whether the mass of the load is accelerated with the wall; false if other walls restrain it")
-    thrust: Force = key(0.0, "horizontal thrust of the load at rest, outward")
+    thrust: Force = key(0.0, "outward horizontal thrust of the load at rest")
 
 
 class WallTie(Table):
@@ -156,7 +157,7 @@ class Wing(Table):
     thickness: Length = key(about="its thickness", gt=0)
     width: Length = key(about="its length", gt=0)
     foot: Length = key(0.0, "height of the foot of this part above the foot of the wall", ge=0)
-    setback: Length = key(0.0, "distance of the outer face of this part behind that of the wall", ge=0)
+    setback: Length = key(0.0, "distance by which the outer face of this part lies behind the outer face of the wall", ge=0)
 
     @model_validator(mode="after")
     def _upright(self) -> "Wing":

@@ -124,9 +124,14 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             seen.rotation, ("time", "block"), "rad", "displacements from the position at rest under self-weight; positive towards +x"
         ),
         "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
-        "hinge": Array(seen.state, ("time", "joint"), "", "0 closed, -1 hinge at the first end, 1 hinge at the second end, 2 open"),
-        "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints"),
-        "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends"),
+        "hinge": Array(
+            seen.state,
+            ("time", "joint"),
+            "",
+            ("0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open"),
+        ),
+        "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints (intrados of an arch)"),
+        "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends of the joints (extrados of an arch)"),
         "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
         **{f"{name}_energy": Array(values, ("time",), "J") for name, values in found.energy.items() if name != "leapfrog"},
         **tie_arrays(model.ties, found.tension),

@@ -89,7 +89,10 @@ def _refuse_springs(building: Building) -> None:
 
 def _refuse_restitution(building: Building) -> None:
     if not isinstance(building.blocks(), BlockAssembly):
-        raise Refused('"restitution" applies only to a single block: give damping = "edge", and vary it', ("joints", "damping"))
+        raise Refused(
+            ('damping = "restitution" applies only to a single block: give damping = "edge", and repeat the run with other damping ratios'),
+            ("joints", "damping"),
+        )
 
 
 def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: SolidAssembly) -> Iterator[Need]:

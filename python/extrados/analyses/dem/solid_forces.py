@@ -49,7 +49,7 @@ def force_arrays(model: SolidModel, run: dem3.Run) -> dict[str, Array]:
     return {
         "pair_name": Array(np.array(pair_names(model, run), dtype=object), ("pair",), "", "names of the pairs"),
         "pair_block": Array(blocks, ("pair", "side"), "", "blocks that touch as drawn, -1 the ground"),
-        "pair_force": Array(run.joint_force, ("time", "pair", "axis3"), "N", "contact force on the first block of each pair"),
+        "pair_force": Array(run.joint_force, ("time", "pair", "axis3"), "N", "contact force on the first of the two blocks of each pair"),
         "pair_friction_work": Array(run.joint_friction, ("time", "pair"), "J", "energy lost by friction so far"),
         "pair_damping_work": Array(
             run.joint_damping, ("time", "pair"), "J", "energy lost in dashpots, or by impacts of rigid contacts, so far"

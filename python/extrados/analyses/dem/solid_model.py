@@ -137,7 +137,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
     if not options.rigid or (isinstance(options, DemDomain) and options.cross_check):  # something asks how springs are
         asked += [
-            ('stiffness_rule = "thesis" belongs to plane sections', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
+            ('stiffness_rule = "thesis" is only for plane sections', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
         ]
     return [(f"dem of solids cannot include {what}: remove it", key) for what, there, key in asked if there]

@@ -25,8 +25,8 @@ WEDGED = (
     "limit analysis does not prove collapse: friction may hold a wedged block by forces that do not exist at the start of discrete elements"
 )
 JAMMED = (
-    "with rigid contacts the structure is in equilibrium by forces that self-weight does not cause, for instance at "
-    "a block wedged by friction. With springs, which start without such forces,"
+    "with rigid contacts the structure is in equilibrium, but perhaps only by forces that self-weight alone does not "
+    "produce, for instance those on a block wedged by friction. Springs start without such forces, and with springs"
 )
 #: Steps of springs in which cases/solid/dem-cross-vault comes to rest, 14 times over
 SETTLING = 20_000

@@ -78,8 +78,9 @@ class DemTable(BuildingAnalysis):
     solver: Literal["compliant", "nonsmooth"] = key(
         "compliant",
         (
-            "model of the joints: springs and dashpots, or rigid contacts without overlap or tension (Moreau 1988, Jean "
-            "1999). Rigid contacts need no stiffness and no damping, and allow large time steps. Each solver can check the "
+            "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap or "
+            "tension (Moreau 1988, Jean 1999). Rigid contacts need no stiffness and no damping, and allow large time "
+            "steps. Each solver can check the "
             "other"
         ),
     )
@@ -93,12 +94,15 @@ class DemTable(BuildingAnalysis):
         le=1,
     )
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
-    merge: Literal["none", "three-bars"] = key("none", "join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism")
+    merge: Literal["none", "three-bars"] = key(
+        "none", ("three-bars: join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism")
+    )
     fraction: float = key(0.3, "ratio of the time step to the critical time step", gt=0, le=0.9)
     time_step: Time | None = key(
         None,
         (
-            "time step. Default: the given fraction of the critical time step; for nonsmooth, 1/500 of the time of a free "
+            "time step. Default: the given fraction of the critical time step; for "
+            'solver = "nonsmooth", 1/500 of the time of a free '
             "fall over the size of the smallest block"
         ),
         gt=0,
@@ -131,7 +135,7 @@ class DemTable(BuildingAnalysis):
         """What only the other solver knows is refused."""
         given = self.model_fields_set
         if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness"})):
-            raise ValueError(f'{wrong[0]} belongs to solver = "compliant": rigid contacts have no stiffness and no damping')
+            raise ValueError(f'{wrong[0]} is used only with solver = "compliant": rigid contacts have no stiffness and no damping')
         if not self.rigid and (wrong := sorted(given & {"rebound", "quasi_static"})):
             raise ValueError(f'{wrong[0]} needs solver = "nonsmooth"')
         return self
@@ -168,7 +172,7 @@ class Dem(SpatialDem, Animated):
         ('for solver = "nonsmooth": neglect inertia, so that moving supports are followed through large displacements up to collapse'),
     )
     test: Literal["motion", "tilt"] = key(
-        "motion", "type of the test: apply the motion, or find the constant acceleration that causes collapse"
+        "motion", "type of the test. motion: apply the motion; tilt: find the constant acceleration that causes collapse"
     )
     end_time: Time | None = key(
         None,
@@ -179,7 +183,13 @@ class Dem(SpatialDem, Animated):
         gt=0,
     )
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
-    base: Literal["body-force", "moving"] = key("body-force", "representation of the ground motion; both options give the same result")
+    base: Literal["body-force", "moving"] = key(
+        "body-force",
+        (
+            "representation of the ground motion. body-force: inertia forces on the blocks; moving: the ground moves. Both "
+            "give the same result"
+        ),
+    )
     collapse_displacement: Length | None = key(
         None,
         (

@@ -85,7 +85,12 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         "time": Array(last.time, ("time",), "s"),
         "place": Array(measures.block_places(model, last.place), ("time", "block", "component"), "m, m, rad"),
         "rate": Array(measures.block_rates(model, last), ("time", "block", "component"), "m/s, m/s, rad/s"),
-        "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinge at the first end, 1 hinge at the second end, 2 open"),
+        "hinge": Array(
+            state,
+            ("time", "joint"),
+            "",
+            ("0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open"),
+        ),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
         **section_arrays(model.ties),
         **measures.support_arrays(model),

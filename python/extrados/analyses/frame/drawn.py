@@ -24,24 +24,37 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
     beams = [(w, beam.storey) for beam in plan.ring_beams for w, wall in enumerate(plan.walls) if wall in plan.of_ring_beam(beam)]
     return {
         "element_part": Array(
-            np.array([s.part for s in frame.strips]), ("element", "box"), "m", "deformable parts: along the wall from, to, height from, to"
+            np.array([s.part for s in frame.strips]),
+            ("element", "box"),
+            "m",
+            ("deformable part of each element: start and end along the wall, lower and upper height"),
         ),
         "element_wall": Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0"),
-        "element_storey": Array(np.array([s.storey for s in frame.strips]), ("element",), "", "storey of a pier, else that below it"),
+        "element_storey": Array(
+            np.array([s.storey for s in frame.strips]),
+            ("element",),
+            "",
+            ("storey of a pier; for a spandrel or ring beam, the storey below"),
+        ),
         "element_pier": Array(
             np.array([KINDS[s.kind] for s in frame.strips]), ("element",), "", ", ".join(f"{n}: {word}" for word, n in KINDS.items())
         ),
         "wall_length": Array(np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls"),
         "wall_height": Array(np.array([plan.levels[plan.reach(w)[1]] for w in plan.walls]), ("wall",), "m", "heights of the walls"),
         "wall_line": Array(np.array([[*w.start, *w.end] for w in plan.walls]), ("wall", "line"), "m", "x, y of start and end on the plan"),
-        "wall_thickness": Array(np.array(thick), ("wall", "storey"), "m", "thickness in each storey; 0: the wall is not there"),
+        "wall_thickness": Array(np.array(thick), ("wall", "storey"), "m", "thickness in each storey; 0: no wall in this storey"),
         "storey_height": Array(np.array(plan.storeys), ("storey",), "m", "heights of the storeys"),
-        "opening": Array(np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "wall, along it from, to, height from, to"),
+        "opening": Array(
+            np.array(holes).reshape(-1, 5),
+            ("opening", "box"),
+            "m",
+            ("number of the wall, start and end along the wall, lower and upper height"),
+        ),
         "flange": Array(
             np.array(flanges).reshape(-1, 6),
             ("flange", "part"),
             "m",
-            "web, wall of the flange, level, along it from, to [m], weight on it [N]",
+            "wall of the web, wall of the flange, level, start and end along the flange [m], weight on the flange [N]",
         ),
         "rod": Array(np.array(rods).reshape(-1, 6), ("rod", "line"), "m", "x, y, z of both ends of tie rods"),
         "ring_beam": Array(np.array(beams).reshape(-1, 2), ("ring_beam", "part"), "", "wall, level"),
@@ -49,7 +62,11 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
     }
 
 
-FLOOR = "storey, kind (" + ", ".join(f"{n}: {word}" for word, n in FLOORS.items()) + "), x, y of its middle, direction of its joists"
+FLOOR = (
+    "storey, kind ("
+    + ", ".join(f"{n}: {word}" for word, n in FLOORS.items())
+    + ("), x and y of the middle of the floor, direction of the joists")
+)
 
 
 def _thickness(frame: EquivalentFrame, w: int, storey: int) -> float:

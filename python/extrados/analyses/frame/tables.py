@@ -80,8 +80,8 @@ class FramePushover(FrameAnalysis):
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
         (
-            "horizontal forces in proportion to the masses, to the masses times their height, or to the masses times the "
-            "mode of greatest participating mass"
+            "patterns of the horizontal forces. uniform: in proportion to the masses; static: to the masses times "
+            "their height; modal: to the masses times the mode of greatest participating mass"
         ),
         min_length=1,
         max_length=3,
@@ -89,7 +89,7 @@ class FramePushover(FrameAnalysis):
     )
     eccentricities: list[Annotated[float, Field(ge=-0.5, le=0.5)]] = key(
         [0.0, 0.05, -0.05],
-        "accidental eccentricities of the forces, divided by the length of the building across the direction",
+        "ratios of the accidental eccentricities of the forces to the length of the building across the direction",
         min_length=1,
         max_length=9,
         source="EN 1998-1, 4.3.2",
@@ -110,7 +110,7 @@ class FramePushover(FrameAnalysis):
         ),
         ge=1,
     )
-    target_drift: float = key(0.02, "greatest control displacement, divided by the height of the control level", gt=0, le=0.2)
+    target_drift: float = key(0.02, "ratio of the greatest control displacement to the height of the control level", gt=0, le=0.2)
     steps: int = key(200, "number of steps up to the target; a step is divided if necessary", ge=10, le=10_000)
     drop: float = key(
         0.5, "end of the run: base shear below this share of its greatest value; 0.8 means the 20 % decrease of codes", ge=0, le=0.95
@@ -168,13 +168,13 @@ class FrameFragility(FrameMotion):
         max_length=3,
     )
     target_drift: float = key(
-        0.02, 'for by = "pushover": greatest control displacement, divided by the height of the highest level', gt=0, le=0.2
+        0.02, 'for by = "pushover": ratio of the greatest control displacement to the height of the highest level', gt=0, le=0.2
     )
     count: int | None = key(None, "number of motions; default 100, or the whole set", ge=2, le=1_000_000)
     seed: int | None = key(
         None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
     )
-    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions: PGA [g], or SA(sa_period) [g]")
+    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(sa_period) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     levels: list[Annotated[float, Field(gt=0, le=100)]] | None = key(
         None,
@@ -195,7 +195,9 @@ class FrameFragility(FrameMotion):
         if (self.intensity == "sa") != (self.sa_period is not None):
             raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
         if self.by == "pushover" and self.levels is not None:
-            raise ValueError('levels belong to by = "history". N2 calculates the intensity that each motion needs to reach a limit state')
+            raise ValueError(
+                'the key levels is used only with by = "history". N2 calculates the intensity that each motion needs to reach a limit state'
+            )
         for name, value in self.uncertain.items():
             if name not in UNCERTAIN:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(UNCERTAIN)}")

@@ -147,7 +147,7 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     if deviation is None:
         deviation = getattr(building.structure, "contact_tolerance", None)
     if deviation is None:
-        raise Refused("give the deviation of a survey. Only `blocks` have a default for it, their contact_tolerance", ("analysis",))
+        raise Refused("give the key deviation. Only `blocks` have a default for it, their contact_tolerance", ("analysis",))
     stones = stones_of(building, options)
     plane = isinstance(stones, Assembly)
     extent = stones.length if isinstance(stones, Assembly) else stones.area / np.array([_diameter(p) for p in stones.polygon])
@@ -194,7 +194,7 @@ def cuts_of(building: Building, options: Thrust) -> list[Cut]:
         key: Key = ("analysis", "section", number) if options.section else ("analysis",)
         contacts, above = _contacts_of(assembly, table, key)
         if len(contacts):
-            found.append(_cut(assembly, table, contacts, above, middle))
+            found.append(_cut(assembly, table, contacts, above, middle, None if options.section else options.direction, key))
         elif options.section:
             raise Refused(f"section '{table.name}': no contact lies between blocks on both sides", key)
     return found
@@ -226,14 +226,26 @@ def _contacts_of(assembly: SolidAssembly, table: Section, key: Key) -> tuple[np.
     return contacts, first[contacts]
 
 
-def _cut(assembly: SolidAssembly, table: Section, contacts: np.ndarray, above: np.ndarray, middle: np.ndarray) -> Cut:
-    """The directions of the thrust at each contact of a section."""
+def _cut(
+    assembly: SolidAssembly, table: Section, contacts: np.ndarray, above: np.ndarray, middle: np.ndarray, otherwise: float | None, key: Key
+) -> Cut:
+    """The directions of the thrust at each contact of a section. A contact below the middle of the structure has no direction outward:
+    the section then takes that of the load, `otherwise` [deg]; Refused if that is not given."""
     upright = table.x is not None or table.y is not None
     turn = table.toward if table.toward is not None else None if not upright else 0.0 if table.x is not None else 90.0
+    way = np.array([assembly.polygon[j].mean(axis=0) for j in contacts]) - middle
+    way[:, 2] = 0.0
+    far = np.linalg.norm(way, axis=1)
+    if turn is None and (central := np.flatnonzero(far < 1e-6 * assembly.size)).size:
+        if otherwise is None:
+            raise Refused(
+                f"section '{table.name}': '{assembly.joint_names[int(contacts[central[0]])]}' lies in the middle of the structure and has "
+                "no direction outward: give toward",
+                key,
+            )
+        turn = otherwise
     if turn is None:
-        way = np.array([assembly.polygon[j].mean(axis=0) for j in contacts]) - middle
-        way[:, 2] = 0.0
-        way /= np.maximum(np.linalg.norm(way, axis=1), 1e-300)[:, None]
+        way /= far[:, None]
     else:
         way = np.tile([np.cos(np.radians(turn)), np.sin(np.radians(turn)), 0.0], (len(contacts), 1))
     on_first = above if upright else ~above  # the block whose forces count

@@ -96,14 +96,14 @@ def run(context: Context, options: Imperfections) -> Result:
     job, given, pictured = (
         _of_solids(building, options, deviation) if in_space(building, options) else _of_section(building, options, deviation)
     )
-    swept = sweep(context, "imperfections", job, options.count, "random surveys", slow=True).whole()
+    swept = sweep(context, "imperfections", job, options.count, "random geometries", slow=True).whole()
     gamma = swept["gamma"]
     lesser = gamma.min(axis=1)
     answered = swept["answered"].astype(bool)
     stand = np.isfinite(lesser)
     fallen = int((answered & ~stand).sum())
     if not answered.any():
-        raise Refused(f"none of the {options.count} surveys within {1e3 * deviation:.3g} mm has a result", WHOLE)
+        raise Refused(f"none of the {options.count} random geometries within {1e3 * deviation:.3g} mm of the survey has a result", WHOLE)
     # A survey that cannot stand carries nothing: it belongs to the lower end of the band.
     borne = np.where(stand, lesser, 0.0)[answered]
     low, median, high = np.percentile(borne, [BAND[0], 50.0, BAND[1]]).tolist()
@@ -125,7 +125,10 @@ def run(context: Context, options: Imperfections) -> Result:
     result.arrays = {
         **pictured,
         "gamma": Array(
-            gamma, ("survey", "sense"), "g", "capacity towards +x, or along the direction, and opposite; NaN if a survey cannot stand"
+            gamma,
+            ("survey", "sense"),
+            "g",
+            ("capacity in both senses (towards +x or along the direction, then opposite); NaN if a geometry cannot stand"),
         ),
     }
     result.tables = {
@@ -135,19 +138,21 @@ def run(context: Context, options: Imperfections) -> Result:
         )
     }
     result.answer = (
-        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the given survey, 90 % have a capacity of "
-        f"{low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The given survey has {given:.4f} "
+        f"Of {options.count} random geometries, whose points lie within {1e3 * deviation:.3g} mm of the given geometry, "
+        f"90 % have a capacity of "
+        f"{low:.4f} to {high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g). The given geometry has {given:.4f} "
         "g."
     )
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
-        result.answer += f" In {r.upper_bounds} surveys joints slide: {out.DILATANT}."
+        result.answer += f" In {r.upper_bounds} geometries joints slide: {out.DILATANT}."
     if given < low:
         result.warnings.append(
-            f"The capacity of the given geometry, {given:.4f} g, is below the range of the surveys. Blocks in bond hinge on the outermost of "
-            "several corners, so that random corners raise the capacity. The verdict uses the capacity of the given geometry"
+            f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. Where "
+            f"blocks are laid in bond, a hinge forms at the outermost of several corners. Random deviations of the "
+            f"corners move the hinge outward and raise the capacity. The verdict uses the capacity of the given geometry"
         )
     if r.without_answer:
-        result.warnings.append(f"{r.without_answer} surveys are not counted, because their linear programmes gave no result")
+        result.warnings.append(f"{r.without_answer} random geometries are not counted, because their linear programmes gave no result")
     return result

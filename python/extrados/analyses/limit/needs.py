@@ -65,7 +65,13 @@ def _needs_of_many(context: Context, options: BuildingAnalysis) -> Iterator[Need
 
 
 def _refuse_sections() -> None:
-    raise Refused("section: belongs to blocks in space; give a direction, or a chain of the plane section", ("analysis", "section"))
+    raise Refused(
+        (
+            "the key section is only for blocks in space: give the key direction to analyse the blocks in space, or the key "
+            "chain for the plane section"
+        ),
+        ("analysis", "section"),
+    )
 
 
 def _placed(building: Building, load: tables.AppliedLoad, number: int) -> None:
@@ -93,12 +99,12 @@ def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
 
 
 def _refuse_height(number: int) -> None:
-    raise Refused("z belongs to blocks in space; in a plane section the height is y", ("analysis", "load", number, "z"))
+    raise Refused("the key z is only for blocks in space: in a plane section give the height as y", ("analysis", "load", number, "z"))
 
 
 def _refuse_alone(building: Building) -> None:
     if not building.blocks().buttresses:
-        raise Refused("this requires a buttress on the ground: a vault or an aisled vault", ("analysis", "buttress_alone"))
+        raise Refused("buttress_alone requires a buttress on the ground: a vault or an aisled vault", ("analysis", "buttress_alone"))
 
 
 def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> None:
@@ -106,9 +112,15 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
     key = ("analysis", "fracture")
     assembly = building.blocks()
     if not assembly.buttresses:
-        raise Refused("fracture requires a buttress on the ground: a vault or an aisled vault", key)
+        raise Refused("the key fracture requires a buttress on the ground: a vault or an aisled vault", key)
     if building.material.compressive_strength is not None or options.friction_rule != "associated":
-        raise Refused("fracture is calculated without crushing and with associated friction", key)
+        raise Refused(
+            (
+                "the key fracture excludes crushing and sliding without dilatancy: remove fracture, or remove "
+                'compressive_strength and give friction_rule = "associated"'
+            ),
+            key,
+        )
     leeward = assembly.buttresses[-1]
     if building.ties and (building.anchored().block == leeward).any():
         raise Refused(

@@ -129,11 +129,13 @@ def _arrays(
         force = np.array([nothing if one is None else one.force for one in states]).reshape(-1, *nothing.shape)
         centre = np.array([nothing if one is None else one.centre for one in states]).reshape(-1, *nothing.shape)
         dims = ("section", "contact", "axis3")
-        arrays[f"{name}_force"] = Array(force, dims, "N", f"force on the first block of each contact in the state of {name} thrust")
+        arrays[f"{name}_force"] = Array(
+            force, dims, "N", (f"force on the first of the two blocks of each contact in the state of {name} thrust")
+        )
         arrays[f"{name}_centre"] = Array(centre, dims, "m", f"centre of the compression in the state of {name} thrust")
     if central is not None:
         arrays["central_force"] = Array(
-            central.force, ("contact", "axis3"), "N", "force on the first block of each contact in the most central state"
+            central.force, ("contact", "axis3"), "N", "force on the first of the two blocks of each contact in the most central state"
         )
         arrays["central_centre"] = Array(central.centre, ("contact", "axis3"), "m", "centre of the compression in the most central state")
         arrays["central_friction"] = Array(central.friction, ("contact",), "", "shear over compression in the most central state")
@@ -159,7 +161,8 @@ def _words(r: out.SolidThrust) -> str:
     text = f"At {r.gamma_g:g} g along {r.load_direction_deg:g} degrees the thrust is {'; '.join(told)}. " if told else ""
     if r.least_part_of_joints is not None:
         text += (
-            f"The most central state stays within the middle {100.0 * r.least_part_of_joints:.1f} % of the contacts and needs a friction of "
+            f"The most central state stays within the middle {100.0 * r.least_part_of_joints:.1f} % of the contacts and "
+            f"needs a friction of "
             f"{r.required_friction:.2f}. "
         )
     if r.admissible_interval_g:

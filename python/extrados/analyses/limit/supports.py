@@ -202,7 +202,12 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
         **tie_arrays(building, loads, {"settled": found.state}),
         **state_arrays(assembly, "settled", found.state, "under moving supports"),
         "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
-        "settled_opening": Array(motion, ("joint", "component"), "m", "opening at the first and second end of each joint, and slip"),
+        "settled_opening": Array(
+            motion,
+            ("joint", "component"),
+            "m",
+            ("opening at the first end (intrados of an arch) and at the second end (extrados) of each joint, and slip"),
+        ),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }
     result.tables = {

@@ -122,12 +122,15 @@ class Section(Table):
     y: Length | None = key(None, "cut across y")
     z: Length | None = key(None, "level cut at this height")
     joints: list[str] | None = key(
-        None, 'names of contacts in place of a cut, or of a group of them; "ground" means all supports', min_length=1, max_length=10000
+        None, 'names of contacts, or of groups of contacts, in place of a cut; "ground" means all supports', min_length=1, max_length=10000
     )
     toward: Angle | None = key(
         None,
-        "direction of the thrust in plan, from +x to +y; the thrust acts on the blocks at greater x or y, or on the blocks or ground "
-        "below; default across a vertical cut, otherwise outward from the middle of the structure",
+        (
+            "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, "
+            "or on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
+            "middle of the structure"
+        ),
         ge=-360,
         le=360,
     )
@@ -135,7 +138,7 @@ class Section(Table):
     @model_validator(mode="after")
     def _one_cut(self) -> "Section":
         if sum(one is not None for one in (self.x, self.y, self.z, self.joints)) != 1:
-            raise ValueError("expected one of x, y, z and joints")
+            raise ValueError("expected one of the keys x, y, z and joints")
         return self
 
 
@@ -149,7 +152,7 @@ class Thrust(SpatialLimit):
     chain: str | None = key(None, "arch or stack whose least and greatest thrust are calculated; default: the first arch, vault or nave")
     section: list[Section] = key(
         [],
-        "of solids: sections whose least and greatest thrust are calculated, [[analysis.section]]; default: cuts across x and y through "
+        "for solids: sections whose least and greatest thrust are calculated, [[analysis.section]]; default: cuts across x and y through "
         "the middle, and the ground",
         max_length=50,
     )
@@ -162,9 +165,10 @@ class Sweep(SpatialLimit):
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
         about=(
-            "key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise; of another "
-            "table, for instance joints.friction, material.compressive_strength or ties.0.yield_force; or `direction`, that "
-            "of the load on solids"
+            "key to vary. A key of [structure] is given without its table, for instance buttress_width, "
+            "right.buttress_width or spans.0.rise; any other key with its table, for instance joints.friction, "
+            "material.compressive_strength or ties.0.yield_force. For solids also `direction`, the direction of the "
+            "load"
         )
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
@@ -181,7 +185,7 @@ class Sweep(SpatialLimit):
     @model_validator(mode="after")
     def _range(self) -> "Sweep":
         if (self.values is None) == (self.start is None or self.stop is None):
-            raise ValueError("give either values, or start and stop")
+            raise ValueError("give either the key values, or the keys start and stop")
         return self
 
 
@@ -191,20 +195,23 @@ class Survey(SpatialLimit):
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
     file: str = key(
-        about="CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or one file of solids"
+        about=(
+            "CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or "
+            "one file of solids"
+        )
     )
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
 
 
 class Imperfections(SpatialLimit):
-    """Random surveys of the same stones, each point within the deviation of the survey: a band on the capacity."""
+    """Random geometries of the same stones, each point within the deviation of the survey: a band on the capacity."""
 
     kind: Literal["imperfections"]
     starter: ClassVar = {"deviation": '"5 mm"'}
     deviation: Length | None = key(
         None, "greatest distance of a measured point from its true position; default: the contact_tolerance of `blocks`", gt=0, le=1
     )
-    count: int = key(200, "number of random surveys", ge=10, le=100000)
+    count: int = key(200, "number of random geometries", ge=10, le=100000)
     seed: int = key(1, "seed of the random numbers", ge=0)
 
 
@@ -307,7 +314,7 @@ class MovingLoad(LimitAnalysisTable):
         source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause); CS 454 7.3.1; STANAG 2021 (verify)",
     )
     gap: Length | None = key(None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0)
-    axles: list[Length] = key([0.0], "positions of the axles behind the first axle", max_length=200)
+    axles: list[Length] = key([0.0], "distance of each axle behind the first axle", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default: equal shares", max_length=200)
     force: Force | None = key(None, "total load of the axles; adds the safety factor", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle; replaces shares and force", max_length=200)
@@ -339,19 +346,19 @@ class MovingLoad(LimitAnalysisTable):
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
             raise ValueError("axle_loads: expected one load above 0 for each of the axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
-            raise ValueError("train replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
+            raise ValueError("the key train replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
         if self.axle_loads is not None and (self.shares is not None or self.force is not None):
             raise ValueError("axle_loads replaces shares and force")
         if self.uniform and self.axle_loads is None and self.axles:
-            raise ValueError("uniform requires axle_loads, or axles = [] if there are no axles")
+            raise ValueError("the key uniform requires axle_loads, or axles = [] if there are no axles")
         if self.serviceability is not None and self.train is None and self.axle_loads is None and not self.uniform:
-            raise ValueError("serviceability requires a train, axle_loads or uniform")
+            raise ValueError("the key serviceability requires one of the keys train, axle_loads and uniform")
         if not self.axles and not self.uniform:
             raise ValueError("axles: expected at least one axle, or uniform loads")
         if self.lanes is not None and self.train != "LM1":
-            raise ValueError('lanes belongs to train = "LM1": remove it')
+            raise ValueError('lanes is used only with train = "LM1": remove lanes')
         if self.gap is not None and not (self.train or "").startswith("SV"):
-            raise ValueError("gap belongs to the trains SV80, SV100 and SV196: remove it")
+            raise ValueError("gap is used only with the trains SV80, SV100 and SV196: remove gap")
         if self.gap not in (None, 1.2, 5.0, 9.0):
             raise ValueError(f"gap: expected 1.2, 5 or 9 m, found {self.gap:g}")
         for one in self.uniform:

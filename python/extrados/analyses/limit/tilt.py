@@ -293,7 +293,7 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
     outlines = found.assembly.outlines
     result.arrays.update(
         {
-            "crack": Array(found.line, ("crack_end", "axis"), "m", "fracture line: inner face, outer toe"),
+            "crack": Array(found.line, ("crack_end", "axis"), "m", "fracture line: points at the inner face and at the outer toe"),
             "crack_pose": Array(
                 finite_motion(found.assembly, found.mechanism),
                 ("block", "component"),
@@ -393,10 +393,10 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     text += _told(found)
     needed = np.inf if found.required_friction is None else found.required_friction
     text += f"Friction of {needed:.2f} is needed" + (
-        f"; the geometric safety factor of the upright structure is {answer.safety:.2f}."
+        f"; the geometric safety factor of the upright {what} is {answer.safety:.2f}."
         if np.isfinite(answer.safety)
         else (
-            "; in the upright structure a thrust line passes within 1 % of the joint length from the middles of all joints, "
+            f"; in the upright {what} a thrust line passes within 1 % of the joint length from the middles of all joints, "
             "so self-weight causes no horizontal demand."
         )
         if answer.part < CENTRAL

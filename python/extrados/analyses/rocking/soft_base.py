@@ -137,7 +137,12 @@ def _result(
         "rotation": Array(r.rotation, ("time",), "rad", "rotation of the block, positive to +x"),
         "rate": Array(r.rate, ("time",), "rad/s"),
         "sinking": Array(r.sinking, ("time",), "m", "settlement of the base below the centre of the block"),
-        "pressed": Array(pressed, ("time", "end"), "m", "ends of the range of the base in contact, from the foot of the centre"),
+        "pressed": Array(
+            pressed,
+            ("time", "end"),
+            "m",
+            ("ends of the part of the base in contact, measured from the point below the centre of the block"),
+        ),
     }
     return result
 

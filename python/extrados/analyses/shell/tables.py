@@ -47,9 +47,9 @@ class Settlement(Table):
     @model_validator(mode="after")
     def _somewhere(self) -> "Settlement":
         if (self.wall is None) == (self.foot is None):
-            raise ValueError("expected either wall (for a building) or foot (for a vault)")
+            raise ValueError("expected either the key wall (for a building) or the key foot (for a vault)")
         if self.down == 0.0 and self.out == 0.0:
-            raise ValueError("the support does not move: give down or out")
+            raise ValueError("the support does not move: give the key down or the key out")
         return self
 
     @property
@@ -84,8 +84,8 @@ class PushStage(Table):
         own = {"direction", "sense", "base_shear", "target_displacement", "stop_fraction"} & self.model_fields_set
         if self.settlements and own:
             raise ValueError(
-                f"{', '.join(sorted(own))} belong to a stage with a horizontal load. A stage of settlements ends at their values: "
-                "give two stages"
+                f"{', '.join(sorted(own))} are keys of a stage with a horizontal load. A stage of settlements ends at "
+                f"the values of the settlements: give two stages"
             )
         return self
 
@@ -111,7 +111,8 @@ class FrameRules(Table):
     diagonal_strength: Stress = key(about="tau_0 of diagonal cracking, without compression", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I")
     compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
-        "double", "ends of the piers that are fixed against rotation: both (between stiff spandrels), or only the lower end"
+        "double",
+        ("ends of the piers that are fixed against rotation. double: both ends (between stiff spandrels); single: only the lower end"),
     )
 
 
@@ -141,8 +142,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
         (
-            "distribution of the horizontal forces: in proportion to the masses, to the masses times their height, or to the "
-            "masses times the first mode in this direction"
+            "distribution of the horizontal forces. mass: in proportion to the masses; triangular: to the masses times "
+            "their height; modal: to the masses times the first mode in this direction"
         ),
     )
     drives: list[Drive] = key(
@@ -262,13 +263,13 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         if self.settlements and not self.constant_damage:
             raise ValueError("settlements are applied together with the weight: they require constant_damage = true")
         if self.drives and self.pattern != "mass":
-            raise ValueError("drives replace the pattern: remove pattern")
+            raise ValueError("the key drives replaces the key pattern: remove pattern")
         if len({variant.name for variant in self.variants}) < len(self.variants):
             raise ValueError("variants: a name occurs twice")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         if self.verification.model_fields_set and (self.stages or self.drives):
-            raise ValueError("verification requires a single load by inertia forces: remove stages and drives")
+            raise ValueError("the key verification requires a single load by inertia forces: remove stages and drives")
         return self
 
     @property

@@ -73,7 +73,9 @@ def bar_group(
     material: Material = mesh.named[bar.material]
     what = f"a bar from {bar.start} to {bar.end}"
     if material.tensile_strength_parallel is not None:
-        raise BadGeometry(f"tensile_strength_parallel of {bar.material!r} belongs to masonry; a bar has only one strength")
+        raise BadGeometry(
+            f"tensile_strength_parallel of {bar.material!r} is only for masonry, and a bar has only one strength: remove this key"
+        )
     rod = None
     if bar.bonded:
         rod = bonded(Corners.of(mesh), np.array([bar.start, bar.end], dtype=float), what)

@@ -73,7 +73,7 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     result.arrays[f"{prefix}event_equilibrium"] = Array(e.equilibrium.astype(np.int8), dim, "", "1 in equilibrium")
     result.arrays[f"{prefix}event_step"] = Array(e.steps.astype(np.int8), dim, "", "1: step of equilibrium iterations, 0: event")
     result.arrays[f"{prefix}event_residual"] = Array(
-        np.where(e.steps, e.residual, np.nan), dim, "", "residual of a step, divided by the largest nodal force of an element"
+        np.where(e.steps, e.residual, np.nan), dim, "", "ratio of the residual of a step to the largest nodal force of an element"
     )
     state, out = curve.judged
     result.arrays[f"{prefix}event_state"] = Array(

@@ -28,8 +28,9 @@ class Load(Table):
 
     kind: Literal["gravity", "pressure", "line", "point", "spread", "displacement"] = key(
         about=(
-            "kind of load: self-weight; pressure, or force per length, on boundary edges; force on the nearest node, or on "
-            "all nodes of a place in equal parts; force spread evenly along an edge; imposed displacement with ratios"
+            "kind of load. gravity: self-weight; pressure: pressure on boundary edges; line: force per length on "
+            "boundary edges; point: force on the nearest node, or on all nodes of a place in equal parts; spread: "
+            "force spread evenly along an edge; displacement: imposed displacement with ratios"
         )
     )
     edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
@@ -110,7 +111,7 @@ class Stage(Table):
     )
     control: list[Watch] = key(
         [],
-        ("control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under B"),
+        ("control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under loads B"),
         max_length=50,
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
@@ -123,12 +124,15 @@ class Stage(Table):
     @model_validator(mode="after")
     def _one_cause(self) -> "Stage":
         if self.free and self.reference:
-            raise ValueError("free and reference exclude each other, because removed supports are the load of their stage: give two stages")
+            raise ValueError(
+                "the keys free and reference exclude each other, because removed supports are the load of their stage: give two stages"
+            )
         if not (self.free or self.reference):
-            raise ValueError("a stage requires a load that increases: give reference, or free")
+            raise ValueError("a stage requires a load that increases: give the key reference, or the key free")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
             raise ValueError(
-                "reference with an imposed displacement can contain no other load; give further places of the displacement as parts"
+                "if `reference` contains an imposed displacement, it can contain no other load. To impose the "
+                "displacement at more places, list them under `parts` of this load"
             )
         return self
 
@@ -179,7 +183,10 @@ class CrackOptions(Table):
     )
     ripple: float = key(
         0.05,
-        ("half-width p of the teeth, divided by the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2"),
+        (
+            "ratio p of the half-width of the teeth to the strength; the load is overestimated by up to about p/2. The "
+            "thesis uses 0.1 and 0.2"
+        ),
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
@@ -189,15 +196,16 @@ class CrackOptions(Table):
     crack_band_rule: Literal["projected", "area"] = key(
         "projected",
         (
-            "rule for the crack band: the width of the element across its crack, or the rule of the thesis: sqrt(2 A) for "
-            "linear and sqrt(A) for quadratic elements"
+            "rule for the width of the crack band. projected: the width of the element across its crack; area: the "
+            "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A"
         ),
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
         (
-            "kind of cracking: cracks that rotate with the principal strain; cracks with a fixed direction from their first "
-            "tooth, as in the thesis (overestimates the capacity, see docs/sla.md); or isotropic damage"
+            "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed "
+            "direction from their first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); "
+            "isotropic: isotropic damage"
         ),
         source="Eq. 4.10",
     )
@@ -239,7 +247,7 @@ class Staged:
         names = self.stage_names
         if not self.stages:
             if self.main_stage is not None:
-                raise ValueError("main_stage is given, but there are no `stages`")
+                raise ValueError("main_stage is given without stages: give `stages`, or remove main_stage")
             return
         if len(set(names)) < len(names):
             raise ValueError(f"stages: a name occurs twice among {', '.join(names)}")
@@ -317,7 +325,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "name of the stage whose results and figures are reported as those of the analysis; default: the last stage"
     )
     control: list[Watch] = key(
-        [], "control displacement of the curve: a sum of terms; default: the mean displacement under B", max_length=50
+        [], "control displacement of the curve: a sum of terms; default: the mean displacement under loads B", max_length=50
     )
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
@@ -345,16 +353,18 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     solution: Literal["events", "incremental"] = key(
         "events",
         (
-            "solution method: one integration point after the other; or, for comparison, steps of arc length with a secant "
-            "iteration in which all overloaded points lose teeth together (`events` then counts these steps)"
+            "solution method. events: one integration point after the other; incremental, for comparison: steps of arc "
+            "length with a secant iteration, in which all overloaded points lose teeth together (the key `events` then "
+            "limits the number of these steps)"
         ),
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
         (
-            'method if no multiplier of B is admissible at all points. "continue": equilibrium iterations in displacement '
-            'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": A '
-            'remains, and the greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
+            'method if no multiplier of loads B is admissible at all points. "continue": equilibrium iterations in displacement '
+            'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": '
+            'loads A remain, and the greatest lower limit decides. "proportional": all loads of the last equilibrium '
+            "state are "
             'reduced together (intermittent proportional loading). "force-release": the force that a tooth releases acts on '
             "the other points before the load increases again"
         ),
@@ -363,12 +373,15 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     continuation: Literal["newton", "implicit-explicit"] = key(
         "newton",
         (
-            "equilibrium iterations: Newton's method, with staggered steps if it does not converge; or damage extrapolated "
-            "from the last step (one convex problem for each step: faster and less accurate)"
+            "equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
+            "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster "
+            "and less accurate)"
         ),
         source="Oliver, Huespe and Cante 2008",
     )
-    algorithm: Literal["update", "refactor"] = key("update", "update the matrix factor at each event, or factorise again")
+    algorithm: Literal["update", "refactor"] = key(
+        "update", ("matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again")
+    )
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of events whose state is saved, in addition to the peak and the last event", max_length=200
     )
@@ -380,7 +393,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             "'least (N)' and 'greatest (N)' of several tests; lines that begin with # give the source"
         ),
     )
-    section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections of the wall", max_length=10)
+    section_x: list[Length] = key(
+        [], ("draw the admissible ranges of lambda, the multiplier of loads B, along these vertical sections of the wall"), max_length=10
+    )
     seeds: list[int] = key([], "repeat the analysis with these seeds of the random mesh and strength, for a scatter band", max_length=200)
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the strength; default: one element", gt=0)
@@ -408,7 +423,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":
         if any(load.kind == "displacement" for load in self.constant or []):
-            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could not follow B")
+            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could not move under loads B")
         reference = self.reference or []
         self.check_stages(
             {
@@ -425,7 +440,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         )
         if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
             raise ValueError(
-                "reference with an imposed displacement can contain no other load; give further places of the displacement as parts"
+                "if `reference` contains an imposed displacement, it can contain no other load. To impose the "
+                "displacement at more places, list them under `parts` of this load"
             )
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("seeds: a seed occurs twice, which would give the same wall again")
@@ -434,9 +450,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
             raise ValueError("an incremental solution has no events: remove without_equilibrium, states and budget")
         if self.verification.model_fields_set and not self.by_inertia:
-            raise ValueError("verification requires one horizontal load by the masses only, without stages")
+            raise ValueError("the key verification requires one horizontal load by the masses only, without stages")
         if self.verification.shape == "mode":
-            raise ValueError('verification: shape = "mode" belongs to buildings: remove it')
+            raise ValueError('verification: shape = "mode" is only for buildings: remove shape')
         return self
 
     @property

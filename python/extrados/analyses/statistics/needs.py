@@ -47,7 +47,8 @@ def _refuse_of_spectra(building: Building) -> None:
         )
     if building.supports.stiffness is not None:
         raise Refused(
-            "spectra are calculated for structures on rigid ground: remove it, or use `rocking` of a block", ("supports", "stiffness")
+            ("spectra are calculated for structures on rigid ground: remove the stiffness of [supports], or use `rocking` of a block"),
+            ("supports", "stiffness"),
         )
 
 

@@ -226,17 +226,23 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     result.arrays |= {
         "aspect": Array(ASPECTS, ("aspect",), "", "B/H"),
         "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "ratio of the initial rotation to the critical rotation"),
-        "least_cap_ratio": Array(table, ("aspect", "initial_ratio"), "", "least acceleration over uplift"),
+        "least_cap_ratio": Array(table, ("aspect", "initial_ratio"), "", "ratio of the least acceleration cap to the uplift acceleration"),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
         "impulse_rotation": Array(
             np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "ratio of the initial rotation to the critical rotation"
         ),
         "impulse_start": Array(STARTS, ("impulse_start",), "", "t_start/T_n"),
         "energy_by_period": Array(
-            by_period, ("impulse_period_ratio", "impulse_start"), "", "supplied energy divided by the energy at the start, theta_cr/4"
+            by_period,
+            ("impulse_period_ratio", "impulse_start"),
+            "",
+            ("ratio of the supplied energy to the energy at the start, for a start at a quarter of the critical rotation"),
         ),
         "energy_by_rotation": Array(
-            by_rotation, ("impulse_rotation", "impulse_start"), "", "supplied energy divided by the energy at the start, for T_p = T_n/2"
+            by_rotation,
+            ("impulse_rotation", "impulse_start"),
+            "",
+            ("ratio of the supplied energy to the energy at the start, for an impulse of half the natural period (T_p = T_n/2)"),
         ),
     }
     numbers |= {

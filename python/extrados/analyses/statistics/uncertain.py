@@ -125,10 +125,12 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
     for name in names:
         key = ("analysis", "uncertain", name)
         if name == "density" and what == "block" and name not in known:
-            raise Refused("the densities of blocks cannot vary, because the structure is modelled as one rigid block: remove density", key)
+            raise Refused(
+                ("the densities of blocks cannot vary, because the structure is modelled as one rigid block: remove uncertain.density"), key
+            )
         sized = name not in (*STONES, *BASE, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
-            raise Refused(f"this value does not belong to this {structure.word}; its values are {', '.join(known) or 'none'}", key)
+            raise Refused(f"this {structure.word} has no such value; its values are {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
             (

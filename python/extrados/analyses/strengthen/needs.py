@@ -27,7 +27,9 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
                 yield partial(_refuse, f'by = "tilt" neglects {what}: use by = "fragility", or remove it', key)
         if is_spatial(building):
             if "[supports] abutting_wall" in building.special_keys:
-                yield partial(_refuse, "limit analysis in space neglects an abutting wall: remove it", ("supports", "abutting_wall"))
+                yield partial(
+                    _refuse, ("limit analysis in space neglects an abutting wall: remove abutting_wall"), ("supports", "abutting_wall")
+                )
             yield partial(refuse_in_space, context, options)
             yield lambda: building.refuse_weightless(building.solids())
             yield lambda: building.friction(building.solids())
@@ -58,7 +60,7 @@ def _refuse(text: str, key: tuple[str | int, ...]) -> None:
 
 def _refuse_directions(options: Strengthen) -> None:
     if options.directions:
-        raise Refused("directions belongs to blocks in space: give direction", ("analysis", "directions"))
+        raise Refused("the key directions is only for blocks in space: give direction", ("analysis", "directions"))
 
 
 def _refuse_without_peak(context: Context) -> None:

@@ -194,7 +194,7 @@ class SpaceStatics(Statics):
 def refuse_in_space(context: Context, options: Strengthen) -> None:
     """Refused where a deck asks in space for what is known in a plane section alone."""
     wrong: dict[str, tuple[bool, Any]] = {
-        "direction belongs to a plane section; give directions": (options.direction != "both", ("analysis", "direction")),
+        "the key direction is only for plane sections: give directions": (options.direction != "both", ("analysis", "direction")),
         "friction_rule: in space, ties are sized for dilatant sliding only": (
             options.friction_rule != "associated",
             ("analysis", "friction_rule"),

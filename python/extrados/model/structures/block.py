@@ -165,7 +165,7 @@ class Block(Structure):
         elif missing := [name for name in _BODY[:-1] if getattr(self, name) is None]:
             raise ValueError(f"give either width and height, or {', '.join(_BODY[:-1])} ({', '.join(missing)} missing)")
         if self.head_mass and self.width is None:
-            raise ValueError("head_mass belongs to a rectangle with width and height; for another body, include it in mass")
+            raise ValueError("head_mass is only for a rectangle with width and height; for another body, include this mass in the key mass")
         return self
 
     def assembly(self, density: float, folder: Path) -> BlockAssembly:

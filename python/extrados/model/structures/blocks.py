@@ -118,8 +118,8 @@ class LayerTable(Table):
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
         (
-            "meaning of the layer: blocks; lines of the ground, like the layer GROUND; lines along joints, which "
-            "[[joints.types]] can then name by this layer; or a layer that is not read"
+            "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines "
+            "along joints, which [[joints.types]] can then name by this layer; left-out: this layer is not read"
         ),
     )
     material: str | None = key(None, "name in [materials] of the material of the blocks on this layer")
@@ -175,8 +175,9 @@ class Blocks(Structure):
     contact_tolerance: Length = key(
         1e-4,
         (
-            "faces closer than this value touch each other; smaller overlaps are ignored; narrower contacts of solids carry "
-            "no force. `check` reports the tolerance that would close each gap. The default for solids is at most 1/10000 of "
+            "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value "
+            "are ignored; contacts of solids that are narrower than this value carry no force. `check` reports the "
+            "tolerance that would close each gap. The default for solids is at most 1/10000 of "
             "their size"
         ),
         gt=0,
@@ -206,7 +207,7 @@ class Blocks(Structure):
     def _drawing(self, folder: Path) -> tuple[Drawing, float | None]:
         """What the file or the deck says, and the depth where the file has one."""
         if self.up is not None:
-            raise NoView("up belongs to a file of solids, which has no plane section", ("structure", "up"))
+            raise NoView("the key up is only for files of solids, which have no plane section", ("structure", "up"))
         if self.file is None:
             polygons = [Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density) for i, b in enumerate(self.block or [])]
             return Drawing(polygons), None

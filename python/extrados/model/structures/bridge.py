@@ -59,7 +59,7 @@ class Span(Table):
         if not isinstance(given, dict) or given.get("shape") != "surveyed" or not isinstance(given.get("intrados"), list):
             return given
         if twice := [name for name in ("span", "rise") if name in given]:
-            raise ValueError(f"{twice[0]}: the points of intrados determine this value; remove it")
+            raise ValueError(f"{twice[0]}: the points of intrados determine this value: remove this key")
         points = [point for point in given["intrados"] if isinstance(point, list) and len(point) == 2]
         if len(points) < len(given["intrados"]) or not all(isinstance(v, int | float) for point in points for v in point):
             raise ValueError("intrados: expected points [x, y] in metres")
@@ -71,7 +71,7 @@ class Span(Table):
     @model_validator(mode="after")
     def _surveyed(self) -> "Span":
         if (self.shape == "surveyed") != (self.intrados is not None):
-            raise ValueError('intrados belongs to shape = "surveyed", which requires it')
+            raise ValueError('the key intrados is only for shape = "surveyed", which requires this key')
         for before, after in itertools.pairwise(self.intrados or []):
             if after[0] <= before[0]:
                 raise ValueError(f"intrados: x must increase from point to point, found {before[0]:g} before {after[0]:g}")
@@ -89,7 +89,7 @@ class Span(Table):
         if self.shape == "pointed" and self.voussoirs % 2:
             raise ValueError("voussoirs: a pointed arch requires an even number")
         if self.haunch_radius is not None and self.shape != "three-centred":
-            raise ValueError("haunch_radius belongs to a three-centred arch")
+            raise ValueError("haunch_radius is only for a three-centred arch: remove haunch_radius")
         return self
 
 

@@ -26,7 +26,7 @@ class Fill(Table):
         le=1,
     )
     dispersal: Literal["boussinesq", "even"] = key(
-        "boussinesq", "spreading of a load to the blocks: by the stresses of Boussinesq, or uniform, within dispersal_angle"
+        "boussinesq", "spreading of a load to the blocks within dispersal_angle. boussinesq: by the stresses of Boussinesq; even: uniform"
     )
     dispersal_angle: Angle = key(30.0, "angle to the vertical up to which a load spreads; 26.6 is 1 in 2", ge=0, le=70)
 

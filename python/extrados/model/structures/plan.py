@@ -85,11 +85,12 @@ class PlanWall(Table):
 class Corner(Table):
     """How two walls that meet hang together."""
 
-    walls: list[str] = key(about="names of the two walls; the second wall abuts on the first", min_length=2, max_length=2)
+    walls: list[str] = key(about="names of the two walls; the wall named second abuts on the wall named first", min_length=2, max_length=2)
     bond: Literal["bonded", "weak", "joint", "open"] = key(
         about=(
-            "connection of the two walls. bonded: one masonry; weak: the elements of the second wall beside the first have a "
-            "lower strength; joint: a joint of [joints] between the walls, which opens, slides up and down, and crushes; "
+            "connection of the two walls. bonded: one masonry; weak: the elements of the wall named second have a "
+            "lower strength beside the other wall; joint: a joint of [joints] between the walls, which opens, slides "
+            "up and down, and crushes; "
             "open: connected only by floors"
         )
     )
@@ -200,7 +201,9 @@ class Plan(Structure):
     { name = "back", start = [6, 5], end = [0, 5], thickness = 0.3 },
     { name = "left", start = [0, 5], end = [0, 0], thickness = 0.3 },
 ]""",
-        "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
+        "floors": (
+            '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]'
+        ),
     }
     storeys: list[Length] = key(about="height of each storey, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)

@@ -149,7 +149,7 @@ class Wall(Bonded, Spatial):
         about="straight parts (legs) of the wall in order, each at a right angle to the previous one", min_length=1, max_length=200
     )
     closed: bool = key(False, "whether the last leg meets the first, as around a courtyard; all corners are then left-hand corners")
-    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end")
+    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end: whole or half")
 
     @model_validator(mode="after")
     def _sensible(self) -> "Wall":
@@ -163,7 +163,7 @@ class Wall(Bonded, Spatial):
                 if o.is_outside(leg.length, self.height):
                     raise ValueError(f"legs: the opening x {o.x}, y {o.y} is outside leg {i}")
         if self.closed and len(self.legs) < 4:
-            raise ValueError(f"closed requires at least four legs, found {len(self.legs)}")
+            raise ValueError(f"the key closed requires at least four legs, found {len(self.legs)}")
         return self
 
     def solids(self, density: float) -> SolidAssembly:

@@ -56,10 +56,8 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
                 what = "the values increase like times" if stride == 1 else f"every value {stride} places further increases like a time"
                 raise text.error(rows[0][0], f"{what}: give time and acceleration in two columns")
     elif short:
-        raise text.error(
-            rows[-1][0],
-            (f"the last line has {len(rows[-1][1])} columns, but the lines above have {width}, so the file is cut off{_or_series(timed)}"),
-        )
+        last = f"the last line has {len(rows[-1][1])} columns, but the lines above have {width}"
+        raise text.error(rows[-1][0], f"{last}, so the file is cut off{_or_series(timed)}")
     elif timed:
         given = time_unit_in(names[0]) if names else None
         per = TIME[given or "s"]

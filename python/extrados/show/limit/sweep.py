@@ -22,15 +22,9 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         seen = [k for k in range(1, int(number.max()) + 1) if (number == k).any()]
         for k in seen:
             here = number == k
-            ax.plot(
-                value[here],
-                tilt[here],
-                "o",
-                markersize=3.5,
-                color=section.CHAIN_COLOURS[(k - 1) % len(section.CHAIN_COLOURS)],
-                label=f"mechanism {k}" if k in seen[:MOST_NAMED] else None,
-                zorder=3,
-            )
+            colour = section.CHAIN_COLOURS[(k - 1) % len(section.CHAIN_COLOURS)]
+            label = f"mechanism {k}" if k in seen[:MOST_NAMED] else None
+            ax.plot(value[here], tilt[here], "o", markersize=3.5, color=colour, label=label, zorder=3)
         if "fractured" in run.arrays[name]:
             cracked = np.degrees(np.arctan(run.array(name, "fractured")))
             ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
@@ -76,8 +70,8 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-curve"),
-                "Tilt at collapse. Dotted: changes of mechanism. Crosses: values at which the structure collapses "
-                "under self-weight. Points on the axis: values without a result, or values at which the structure does not collapse at any tilt.",
+                "Tilt at collapse. Dotted: changes of mechanism. Crosses: values at which the structure collapses under self-weight. "
+                "Points on the axis: values without a result, or values at which the structure does not collapse at any tilt.",
             )
         ]
     if "example" not in run.arrays[name]:  # solids
@@ -143,19 +137,25 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
             r.high_collapse_acceleration_g,
             color=style.STONE,
             zorder=0,
-            label=f"90 % of the surveys: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
+            label=f"90 % of the random geometries: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
         )
-        ax.step(lesser, share, where="post", color=style.THRUST, label=f"{r.count} surveys within {1e3 * r.deviation_m:.3g} mm")
+        ax.step(
+            lesser,
+            share,
+            where="post",
+            color=style.THRUST,
+            label=(f"{r.count} random geometries, each point within {1e3 * r.deviation_m:.3g} mm"),
+        )
         given = r.given_collapse_acceleration_g
-        ax.axvline(given, color=style.HINGE, linestyle="--", label=f"survey in the deck: {given:.4f} g")
-        ax.set_xlabel("collapse acceleration [g], the smaller of +x and -x")
-        ax.set_ylabel("share of surveys with at most this acceleration")
+        ax.axvline(given, color=style.HINGE, linestyle="--", label=f"geometry of the deck: {given:.4f} g")
+        ax.set_xlabel("lesser collapse acceleration of +x and -x [g]")
+        ax.set_ylabel("share of random geometries with at most this acceleration")
         ax.set_ylim(0.0, 1.0)
         ax.set_title("Capacity within the tolerance of the survey")
         style.legend_below(fig, ax)
         return [
             (
                 style.save(fig, folder, name),
-                "Capacities of random surveys of the same stones, with corners and joints displaced within the deviation.",
+                "Capacities of random geometries of the same blocks. Corners and joints are displaced within the deviation of the survey.",
             )
         ]

@@ -12,8 +12,8 @@ class FrameOptions(Table):
     heights: Literal["dolce", "lagomarsino"] = key(
         "dolce",
         (
-            "deformable height of piers: effective height by Dolce, or the mean height of the adjacent openings (for outer "
-            "piers: mean of opening and storey)"
+            "deformable height of piers. dolce: effective height by Dolce; lagomarsino: mean height of the adjacent "
+            "openings (for outer piers: mean of opening and storey)"
         ),
         source="Dolce 1991; Lagomarsino and others 2013",
     )
@@ -76,8 +76,10 @@ class FrameOptions(Table):
     )
     flanges: Literal["effective", "whole", "none"] = key(
         "effective",
-        "flanges at corners: effective lifts at most the weight on the effective width of the other wall; whole: its whole pier; none: "
-        "corners transfer no vertical force",
+        (
+            "flanges at corners. effective: a wall lifts at most the weight on the effective width of the other wall; "
+            "whole: the weight on the whole pier of the other wall; none: corners transfer no vertical force"
+        ),
         source="after EN 1996-1-1, 5.5.3",
     )
     softening: float = key(0.5, 'beta of shear = "damage": exponent of the resistance beyond the peak', gt=0, lt=2)

@@ -180,6 +180,12 @@ class _Maker:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
         if plan.ring_beams:
             self.remarks.append("Ring beams of [[structure.ring_beams]] remain elastic: check their reinforcement for the greatest moment.")
+            weak = {b.material for b in plan.ring_beams if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
+            if weak:
+                self.remarks.append(
+                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} has no "
+                    "tensile_strength: spandrels beside them have the full strut against a tie. Give the strength, or check the reinforcement."
+                )
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
@@ -562,7 +568,7 @@ class _Maker:
             young = material.young
             shear = young / (2.0 * (1.0 + material.poisson))
         else:
-            if high > float(self.plan.levels[strip.storey]) + MEETS:  # the ring beam lies within
+            if high > float(self.plan.levels[strip.storey]) - MEETS:  # the ring beam below the level lies within
                 depth -= self._ring_depth(wall, strip.storey)
             tie = self._tie(strip)
             moment, by_shear = self._spandrel_strength(strip, depth, length, cohesion, tension, pressed, tie)

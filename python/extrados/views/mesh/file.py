@@ -49,7 +49,9 @@ def mesh_file(building: Description, options: MeshOptions, seed: int | None = No
 def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Mesh:
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     if wall.groups:
-        raise BadGeometry("groups belong to shells in space (`pushover`); for a plane wall give regions", ("structure", "groups"))
+        raise BadGeometry(
+            ("the key groups is only for shells in space (`pushover`); for a plane wall give the key regions"), ("structure", "groups")
+        )
     name, mesh = open_mesh(wall, building)
     found: dict[str, list[np.ndarray]] = {}
     for cells in mesh.cells:

@@ -44,7 +44,10 @@ class MeshOptions(Table):
     element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; blocks also get triangles where quadrilaterals do not fit")
     pattern: Literal["structured", "random"] = key(
         "structured",
-        ("pattern of the mesh: structured grid, or triangles on randomly moved points (without mesh lines that cracks could follow)"),
+        (
+            "pattern of the mesh. structured: structured grid; random: triangles on randomly moved points (without mesh "
+            "lines that cracks could follow)"
+        ),
     )
     seed: int = key(1, "of the random pattern", ge=0, le=2**31 - 1)
     refine: list[Refinement] = key([], "ranges with smaller elements", max_length=100)

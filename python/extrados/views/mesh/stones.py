@@ -113,8 +113,7 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
                 )
             )
     building.refuse_mixture()
-    make_joints = _rows if rows_of_elements else _interfaces
-    materials, group = make_joints(building, assembly, thickness, nodes, row, joint)
+    materials, group = (_rows if rows_of_elements else _interfaces)(building, assembly, thickness, nodes, row, joint)
     groups.append(group)
     mass = np.concatenate([*(_masses(s, assembly, i) for i, s in enumerate(stones)), np.zeros(free - first[-1])])
     stone_of = np.repeat([*range(len(stones)), -1], [*(len(s.xy) for s in stones), free - first[-1]])

@@ -35,7 +35,7 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
     block = rocks_as_block(building)
     if building.joints.energy_ratio is not None and not block:
         raise NoView(
-            "energy_ratio belongs to a block: give restitution, the ratio of angular velocity after / before an impact",
+            "energy_ratio is only for a block: give restitution, the ratio of angular velocity after / before an impact",
             ("joints", "energy_ratio"),
         )
     if linear and not block:

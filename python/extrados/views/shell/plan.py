@@ -108,8 +108,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     for prop in plan.props:
         w = next(i for i, wall in enumerate(plan.walls) if wall.name == prop.wall)
         nodes, _ = _level_nodes(plan, prop.storey, grids[w], number)
-        across = int(np.abs(plan.walls[w].direction).argmin())
-        held = sorted({*held, *((int(n), across) for n in nodes)})
+        held = sorted({*held, *((int(n), int(np.abs(plan.walls[w].direction).argmin())) for n in nodes)})
     kept = np.cumsum(used) - 1
     parts = [ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts]  # nodes within openings are dropped
     joints = [replace(joint, connect=kept[joint.connect]) for joint in joints]
@@ -428,7 +427,11 @@ def _between(
     key = ("structure", "corners", plan.corners.index(corner))
     if MEETS < t < wall.length - MEETS:
         raise BadGeometry(
-            (f"walls: wall '{wall.name}' passes through '{names[one]}', but a joint requires that the second wall ends on the first"), key
+            (
+                f"walls: wall '{wall.name}' passes through wall '{names[one]}'. A joint requires that wall '{wall.name}' "
+                f"ends on wall '{names[one]}'"
+            ),
+            key,
         )
     first = t <= MEETS  # it begins there
     j = 0 if first else len(grid.s) - 1
