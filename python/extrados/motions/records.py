@@ -10,7 +10,7 @@ from extrados.motions import processing
 from extrados.motions.directions import rotated
 from extrados.motions.formats.columns import Columns
 from extrados.motions.formats.recognise import read_record as read_record
-from extrados.motions.formats.record import ACCELERATION, QUANTITIES, Record, RecordError
+from extrados.motions.formats.record import ACCELERATION, MEAN_STEP, QUANTITIES, Record, RecordError
 from extrados.motions.formats.record import read_file as read_file
 from extrados.motions.motion import Motion
 from extrados.schema import files
@@ -131,7 +131,7 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
         # Rounded times tell the step no closer than their rounding spread over the record.
         if abs(record.step - step) * (len(record.values) - 1) > 1.001 * record.rounded:
             raise RecordError(f"{name}: the file states a time step of {record.step:g} s, and the deck {step:g} s: remove time_step")
-        notes = [note for note in notes if "the program uses their mean step" not in note]
+        notes = [note for note in notes if MEAN_STEP not in note]
         notes.append(f"{record.name}: the time_step of the deck is used, because the times of the file are rounded")
     elif record.step is not None:
         step = record.step

@@ -467,8 +467,7 @@ class Shown:
         self.send("value", "gamma", "fractured", "buttress_alone")
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
-        key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
-        about = key.replace("_", " ")
+        about = self._results.vary.replace("_", " ")
         self._draw("Capacity", _axis("value", about, self._results.unit), _axis("", "collapse acceleration", "g"), rows)
 
     def strengthen(self) -> None:

@@ -134,8 +134,8 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "weaker-direction",
         mine,
         (
-            f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis the cross-sectional area of the walls is "
-            f"{area[weak]:.3g} m^2, and along the {facts.rows[strong].label.removeprefix('push along ')} axis "
+            f"Along the {weak.removeprefix('push-')} axis the cross-sectional area of the walls is "
+            f"{area[weak]:.3g} m^2, and along the {strong.removeprefix('push-')} axis "
             f"{area[strong]:.3g} m^2."
         ),
         weak_m2=area[weak],

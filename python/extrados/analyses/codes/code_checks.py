@@ -12,7 +12,7 @@ from extrados.analyses.codes.parts import Part, asce41, en1998, nzsee
 from extrados.analyses.codes.piers import Pier, asce41_piers, en1998_piers, ntc_piers, nzsee_piers
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.rocking.conditions import of_one, told
+from extrados.analyses.rocking.conditions import ELSEWHERE, of_one, told
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
 from extrados.model.structures.block import BlockAssembly
@@ -125,7 +125,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         )
         conditions = of_one(rocker, dynamic)
         context.warnings += told(conditions)
-        violated += [text for text in conditions.violated if text.startswith("Hinges form at other joints")]
+        violated += [text for text in conditions.violated if text.startswith(ELSEWHERE)]
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
     if violated:
         beside["violated"] = violated

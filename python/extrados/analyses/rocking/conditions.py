@@ -18,6 +18,8 @@ from extrados.views.rockers.soft_base import SoftBaseModel
 from extrados.views.rockers.stack import StackModel
 from extrados.views.rockers.watch import LOST, Watch
 
+#: How a violated condition begins if hinges form at other joints; `code-checks` chooses by it
+ELSEWHERE = "Hinges form at other joints"
 #: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
 ROWS = ("friction", "slips", "strays")
 
@@ -127,7 +129,7 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     if counted.elsewhere:
         share = _share(counted.elsewhere, counted.runs, runs)
         found.append(
-            f"Hinges form at other joints {share}: {_elsewhere(rocker)}. Use dem."
+            f"{ELSEWHERE} {share}: {_elsewhere(rocker)}. Use dem."
             if len(watch.joints) > 1
             else f"The whole base lifts off {share}, but rocking assumes contact with the ground. Use dem."
         )
@@ -228,7 +230,7 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         found.append(
             (
                 leaves.time_s,
-                f"Hinges form at other joints: the thrust line passes outside {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"
+                f"{ELSEWHERE}: the thrust line passes outside {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"
                 if len(watch.joints) > 1
                 else f"The whole base lifts off at {leaves.time_s:.3f} s, but rocking assumes contact with the ground.{use}",
             )
@@ -240,7 +242,7 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
             (
                 impacts[0] if impacts else response.stop_time,
                 (
-                    f"Hinges form at other joints: after an impact {100.0 * astray:.0f} % of the kinetic energy does not belong to "
+                    f"{ELSEWHERE}: after an impact {100.0 * astray:.0f} % of the kinetic energy does not belong to "
                     f"the assumed mechanism.{use}"
                 ),
             )

@@ -11,6 +11,7 @@ import numpy as np
 
 from extrados.motions.formats.record import (
     LONGEST_STEP,
+    MEAN_STEP,
     SHORTEST_STEP,
     TIME,
     Lines,
@@ -68,7 +69,7 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
             )
         notes = [f"the times of {text.path.name} are in {given}"] if given not in (None, "s") else []
         if uneven:
-            notes.append(f"the times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; the program uses their mean step")
+            notes.append(f"the times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; {MEAN_STEP}")
         data, names, rounded = table[:, 1:], names[1:] or [f"column {k + 2}" for k in range(width - 1)], per * rounded
     elif columns == "components" or names:
         step, rounded, notes, data = _stated_step(text, said), 0.0, [], table

@@ -16,6 +16,9 @@ LONGEST_NUMBER = 60  # characters
 ALIKE = 20  # numbers of equally many decimals by which a last one with fewer is known to be cut off
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.5  # s: sampling steps that a file of a strong motion may have
 
+#: How the note on rounded times ends; a time_step of the deck replaces this note
+MEAN_STEP = "the program uses their mean step"
+
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
 ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "mg": 9.80665e-3}
 VELOCITY = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "in/s": 0.0254}
