@@ -350,7 +350,7 @@ def motions_that_cannot_be_used_are_named(deck: Deck, zeros: int, amplitude: flo
         return
     ok(every, good)
     for k in range(zeros):
-        must(f"r{k} has no result: r{k}.csv: the peak is 0 g in 'g': below 0.0001 g" in every.warnings, every.warnings)
+        must(f"r{k} has no result: r{k}.csv: the peak is 0 g with the unit 'g': below 0.0001 g" in every.warnings, every.warnings)
     must(every.results.failed == 2 * zeros, f"{every.results.failed} of {zeros} motions without acceleration")
     near("shares", every.results.collapse_probability, good.results.collapse_probability, 1e-9)
 
