@@ -148,7 +148,7 @@ def test_a_wall_that_passes_through_another_has_no_joint_with_it(tmp_path):
     text = textwrap.dedent(FLANGE).replace("CORNER", '{ walls = ["web", "flange"], bond = "joint" }')
     (tmp_path / "deck.toml").write_text(text.replace("BOND", "2e4").replace("TOUGH", "10"))
     told = CliRunner().invoke(app, ["check", str(tmp_path / "deck.toml")], env={"COLUMNS": "400"})
-    assert told.exit_code == 2 and "wall 'flange' passes through 'web'" in told.output
+    assert told.exit_code == 2 and "wall 'flange' passes through wall 'web'" in told.output
 
 
 def test_joints_without_a_bond_along_them_are_reported(tmp_path):
