@@ -260,6 +260,20 @@ def test_blocks_that_may_recover_have_not_collapsed(structure: dict) -> None:
         assert contacts.fallen < np.hypot(*(lying - at_rest))
 
 
+@pytest.mark.parametrize("width", [1.5, 2.0, 3.0])
+def test_a_stout_block_on_its_side_has_overturned(width: float) -> None:
+    """At rest after a quarter turn about its toe it is nearer than the limit of displacement, and does not count as recovered."""
+    building = building_of({"kind": "block", "width": width, "height": 1.0}, 5.0)
+    contacts = contacts_of(building.rocker(soft_base=True), building)
+    half = np.array([0.5 * width, 0.5])
+    away = np.hypot(*(half[::-1] - [-half[0], half[1]]))
+    assert away < contacts.fallen
+    lying = np.array([[0.0], [away]]), np.array([[0.0], [0.5 * np.pi]]), np.array([[0.0], [0.5 - half[0]]])
+    assert contacts.collapse.reached(*lying).tolist() == [[False], [True]]
+    swung = [np.concatenate([part, part[:1]]) for part in lying]  # it has come back
+    assert not contacts.collapse.reached(*swung).any()
+
+
 def test_a_stack_that_leans_far_and_returns_has_not_collapsed() -> None:
     """Stout blocks turn by .24 rad, .78 of the critical rotation, and come back: a fifth of the size is no collapse there."""
     stack = {"kind": "stack", "lower_width": 1.37, "upper_width": 0.954, "lower_height": 2.53, "upper_height": 1.15}

@@ -181,6 +181,15 @@ def test_a_stage_that_a_limit_ends_before_its_target_ends_the_run(limit: dict, w
     assert any(f"before its target ({why})" in text and "not run: push" in text for text in result.warnings)
 
 
+def test_the_budget_ends_constant_loads_too() -> None:
+    """Constant loads that crack the wall take more events than the budget has time for: the answer is open, and says why."""
+    loads = {"constant": [{"kind": "spread", "edge": "top", "fx": 6.5e3}], "constant_damage": True}
+    push = [{"name": "push", "reference": [{"kind": "spread", "edge": "top", "fx": 1e3}]}]
+    result = run_deck(wall(push, budget=0.01, events=4000, ripple=0.01, mesh={"size": 0.0625}, **loads))
+    assert "budget of 0.01 s" in result.answer
+    assert result.verdict.outcome == "open"
+
+
 @pytest.mark.parametrize(
     ("stage", "words"),
     [

@@ -163,11 +163,13 @@ def displacements(model: Model, run: dem.Run) -> np.ndarray:
 @dataclass(frozen=True)
 class Collapse:
     """When a block has collapsed: it moved farther than `displacement` [m], and it turned by more than `turn` [rad] or is lower
-    by more than `drop` [m]. A block that slides does neither, however far."""
+    by more than `drop` [m]. A block that slides does neither, however far. A block that is turned by more than `lies` [rad] at
+    the end has overturned, however near."""
 
     displacement: float
     turn: float
     drop: float
+    lies: float = np.inf
 
     @classmethod
     def of(cls, displacement: float | None, size: float) -> "Collapse":
@@ -183,7 +185,9 @@ class Collapse:
 
     def reached(self, away: np.ndarray, turn: np.ndarray, drop: np.ndarray) -> np.ndarray:
         """Which bodies have collapsed (time, body)."""
-        return (away > self.displacement) & ((turn > self.turn) | (drop > self.drop))
+        gone = (away > self.displacement) & ((turn > self.turn) | (drop > self.drop))
+        gone[-1:] |= turn[-1:] > self.lies
+        return gone
 
 
 @dataclass(frozen=True)

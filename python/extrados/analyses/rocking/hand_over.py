@@ -45,6 +45,8 @@ BEFORE = 1e-3
 COARSE = 0.02
 #: Blocks have collapsed beyond a fifth of the size, and so many times as far as at the critical rotation, from which they may recover
 FALLEN, BEYOND = 0.2, 1.5
+#: Rotation from which a block at the end of a run has overturned, where no critical rotation exceeds it [rad]
+LIES = 0.25 * np.pi
 #: Heights of joints on the ground that differ by no more than this share of the size are one level
 LEVEL = 1e-6
 #: Outcome of `rocking` for one of contacts
@@ -101,6 +103,11 @@ class Leaving:
     def critical(self) -> float:
         """The least critical rotation [rad]."""
         return min(self.limits)
+
+    @property
+    def farthest(self) -> float:
+        """The greatest critical rotation [rad]."""
+        return max(self.limits)
 
     @property
     def reach(self) -> float:
@@ -170,6 +177,11 @@ class StackLeaving:
         return self.pair.assembly
 
     @property
+    def farthest(self) -> float:
+        """See Leaving: of both blocks as one, or of the upper alone."""
+        return max(self.pair.whole[0], self.pair.alone[0])
+
+    @property
     def reach(self) -> float:
         """See Leaving: of both blocks as one, and of the upper alone."""
         whole, alone = self.pair.whole[0], self.pair.alone[0]
@@ -233,6 +245,11 @@ class Contacts:
         return max(FALLEN * self.model.size, BEYOND * self.leaving.reach)
 
     @property
+    def collapse(self) -> Collapse:
+        """When a block has collapsed: a stout one on its side is nearer than `fallen`."""
+        return replace(Collapse.of(self.fallen, self.model.size), lies=max(LIES, self.leaving.farthest))
+
+    @property
     def options(self) -> Dem:
         """Table of an analysis that follows them."""
         return Dem(kind="dem", solver="nonsmooth", floor=self.floor, collapse_displacement=self.fallen)
@@ -293,6 +310,7 @@ def follow_contacts(
     options = contacts.options.model_copy(update={"end_time": end_time, "output_step": output_step})
     context.warnings += dem_model.adjusted(contacts.model)
     trial = Trial(context, options, contacts.model, begin)
+    trial.collapse = contacts.collapse
     result = dem_history.follow(context, options, trial, "rocking-contacts")
     assert isinstance(result.results, DemRun)
     return result.results, result
@@ -342,13 +360,13 @@ class Fates:
         options, model = contacts.options, contacts.model
         step = COARSE * contacts.leaving.time_unit
         asked = core_options(context, options, model)
-        collapse = Collapse.of(contacts.fallen, model.size)
+        collapse = contacts.collapse
         brief = replace(asked, end_time=dem_model.settle_time(model), output_step=step, stop_at_rest=True)
         return cls(contacts, brief, collapse)
 
     def alike(self, contacts: Contacts) -> "Fates":
         """The same of another building of the same joints."""
-        model, collapse = contacts.model, Collapse.of(contacts.fallen, contacts.model.size)
+        model, collapse = contacts.model, contacts.collapse
         options = replace(
             self.options,
             settle_damping=model.values.settle_damping,

@@ -24,7 +24,7 @@ STICKS, SLIDES_UP, SLIDES_DOWN = 0.0, 1.0, 2.0
 
 
 class NotCarried(Refused):
-    """The constant loads lead to no state: to a mechanism, or to displacements that are not small."""
+    """The constant loads lead to no state: to a mechanism, to displacements that are not small, or to the end of a limit of the run."""
 
 
 @dataclass(frozen=True)

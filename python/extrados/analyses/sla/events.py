@@ -346,6 +346,7 @@ def _constant_stage(
 ) -> core.Events:
     """Bring the constant loads from 0 to 1, with damage where they ask for it; the state is kept on the way."""
     begin = len(way.parts)
+    ends_at = time.process_time() + (options.budget or np.inf)
     stop = core.Stop(load=1.0, compliance=model.mechanism_ratio)
     while True:
         if way.done % KEPT == 0 and len(way.parts) > begin:
@@ -357,16 +358,25 @@ def _constant_stage(
                 break
             if chain is not None:
                 chain.keep(way.done, way.arrays(damage, standing))
-        part = core_model.run(min(500, options.events - way.done), [model.control], stop)
+        part = core_model.run(min(GRID, options.events - way.done), [model.control], stop)
         way.parts.append(part)
         progress(way.done, options.events, f"constant loads, event {way.done}")
         if part.reason or part.interrupted or way.done >= options.events:
+            break
+        if time.process_time() > ends_at:
+            part.reason = SPENT
             break
     events = core.Events.join(way.parts)
     if events.reason == "no point limits the load":
         return events  # nothing can crack under A: it is carried
     if events.reason != "target load" and not events.interrupted:
         most = float(events.load.max()) if len(events) else 0.0
+        if events.reason == SPENT:
+            raise NotCarried(
+                f"the budget of {options.budget:.4g} s of processor time ended while the constant loads were applied, at "
+                f"{100 * most:.3g} % of them. Increase budget, or use larger elements",
+                WHOLE,
+            )
         why = events.reason or f"{way.done} events were not enough"
         raise NotCarried(f"the structure cannot carry the constant loads: with damage it reaches {100 * most:.3g} % of them ({why})", WHOLE)
     return events
