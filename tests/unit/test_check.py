@@ -163,7 +163,7 @@ WRONG = {
     "wall that is nowhere": ("finite number", WALL.replace("start = [0, 0]", "start = [0, nan] # here") + PUSH),
     "wall of no length": (
         "the same position",
-        WALL.replace("[[structure.walls]]", "[[structure.walls]] # here").replace("[3, 0]", "[0, 0]") + PUSH,
+        WALL.replace("start = [0, 0]\n", "start = [0, 0] # here\n").replace("[3, 0]", "[0, 0]") + PUSH,
     ),
     "wall in the air": (
         "is not supported",
