@@ -201,52 +201,7 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         labels = {v.strategy: v.label for v in r.verdicts}
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
         found.append(Words(f"No reason was found for the difference between these strategies: {text}.", "bad"))
-    if r.sensitivity:
-        found.append(Heading(words("Sensitivity of the verdicts"), 2))
-        moved = [
-            (
-                m.key,
-                f"{cell(m.base)} {m.unit}".strip(),
-                f"{m.low:.4g} to {m.high:.4g}",
-                _both(m.tilt_low, m.tilt_high),
-                cell(m.tilt_turns, ""),
-                _both(m.rocking_low, m.rocking_high),
-                cell(m.rocking_turns, ""),
-            )
-            for m in r.sensitivity
-            if m.dem_base is None
-        ]
-        head: tuple[str, ...] = (
-            "key",
-            "value",
-            "varied",
-            "margin of limit analysis",
-            "verdict changes at",
-            "margin of rocking",
-            "verdict changes at",
-        )
-        found.append(Table(head, moved, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
-        shaken = [
-            (
-                m.key,
-                f"{cell(m.base)} {m.unit}",
-                f"{m.low:.3g} to {m.high:.3g}",
-                cell(m.dem_base),
-                _both(m.dem_low, m.dem_high),
-                cell(m.dem_turns, ""),
-            )
-            for m in r.sensitivity
-            if m.dem_base is not None
-        ]
-        if shaken:
-            found.append(
-                Words(
-                    "Values that affect only discrete elements: ratio of the displacement of the blocks to the "
-                    "displacement that counts as collapse."
-                )
-            )
-            head = ("key", "value", "moved", "at the value", "varied", "rotates at")
-            found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
+    found += _sensitive(r, words)
     if r.probes:
         found.append(Heading(words("Further runs"), 2))
         probed = [(p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes]
@@ -255,6 +210,58 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         )
     if r.not_done:
         found.append(Words("Not done, or without a verdict: " + "; ".join(r.not_done) + ".", "warn"))
+    return found
+
+
+def _sensitive(r: Assess, words: Language) -> list[Block]:
+    """How far the verdicts move with the values of the deck."""
+    if not r.sensitivity:
+        return []
+    found: list[Block] = [Heading(words("Sensitivity of the verdicts"), 2)]
+    moved = [
+        (
+            m.key,
+            f"{cell(m.base)} {m.unit}".strip(),
+            f"{m.low:.4g} to {m.high:.4g}",
+            _both(m.tilt_low, m.tilt_high),
+            cell(m.tilt_turns, ""),
+            _both(m.rocking_low, m.rocking_high),
+            cell(m.rocking_turns, ""),
+        )
+        for m in r.sensitivity
+        if m.dem_base is None
+    ]
+    head: tuple[str, ...] = (
+        "key",
+        "value",
+        "varied",
+        "margin of limit analysis",
+        "verdict changes at",
+        "margin of rocking",
+        "verdict changes at",
+    )
+    found.append(Table(head, moved, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
+    shaken = [
+        (
+            m.key,
+            f"{cell(m.base)} {m.unit}",
+            f"{m.low:.3g} to {m.high:.3g}",
+            cell(m.dem_base),
+            _both(m.dem_low, m.dem_high),
+            cell(m.dem_turns, ""),
+        )
+        for m in r.sensitivity
+        if m.dem_base is not None
+    ]
+    if shaken:
+        found.append(
+            Words(
+                "Values that affect only discrete elements: ratio of the displacement of the blocks to the "
+                "displacement that counts as collapse."
+            )
+        )
+        head = ("key", "value", "moved", "at the value", "varied", "rotates at")
+        found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     return found
 
 
