@@ -162,10 +162,13 @@ class Frame(Owner):
         check(status, "equilibrium under the weight")
         return Rest(displacement, force.T, tangent)
 
-    def push(self, pattern: np.ndarray, control: np.ndarray, target: float, steps: int = 200, drop: float = 0.5) -> Path:
+    def push(
+        self, pattern: np.ndarray, control: np.ndarray, target: float, steps: int = 200, drop: float = 0.5, most: int | None = None
+    ) -> Path:
         """Push by a growing multiple of `pattern` (n) [N] until control . d (beyond that at rest) is `target` [m] or the
-        multiple falls below `drop` of its greatest."""
-        most = 2000 + 2 * steps
+        multiple falls below `drop` of its greatest. most: states that are kept, by default as many as the steps and the search
+        for drift limits take."""
+        most = 2000 + 2 * steps if most is None else most
         room_for(self.n + 5 * self.count, most)
         own = real("pattern", pattern, (self.n,)), real("control", control, (self.n,))
         count, stop, curve, displacement, force, drift, state, status = long_call(
