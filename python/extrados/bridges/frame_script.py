@@ -14,8 +14,8 @@ import numpy as np
 from extrados._build_info import VERSION
 from extrados.decks.reader import Deck
 from extrados.model.errors import BadGeometry
+from extrados.views.frame.frame import EquivalentFrame, Strip
 from extrados.views.frame.options import FrameOptions
-from extrados.views.frame.plan import EquivalentFrame, Strip
 
 log = logging.getLogger(__name__)
 

@@ -9,8 +9,8 @@ from extrados.views.blocks import Masonry, maker_of
 if TYPE_CHECKING:  # a view is loaded when it is asked for
     from extrados.model.geometry.solids.assembly import SolidAssembly
     from extrados.model.geometry.solids.strands import Strand
+    from extrados.views.frame.frame import EquivalentFrame
     from extrados.views.frame.options import FrameOptions
-    from extrados.views.frame.plan import EquivalentFrame
     from extrados.views.mesh.mesh import Mesh
     from extrados.views.mesh.options import MeshOptions
     from extrados.views.rigid import RigidBodies

@@ -3,7 +3,7 @@
 import numpy as np
 
 from extrados.results.model import Array
-from extrados.views.frame.plan import EquivalentFrame
+from extrados.views.frame.frame import EquivalentFrame
 
 #: Number of a kind of element
 KINDS = {"spandrel": 0, "pier": 1, "ring beam": 2}

@@ -35,7 +35,7 @@ from extrados.motions.motion import Motion
 from extrados.results import frame as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
-from extrados.views.frame.plan import EquivalentFrame
+from extrados.views.frame.frame import EquivalentFrame
 
 STATES: tuple[out.FrameLimitState, ...] = ("strength", "first-limit", "collapse")
 #: Of the greatest drift over all motions: the median, and what a normal variable has at one deviation

@@ -12,7 +12,7 @@ from extrados.core.calls import interruptible
 from extrados.core.frame import STATE, Frame, Path
 from extrados.results import frame as out
 from extrados.results.model import Array, Result, TableData
-from extrados.views.frame.plan import EquivalentFrame
+from extrados.views.frame.frame import EquivalentFrame
 
 #: Time after the motion [s]
 AFTER = 2.0

@@ -11,7 +11,7 @@ from extrados.core.errors import CoreError
 from extrados.core.frame import Frame, Rest
 from extrados.results import frame as out
 from extrados.results.model import Array, Result
-from extrados.views.frame.plan import EquivalentFrame
+from extrados.views.frame.frame import EquivalentFrame
 
 
 @dataclass(frozen=True)

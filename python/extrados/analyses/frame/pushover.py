@@ -18,7 +18,7 @@ from extrados.core.calls import interruptible
 from extrados.core.frame import STATE, STATES, Path
 from extrados.results import frame as out
 from extrados.results.model import Array, Result, TableData
-from extrados.views.frame.plan import EquivalentFrame
+from extrados.views.frame.frame import EquivalentFrame
 
 #: Fall of the base shear at which codes take a building as failed
 DROP = 0.8

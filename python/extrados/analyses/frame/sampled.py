@@ -12,8 +12,8 @@ from extrados.analyses.frame.tables import MASONRY, OPTIONS
 from extrados.model.properties import Material
 from extrados.model.structures.plan import Plan
 from extrados.views.building import Building
+from extrados.views.frame.frame import EquivalentFrame
 from extrados.views.frame.options import FrameOptions
-from extrados.views.frame.plan import EquivalentFrame
 
 #: Strengths of the masonry, which the factor `strength` multiplies together
 STRENGTHS = ("compressive_strength", "cohesion", "diagonal_strength")

@@ -24,7 +24,7 @@ from extrados.results.verdict import SelfWeight
 from extrados.results.verification import Verification
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
-from extrados.views.frame.plan import EquivalentFrame
+from extrados.views.frame.frame import EquivalentFrame
 
 
 class Push(Protocol):

@@ -6,27 +6,25 @@ no stiffness out of their planes; their masses move with the corners.
 """
 
 import itertools
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from extrados.core.frame import UNLIMITED, Frame, Link, MacroElement
+from extrados.core.frame import UNLIMITED, Link, MacroElement
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.properties import Material
-from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, WallOpening, meeting, nearly_meeting
+from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
+from extrados.views.frame.division import Division, parts_around_openings, thickness_of
 from extrados.views.frame.flanges import Flange, effective_part
+from extrados.views.frame.frame import EquivalentFrame, PointMass, Strip
 from extrados.views.frame.options import FrameOptions
-from extrados.views.frame.rules import Side, deformable
 from extrados.views.frame.spandrels import BLOCK, flexural_strength, shear_strength, strut_of, strut_strength
 from extrados.views.mesh.triangles import fill_ring
 from extrados.views.shell.plan import RIGID_THICKNESS, RIGID_YOUNG
 
 #: Shear factor of rectangles
 SHEAR_FACTOR = 1.2
-#: Piers above each other belong to one node where they overlap by more than this part of the narrower
-OVERLAP = 0.25
 #: Share of the compressive strength that masonry has along the wall
 HORIZONTAL = 0.5
 #: Distance of a rod from the middle plane of a wall, and from its spandrels, within which it is their tie [m]
@@ -35,121 +33,16 @@ BESIDE = 0.5
 HELD = 1e12
 
 
-@dataclass(frozen=True)
-class Strip:
-    """A pier, spandrel or ring beam: its wall, storey (of the others that below their level), its name, its whole masonry and its
-    deformable part as s from, to and z from, to [m]."""
-
-    kind: str
-    name: str
-    wall: int
-    storey: int
-    masonry: tuple[float, float, float, float]
-    part: tuple[float, float, float, float]
-    thickness: float
-    nodes: tuple[int, int]
-
-
-@dataclass
-class Node:
-    """A rigid node of a wall on a level, its extent along the wall, its freedoms (w, rotation)."""
-
-    wall: int
-    level: int
-    start: float
-    end: float
-    freedoms: tuple[int, int] = (-1, -1)
-
-    @property
-    def s(self) -> float:
-        """Its middle along the wall [m]."""
-        return 0.5 * (self.start + self.end)
-
-
-@dataclass(frozen=True)
-class PointMass:
-    """A mass [kg] at a place x, y, z [m] and the rows (2, n) by which freedoms displace it along x and y."""
-
-    mass: float
-    place: tuple[float, float, float]
-    rows: np.ndarray
-    level: int
-
-
-@dataclass
-class EquivalentFrame:
-    """`strips` goes with `elements`. inertia (n): masses of the nodes that move up and down, and turn; `remarks` states what is
-    neglected."""
-
-    plan: Plan
-    nodes: list[Node]
-    strips: list[Strip]
-    elements: list[MacroElement]
-    links: list[Link]
-    linear: np.ndarray
-    weight: np.ndarray
-    masses: list[PointMass]
-    inertia: np.ndarray
-    total_weight: float
-    remarks: list[str] = field(default_factory=list)
-    flanges: list[Flange] = field(default_factory=list)
-
-    @property
-    def piers(self) -> int:
-        """How many of the elements are piers."""
-        return len(self.piers_at)
-
-    @property
-    def spandrels(self) -> int:
-        """How many are spandrels."""
-        return sum(s.kind == "spandrel" for s in self.strips)
-
-    @property
-    def piers_at(self) -> list[int]:
-        """Their numbers among the elements."""
-        return [k for k, e in enumerate(self.elements) if e.pier]
-
-    @property
-    def mass(self) -> np.ndarray:
-        """Masses (n, n) [kg] that move horizontally, by the freedoms."""
-        total = np.zeros_like(self.linear)
-        for one in self.masses:
-            total += one.mass * one.rows.T @ one.rows
-        return total
-
-    def unit(self, direction: np.ndarray) -> np.ndarray:
-        """Displacements (n) of a unit motion along a direction on the plan."""
-        found = np.zeros(len(self.weight))
-        for (wall, _), freedom in self.along.items():
-            found[freedom] = self.plan.walls[wall].direction @ direction
-        return found
-
-    #: Wall and level: freedom of its displacement along the wall
-    along: dict[tuple[int, int], int] = field(default_factory=dict)
-
-    def core(self) -> Frame:
-        """The frame in the core."""
-        return Frame(self.elements, self.links, self.linear, self.weight, self.mass + np.diag(self.inertia))
-
-    def control(self, direction: np.ndarray, level: int) -> np.ndarray:
-        """Row (n) that gives the displacement along a direction of the masses on a level, their mean."""
-        own = [one for one in self.masses if one.level == level]
-        return sum(one.mass * direction @ one.rows for one in own) / sum(one.mass for one in own)
-
-
 def frame_of_plan(building: Description, options: FrameOptions) -> EquivalentFrame:
     """Piers, spandrels and rigid nodes of walls on a plan, with floors, loads and ties; BadGeometry names what does not fit."""
     assert isinstance(building.structure, Plan)
     return _Maker(building, building.structure, options).made()
 
 
-class _Maker:
+class _Maker(Division):
     def __init__(self, building: Description, plan: Plan, options: FrameOptions):
-        self.building, self.plan, self.options = building, plan, options
-        self.remarks: list[str] = []
-        self.nodes: list[Node] = []
-        self.at: dict[tuple[int, int], list[int]] = {}  # wall and level: its nodes from start to end
-        self.strips: list[Strip] = []
+        super().__init__(plan, options)
+        self.building = building
         self.placed: list[tuple[int, int, float, float, float]] = []  # vertical forces: wall, level, s from, to, force
         self.flanges: list[Flange] = []
         self.junctions = {
@@ -190,7 +83,7 @@ class _Maker:
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
                     raise BadGeometry(f"wall '{wall.name}' does not reach the ground, so it has no pier below")
-                self._divide(w, wall)
+                self.divide_wall(w, wall)
         n = self._number()
         self.linear, self.weight = np.zeros((n, n)), np.zeros(n)
         self.masses: list[PointMass] = []
@@ -237,100 +130,6 @@ class _Maker:
 
     def _named(self, name: str) -> int:
         return next(w for w, wall in enumerate(self.plan.walls) if wall.name == name)
-
-    # Piers, nodes, spandrels of one wall
-
-    def _divide(self, w: int, wall: PlanWall) -> None:
-        plan, (_, last) = self.plan, self.plan.reach(wall)
-        pieces = {storey: _between(wall, storey, plan.storeys[storey - 1]) for storey in range(1, last + 1)}
-        for storey, found in pieces.items():
-            if not found:
-                raise BadGeometry(f"wall '{wall.name}', storey {storey}: the openings leave no pier")
-        for level in range(last + 1):
-            below, above = pieces.get(level, []), pieces.get(level + 1, [])
-            groups = _groups([p[:2] for p in below], [p[:2] for p in above])
-            if level and any(len(g) > 2 for g in groups):
-                self.remarks.append(
-                    f"Wall '{wall.name}', level {level}: piers above and below do not match. Piers that overlap share one rigid node."
-                )
-            for group in groups:
-                if level and not any(side == 0 for side, _ in group):
-                    ends = [above[k][:2] for _, k in group]
-                    self.remarks.append(
-                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m is above an opening, so "
-                        "only spandrels support it."
-                    )
-                ends = [(below, above)[side][k][:2] for side, k in group]
-                self.at.setdefault((w, level), []).append(len(self.nodes))
-                self.nodes.append(Node(w, level, min(e[0] for e in ends), max(e[1] for e in ends)))
-            self.at[w, level].sort(key=lambda k: self.nodes[k].start)
-        for storey, found in pieces.items():
-            tall, foot = plan.storeys[storey - 1], float(plan.levels[storey - 1])
-            for k, (start, end, left, right) in enumerate(found):
-                low, height = deformable(self.options.heights, end - start, tall, left, right)
-                s = 0.5 * (start + end)
-                self.strips.append(
-                    Strip(
-                        "pier",
-                        f"{wall.name}, storey {storey}, pier {k + 1}",
-                        w,
-                        storey,
-                        (start, end, foot, foot + tall),
-                        (start, end, foot + low, foot + low + height),
-                        _thickness(plan, wall, storey),
-                        (self._node(w, storey - 1, s), self._node(w, storey, s)),
-                    )
-                )
-        for level in range(1, last + 1):
-            own = self.at[w, level]
-            for k, (i, j) in enumerate(itertools.pairwise(own)):
-                self._spandrel(w, wall, level, k, i, j)
-                self._ring_beam(w, wall, level, k, i, j)
-
-    def _node(self, w: int, level: int, s: float) -> int:
-        """The node at or nearest to a place along a wall."""
-        return min(self.at[w, level], key=lambda k: max(self.nodes[k].start - s, s - self.nodes[k].end, 0.0))
-
-    def _spandrel(self, w: int, wall: PlanWall, level: int, k: int, i: int, j: int) -> None:
-        plan = self.plan
-        gap = (self.nodes[i].end, self.nodes[j].start)
-        below = [o for o in wall.openings if o.storey == level and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
-        above = [o for o in wall.openings if o.storey == level + 1 and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
-        z = float(plan.levels[level])
-        low = max((float(plan.levels[level - 1]) + o.z[1] for o in below), default=z)
-        ring = self._ring_depth(wall, level)
-        high = min((z + o.z[0] for o in above), default=z - ring)
-        if high - low - (ring if above else 0.0) < MEETS or not (below or above):
-            return
-        held = [o for o in below if o.lintel is not None]
-        if self.options.spandrels == "none" or (self.options.spandrels == "lintels" and below and not held):
-            return
-        edges = [(min(o.x[0] for o in group), max(o.x[1] for o in group)) for group in (below, above) if group]
-        start, end = (float(np.mean([edge[side] for edge in edges])) for side in (0, 1))
-        self.strips.append(
-            Strip(
-                "spandrel",
-                f"{wall.name}, level {level}, spandrel {k + 1}",
-                w,
-                level,
-                (*gap, low, high),
-                (start, end, low, high),
-                _thickness(plan, wall, level),
-                (i, j),
-            )
-        )
-
-    def _ring_depth(self, wall: PlanWall, level: int) -> float:
-        """Height of the ring beams of a wall on a level; 0 without any [m]."""
-        return sum(beam.depth for beam in self.plan.ring_beams if beam.storey == level and wall in self.plan.of_ring_beam(beam))
-
-    def _ring_beam(self, w: int, wall: PlanWall, level: int, k: int, i: int, j: int) -> None:
-        depth = self._ring_depth(wall, level)
-        start, end, z = self.nodes[i].end, self.nodes[j].start, float(self.plan.levels[level])
-        if depth > 0.0 and end - start > MEETS:
-            box = (start, end, z - depth, z)
-            thickness = _thickness(self.plan, wall, level)
-            self.strips.append(Strip("ring beam", f"{wall.name}, level {level}, ring beam {k + 1}", w, level, box, box, thickness, (i, j)))
 
     # Freedoms
 
@@ -432,7 +231,7 @@ class _Maker:
         for level in (strip.storey - 1, strip.storey):
             self._load(strip.wall, level, start, end, 0.5 * force)
         if strip.name.endswith("pier 1"):  # once for each storey of a wall
-            for start, end, height, upper in _around_openings(wall, strip.storey, high - low):
+            for start, end, height, upper in parts_around_openings(wall, strip.storey, high - low):
                 level = strip.storey if upper else strip.storey - 1
                 self._load(strip.wall, level, start, end, density * GRAVITY * strip.thickness * (end - start) * height)
 
@@ -569,7 +368,7 @@ class _Maker:
             shear = young / (2.0 * (1.0 + material.poisson))
         else:
             if high > float(self.plan.levels[strip.storey]) - MEETS:  # the ring beam below the level lies within
-                depth -= self._ring_depth(wall, strip.storey)
+                depth -= self.ring_depth(wall, strip.storey)
             tie = self._tie(strip)
             moment, by_shear = self._spandrel_strength(strip, depth, length, cohesion, tension, pressed, tie)
             held = any(x.lintel is not None for x in wall.openings if x.storey == strip.storey and x.x[0] < end and x.x[1] > start)
@@ -656,11 +455,11 @@ class _Maker:
             if o.flanges == "none" or (bond is not None and bond.bond in ("open", "joint")):
                 continue
             for level in range(1, min(plan.reach(one)[1], plan.reach(two)[1]) + 1):
-                p, q = self.nodes[self._node(a, level, s)], self.nodes[self._node(b, level, t)]
+                p, q = self.nodes[self.node_at(a, level, s)], self.nodes[self.node_at(b, level, t)]
                 if not (p.start - MEETS <= s <= p.end + MEETS and q.start - MEETS <= t <= q.end + MEETS):
                     continue
                 tall = 0.5 * (plan.storeys[level - 1] + (plan.storeys[level] if level < len(plan.storeys) else 0.0))
-                thin = min(_thickness(plan, wall, level) for wall in (one, two))
+                thin = min(thickness_of(plan, wall, level) for wall in (one, two))
                 material = self._material(one, max(level, plan.reach(one)[0]))
                 shear = o.stiffness * material.young / (2.0 * (1.0 + material.poisson))
                 f = o.flange_strength or o.cohesion or self.building.joints.cohesion
@@ -678,7 +477,7 @@ class _Maker:
     def _flange(self, web: int, wall: int, level: int) -> float:
         """Weight [N] on the effective width of a wall on a level as the flange of another."""
         plan = self.plan
-        thickness, half = (_thickness(plan, plan.walls[w], level) for w in (wall, web))
+        thickness, half = (thickness_of(plan, plan.walls[w], level) for w in (wall, web))
         start, end = effective_part(plan, self.junctions, web, wall, level, thickness, 0.5 * half)
         weight = self._on(wall, level, start, end)
         self.flanges.append(Flange(web, wall, level, start, end, weight))
@@ -737,10 +536,6 @@ class _Maker:
         ]
 
 
-def _thickness(plan: Plan, wall: PlanWall, storey: int) -> float:
-    return wall.thickness or wall.thicknesses[storey - plan.reach(wall)[0]]
-
-
 def _law(wanted: str, cohesion: float, tension: float) -> str:
     """The law of shear that the strengths allow."""
     if wanted in ("mohr-coulomb", "damage", "none"):
@@ -750,62 +545,3 @@ def _law(wanted: str, cohesion: float, tension: float) -> str:
     if not tension > 0.0:
         raise BadGeometry(f"{wanted} needs diagonal_strength", ("analysis", "frame", "shear"))
     return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else wanted
-
-
-def _between(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, Side, Side]]:
-    """Piers of a storey from start to end: s from, to, and what stands beside them."""
-    merged: list[list[float]] = []
-    for opening in sorted((o for o in wall.openings if o.storey == storey), key=lambda o: o.x[0]):
-        if merged and opening.x[0] < merged[-1][1] + MEETS:
-            last = merged[-1]
-            merged[-1] = [last[0], max(last[1], opening.x[1]), min(last[2], opening.z[0]), max(last[3], opening.z[1])]
-        else:
-            merged.append([*opening.x, *opening.z])
-    found, start, left = [], 0.0, Side()
-    for a, b, sill, head in [*merged, [wall.length, wall.length, np.nan, np.nan]]:
-        right = Side() if np.isnan(sill) else Side(sill, head)
-        if a - start > MEETS:
-            found.append((start, a, left, right))
-        start, left = b, right
-    return found
-
-
-def _around_openings(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, float, bool]]:
-    """Masonry above and below the openings of a storey: s from, to, height, whether above."""
-    own: list[WallOpening] = [o for o in wall.openings if o.storey == storey]
-    breaks = sorted({x for o in own for x in o.x})
-    found = []
-    for a, b in itertools.pairwise(breaks):
-        over = sorted((o.z[0], o.z[1]) for o in own if o.x[0] < b - MEETS and o.x[1] > a + MEETS)
-        if not over:
-            continue
-        low, high = over[0][0], max(z[1] for z in over)
-        found += [(a, b, height, upper) for height, upper in ((low, False), (tall - high, True)) if height > MEETS]
-        between, top = 0.0, over[0][1]
-        for sill, head in over[1:]:
-            between += max(sill - top, 0.0)
-            top = max(top, head)
-        if between > MEETS:
-            found.append((a, b, between, True))
-    return found
-
-
-def _groups(below: list[tuple[float, float]], above: list[tuple[float, float]]) -> list[list[tuple[int, int]]]:
-    """Piers below (0, k) and above (1, k) a level that share a node: those that overlap."""
-    members = [(0, k) for k in range(len(below))] + [(1, k) for k in range(len(above))]
-    owner = {one: one for one in members}
-
-    def root(one: tuple[int, int]) -> tuple[int, int]:
-        while owner[one] != one:
-            one = owner[one]
-        return one
-
-    for i, p in enumerate(below):
-        for j, q in enumerate(above):
-            common = min(p[1], q[1]) - max(p[0], q[0])
-            if common > OVERLAP * min(p[1] - p[0], q[1] - q[0]):
-                owner[root((1, j))] = root((0, i))
-    groups: dict[tuple[int, int], list[tuple[int, int]]] = {}
-    for one in members:
-        groups.setdefault(root(one), []).append(one)
-    return list(groups.values())
