@@ -44,7 +44,7 @@ def complaints(context: Context, options: Analysis, building: Building) -> list[
 def _needs(context: Context, options: Analysis) -> Iterator[Need]:
     building = context.building
     for what, key in building.special_keys.items() if options.view or options.uses else ():
-        if what not in options.bears:
+        if what not in options.considers:
             yield _refused(f"{options.kind} cannot include {what}: remove it from the deck of this analysis, or use {_who(what)}", key)
     if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
         yield _refused(
@@ -118,5 +118,5 @@ def _refused(text: str, key: Key) -> Need:
 
 def _who(what: str) -> str:
     """Analyses that take into account a thing, as words."""
-    able = [kind for kind, parts in kinds.ANALYSES.items() if what in kinds.load(parts.table).bears]
+    able = [kind for kind, parts in kinds.ANALYSES.items() if what in kinds.load(parts.table).considers]
     return " or ".join([", ".join(able[:3]), *able[3:4]]) if len(able) <= 4 else f"{', '.join(able[:3])} and others"

@@ -48,7 +48,7 @@ class Analysis(Table):
     it takes, None any that has the view. solid: whether it takes solids, where there is no plane section; shells: kinds without
     stones that it takes as shells. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says; starter_structure,
-    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
+    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. considers: what of
     Building.special_keys it takes into account; one that looks at a building with more is refused. beside: what
     it looks at, or refuses, beside `uses`, without telling it.
     """
@@ -61,7 +61,7 @@ class Analysis(Table):
     uses: ClassVar[tuple[str, ...]] = ()
     method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
-    bears: ClassVar[tuple[str, ...]] = ()
+    considers: ClassVar[tuple[str, ...]] = ()
     beside: ClassVar[tuple[str, ...]] = ()
     starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = ""

@@ -146,7 +146,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
 def _ends(made: Picture, building: Building, options: LimitAnalysisTable) -> dict[str, tuple[State, Mechanism]] | None:
     """Collapse to both sides; None without it, and the words of the picture give the reason."""
     words = made.words
-    if ignored := [what for what in building.special_keys if what not in options.bears]:
+    if ignored := [what for what in building.special_keys if what not in options.considers]:
         words |= {"stands": None, "unknown": f"The analysis {options.kind} cannot consider {' and '.join(ignored)}."}
         return None
     limit: LimitAnalysis | None = None

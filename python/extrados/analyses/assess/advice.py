@@ -13,7 +13,7 @@ OUTCOMES = {"no-hinging": "does not rock", "recovery": "rocks and recovers", "co
 
 def size_interventions(asker: Asker, peak_g: float, rocks: bool) -> Advice | str:
     """Interventions that carry the peak of the hazard, with the outcome of rocking; why there are none, in words."""
-    dropped = tuple(what for what in asker.cannot_bear("tilt") if what != "[supports] abutting_wall")
+    dropped = tuple(what for what in asker.not_considered("tilt") if what != "[supports] abutting_wall")
     if dropped:
         return f"limit analysis, which gives the sizes of interventions, neglects {' and '.join(dropped)}"
     try:

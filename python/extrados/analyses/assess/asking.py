@@ -42,10 +42,10 @@ class Asker:
     deadline: float
     clock: Callable[[], float]
 
-    def cannot_bear(self, kind: str) -> tuple[str, ...]:
-        """What the deck has that an analysis of this kind cannot take into account, as decks call it."""
-        bears = kinds.load(kinds.ANALYSES[kind].table).bears
-        return tuple(what for what in self.context.building.special_keys if what not in bears)
+    def not_considered(self, kind: str) -> tuple[str, ...]:
+        """Special keys of the deck that an analysis of this kind does not consider, as decks call them."""
+        considered = kinds.load(kinds.ANALYSES[kind].table).considers
+        return tuple(what for what in self.context.building.special_keys if what not in considered)
 
     def data(
         self, kind: str, keys: dict[str, Any], motion: dict[str, Any], changes: dict[str, Any], without: tuple[str, ...]

@@ -181,8 +181,8 @@ class Margins:
         if not new:
             return
         building = self.context.building
-        bears = [kinds.load(kinds.ANALYSES[kind].table).bears for kind in ("tilt", "fragility")]
-        without = tuple(tuple(what for what in building.special_keys if what not in able) for able in bears)
+        considered = [kinds.load(kinds.ANALYSES[kind].table).considers for kind in ("tilt", "fragility")]
+        without = tuple(tuple(what for what in building.special_keys if what not in able) for able in considered)
         job = MarginsJob(
             self.data,
             str(self.context.deck.folder),

@@ -211,7 +211,7 @@ def _codes(asked: Asked) -> Choice:
     if asked.building.require_structure().rocks_as == "piers":
         raise LeftOut("the pier rules require the vertical load on top of the wall: give options.code-checks = { axial_load = ... }")
     own = asked.building.require_structure().kind in (CodeChecks.structures or ())
-    own = own and set(asked.building.special_keys) <= set(CodeChecks.bears)
+    own = own and set(asked.building.special_keys) <= set(CodeChecks.considers)
     keys: dict[str, Any] = {} if own else {"mechanism": "building"}
     on_plan = isinstance(asked.building.structure, Plan)
     words = "" if own else f"{'each wall out of its plane' if on_plan else 'the local mechanism that limit analysis finds'}; "

@@ -30,7 +30,7 @@ class Assess(Analysis):
     shells: ClassVar = ("building",)
     needs_motion: ClassVar = True
     starter_motion: ClassVar = "record"
-    bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
+    considers: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     starter: ClassVar = {"budget": "20"}
     budget: float = key(
         60.0,

@@ -91,7 +91,7 @@ class Work:
         words = "; ".join([w for w in (choice.words,) if w] + ([f"of the deck: {keys_told(own)}"] if own else []))
         choice = replace(choice, keys=merge_keys(choice.keys, own), words=words)
         self.choices[name] = choice
-        without = self.asker.cannot_bear(choice.kind or strategy.kind)
+        without = self.asker.not_considered(choice.kind or strategy.kind)
         if without and name != "scaled":
             self.bare[name] = without
             words = f"{words}; without {' and '.join(without)}, which this strategy cannot include"
@@ -180,7 +180,7 @@ class Work:
         without: tuple[str, ...] | None = None,
     ) -> Result | None:
         """A further run; None where it has no result, which is told."""
-        without = self.asker.cannot_bear(kind) if without is None else without
+        without = self.asker.not_considered(kind) if without is None else without
         try:
             result, _ = self.asker.ask(kind, keys, motion, changes, without)
         except OutOfTime:

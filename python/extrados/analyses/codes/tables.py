@@ -199,7 +199,7 @@ class LocalMechanism(BuildingAnalysis):
     uses: ClassVar = ("material.density", "material.compressive_strength")
     beside: ClassVar = ("joints.friction", "supports.abutting_wall", "material.young")
     view: ClassVar = ""
-    bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
+    considers: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     starter: ClassVar = {
         "mechanism": '"facade"',
         "height": "6.0",

@@ -51,7 +51,7 @@ def of_springs(building: "Building") -> set[str]:
 class DemTable(BuildingAnalysis):
     """What all analyses with discrete elements ask."""
 
-    bears: ClassVar = ("[[ties]]", "[[dampers]]")
+    considers: ClassVar = ("[[ties]]", "[[dampers]]")
 
     uses: ClassVar = (
         "material.density",

@@ -43,7 +43,7 @@ class LimitAnalysisTable(BuildingAnalysis):
     """What all questions of limit analysis ask."""
 
     uses: ClassVar[tuple[str, ...]] = ("material.density", "material.compressive_strength", "joints.friction")
-    bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
+    considers: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
         (
@@ -223,7 +223,7 @@ class MovingSupports(BuildingAnalysis, Animated):
 
     kind: Literal["supports"]
     beside: ClassVar = ("material.density", "joints.friction", "initial.movements")
-    bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
+    considers: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     spread: float = key(1.0, "outward component of the movement of the right support; only its ratio to settle matters", ge=-10, le=10)
     settle: float = key(0.0, "downward component of the movement of the right support; only its ratio to spread matters", ge=-10, le=10)
     movement: Length | None = key(

@@ -46,7 +46,7 @@ class RockingTable(BuildingAnalysis):
         "supports.foundation",
         "supports.damping_ratio",
     )
-    bears: ClassVar[tuple[str, ...]] = HOLDS
+    considers: ClassVar[tuple[str, ...]] = HOLDS
     soft_base: ClassVar = False
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear", "form of the equations. nonlinear: full equations; linear: linear equations for slender blocks", source="Housner 1963"
@@ -80,7 +80,7 @@ class Rocking(RockingTable, Animated):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]
-    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    considers: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     needs_motion: ClassVar = True
     end_time: Time | None = key(None, "end of the run; default: the end of the motion plus the time to come to rest or to collapse", gt=0)
@@ -103,7 +103,7 @@ class FailureDomain(RockingTable):
     """Which pulses bring an arch or a block down: Mode I (after an impact) and Mode II (without impact)."""
 
     kind: Literal["failure-domain"]
-    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    considers: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
         "step", "shape: step pulse of duration t_p, single sine of period T_p, or another shape of `pulse`", source="thesis 5.2.3"
@@ -124,7 +124,7 @@ class FailureCurves(RockingTable):
     """Failure curves of several structures, or of trains of sines, in one picture with the primary impulses of the motions."""
 
     kind: Literal["failure-curves"]
-    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    considers: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     variants: list[dict[str, int | float | str]] = key(
         [],
@@ -169,7 +169,7 @@ class Assessment(RockingTable):
     """Eq. 5.8: does the primary impulse of the motion fall above the failure curve of the arch?"""
 
     kind: Literal["assessment"]
-    bears: ClassVar = ()
+    considers: ClassVar = ()
     needs_motion: ClassVar = True
     impulses: int = key(3, "number of the strongest impulses that are checked", ge=1, le=20)
     min_period: Time | None = key(None, "shortest period of the impulses searched; default: 4 time steps", gt=0)

@@ -262,7 +262,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
 
     kind: Literal["sla"]
     view: ClassVar = "mesh"
-    bears: ClassVar = ("[[ties]]",)
+    considers: ClassVar = ("[[ties]]",)
     uses: ClassVar = (
         "material.density",
         "material.young",

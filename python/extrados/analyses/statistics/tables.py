@@ -72,7 +72,7 @@ class Fragility(RockingTable):
     with a `hazard` curve the annual rate of collapse."""
 
     kind: Literal["fragility"]
-    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    considers: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     needs_motion: ClassVar = True
     starter_motion: ClassVar = "generated"
@@ -217,7 +217,7 @@ class Resonance(RockingTable):
     """The motion under a cap that feeds most energy to a block, and the least cap that can overturn it."""
 
     kind: Literal["resonance"]
-    bears: ClassVar = ()
+    considers: ClassVar = ()
     cap: Acceleration | None = key(
         None, "cap of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
     )
@@ -231,7 +231,7 @@ class RockingSpectrum(RockingTable):
     """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha, or of the deck's arch in all sizes."""
 
     kind: Literal["rocking-spectrum"]
-    bears: ClassVar = ()
+    considers: ClassVar = ()
     view: ClassVar = ""
     needs_motion: ClassVar = True
     periods: list[Time] | None = key(
@@ -260,7 +260,7 @@ class HarmonicMap(RockingTable):
     """Response to harmonic ground motion over frequency and amplitude: at rest, rocking (how far), overturned."""
 
     kind: Literal["harmonic-map"]
-    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    considers: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(

@@ -147,7 +147,7 @@ class Strengthen(LimitAnalysisTable):
 
     kind: Literal["strengthen"]
     view: ClassVar = ""
-    bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
+    considers: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     beside: ClassVar = ("supports.abutting_wall", "supports.stiffness")
     starter_structure: ClassVar = "arch"
     starter: ClassVar = {"acceleration": '"0.5 g"'}
