@@ -1,7 +1,8 @@
-"""What tests do to the page and read of it: nothing while it is on its way. `settled` waits until all that was asked for is
-seen, `until` for what comes by itself (maps, runs, films) and is asserted."""
+"""Gestures of tests on the page, and readings of it once it has settled. `settled` waits for all answers that were asked for, `until`
+for a condition that comes by itself (maps, runs, films)."""
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 
@@ -66,3 +67,12 @@ kind = "rocking"
 hand_over = false
 end_time = 3.0
 """
+
+
+def draw_line(page: Any, at: Callable[[Any, float, float], tuple[float, float]], a: tuple[float, float], b: tuple[float, float]) -> None:
+    """Draw with the mouse from a to b [m]; `at` gives the place of both on the screen."""
+    page.mouse.move(*at(page, *a))
+    page.mouse.down()
+    page.mouse.move(*at(page, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])))
+    page.mouse.move(*at(page, *b))
+    page.mouse.up()

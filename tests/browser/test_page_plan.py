@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from hands import data_of, settled, until
+from hands import data_of, draw_line, settled, until
 from served import SHOTS
 
 import extrados
@@ -17,11 +17,7 @@ def at(page: Any, x: float, y: float) -> tuple[float, float]:
 
 
 def stroke(page: Any, a: tuple[float, float], b: tuple[float, float]) -> None:
-    page.mouse.move(*at(page, *a))
-    page.mouse.down()
-    page.mouse.move(*at(page, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])))
-    page.mouse.move(*at(page, *b))
-    page.mouse.up()
+    draw_line(page, at, a, b)
 
 
 def walls(page: Any) -> list[dict[str, Any]]:

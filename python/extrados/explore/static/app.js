@@ -18,7 +18,7 @@ const REST = 130; // ms without a change, after which the hand rests
 const BESIDE = 100; // ms between two looks of what stands beside the drawing while a hand moves
 const SAID = 8000; // ms for which words at the foot stay that complain of nothing
 const KEPT = "extrados-kept";
-const CHANGE = new Set(["hello", "open", "draw", "draw-plan", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
+const CHANGE = new Set(["hello", "open", "draw", "draw-plan", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change the picture
 const TABS = [["structure", tr`Structure`], ["motion", tr`Motion`], ["results", tr`Results`]];
 
 export function mount(root, transport, film, { embedded = false } = {}) {
@@ -31,11 +31,11 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     get still() { return !moved && !unanswered.size; },
     undo: () => (board() ? board().undo() : travel(-1)), redo: () => (board() ? board().redo() : travel(1)), drafted, draft: null, typed, setTab, remember, dialog,
   };
-  const board = () => [app.sheet, app.plan].find((one) => one?.drawing()); // what is drawn on
+  const board = () => [app.sheet, app.plan].find((one) => one?.drawing()); // the sheet or the plan, while it is open
   const listeners = {};
   const waiting = new Map(); // number of a message -> what to do with its replies
   const flying = new Map(); // lane -> {busy, next}
-  const unanswered = new Set(); // numbers of messages that change what is seen
+  const unanswered = new Set(); // numbers of messages that change the picture
   let counter = 0, scenes = 0, moved = true, held = false, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
 
   function on(event, listener) { (listeners[event] ??= []).push(listener); }

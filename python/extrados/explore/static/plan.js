@@ -1,4 +1,5 @@
 // The plan of a building: walls drawn on a grid, openings by their edges, and the pushover of its frame in colours. The deck follows.
+import { drawingBoard, line } from "./board.js";
 import { h, number, quantity, s, set, shapes } from "./dom.js";
 import { pinch } from "./gestures.js";
 import { tr } from "./words.js";
@@ -16,28 +17,21 @@ const PUSHES = [["+x", 0], ["−x", 180], ["+y", 90], ["−y", 270]];
 const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
 const same = (a, b) => far(a, b) < 1e-6;
 const round = (v) => Math.round(v * 1e4) / 1e4 + 0;
-const line = (points, close = "Z") => `M${points.map((p) => p.map((v) => v.toFixed(1)).join(" ")).join("L")}${close}`;
 
 export function planPanel(app, frame, box) {
   const it = { walls: [], storeys: 1, floors: true, tool: "wall", chosen: null, hole: null, push: null };
-  const sizes = { thickness: 0.3, sill: 0.9, head: 2.2 }, view = { k: 60, cx: 0, cy: 0, w: 0, h: 0 };
+  const sizes = { thickness: 0.3, sill: 0.9, head: 2.2 };
   let on = false, fitted = true, fresh = false, given = 0, storey = 1, step = 0.25, from = null, pointer = null, dragged = null, past = [], future = [], sent = 0, cursor = [0, 0], playing = null;
 
   const grid = s("path", { class: "grid" }), masonry = s("g"), states = s("g", { class: "plan-states" }), draft = s("g"), curve = s("g", { class: "plan-curve" });
-  const words = s("text", { class: "sheet-words", x: 12, y: 20 });
-  const svg = s("svg", { class: "sheet plan", tabindex: "0", role: "application", "aria-label": tr`Plan. Arrow keys move the cross or what is selected, Enter takes a point, Escape drops it, Delete removes.` }, grid, masonry, states, draft, curve, words);
-  svg.toggleAttribute("hidden", true);
-  box.append(svg);
-  const tools = h("div", { class: "layers", role: "group", "aria-label": tr`Tools of the plan` });
-  const options = h("div", { class: "layers options", role: "group", "aria-label": tr`Options of the tool` });
-  const bar = h("div", { class: "sheet-bar", hidden: true }, tools, options);
-  frame.prepend(bar);
-  const press = (label, act, more = {}) => h("button", { class: "layer", onclick: act, ...more }, label);
+  const board = drawingBoard(frame, box, "sheet plan", {
+    picture: tr`Plan. Arrow keys move the cross or the selection, Enter sets a point, Escape cancels the wall, Delete removes the selected wall or opening.`,
+    tools: tr`Tools of the plan`, options: tr`Options of the tool`,
+  }, [grid, masonry, states, draft, curve], () => (fitted ? fit() : draw()));
+  const { view, words, svg, tools, options, bar, press, X, M } = board;
 
-  // Places on the screen, on the plan, along a wall
+  // Places on the plan, along a wall
 
-  const X = ([x, y]) => [view.cx + view.k * x, view.cy - view.k * y];
-  const M = (px, py) => [(px - view.cx) / view.k, (view.cy - py) / view.k];
   const length = (w) => far(w.start, w.end), way = (w) => [(w.end[0] - w.start[0]) / length(w), (w.end[1] - w.start[1]) / length(w)];
   const at = (w, t) => [w.start[0] + t * way(w)[0], w.start[1] + t * way(w)[1]];
   const along = (w, p) => Math.min(Math.max((p[0] - w.start[0]) * way(w)[0] + (p[1] - w.start[1]) * way(w)[1], 0), length(w));
@@ -59,13 +53,6 @@ export function planPanel(app, frame, box) {
     const to = p.map((v) => round(Math.round(v / step) * step)), wall = others.find((w) => far(at(w, along(w, p)), p) < NEAR / view.k);
     return wall ? at(wall, along(wall, to)).map(round) : to;
   }
-  new ResizeObserver(() => {
-    const { clientWidth: w, clientHeight: hgt } = box;
-    if (!on || !w || !hgt) return;
-    view.w = w; view.h = hgt;
-    set(svg, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt });
-    if (fitted) fit(); else draw();
-  }).observe(box);
   function fit() {
     fitted = true;
     const low = it.push ? CARD + 20 : 0; // room for the curve
@@ -79,8 +66,7 @@ export function planPanel(app, frame, box) {
   function zoom(by, x = view.w / 2, y = view.h / 2, dx = 0, dy = 0) {
     if (by === null) { fit(); return; }
     fitted = false;
-    view.k *= by;
-    view.cx = x + by * (view.cx + dx - x); view.cy = y + by * (view.cy + dy - y);
+    board.enlarge(by, x, y, dx, dy);
     draw();
   }
 
@@ -176,7 +162,7 @@ export function planPanel(app, frame, box) {
     pointer = it.tool === "wall" ? snap(p) : p;
     draw();
   });
-  /** The walls as a hand leads what it holds. */
+  /** The walls while a wall, an end or an opening is dragged. */
   function led(p) {
     const { walls, k, edge, hole, x, end, wall } = dragged, cut = (v) => Math.round(v / 0.05) * 0.05;
     it.walls = walls;

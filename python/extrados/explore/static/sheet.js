@@ -1,4 +1,5 @@
 // A blank sheet: arches, piers, walls and blocks drawn by hand or by sizes, over a photograph. The deck beside it follows each shape.
+import { drawingBoard, line } from "./board.js";
 import { h, number, s, set, shapes } from "./dom.js";
 import { pinch } from "./gestures.js";
 import { arch, inside, mirrored, rotated, shifted, snapped, wall } from "./shapes.js";
@@ -17,41 +18,23 @@ const FIELDS = { pier: ["courses"], wall: ["courses", "units"], arch: ["thicknes
 const SIZES = { pier: ["x", "y", "width", "height"], wall: ["x", "y", "width", "height"], arch: ["x", "y", "span", "rise"] };
 const LABELS = { courses: tr`Courses`, units: tr`Units`, thickness: tr`Thickness`, voussoirs: tr`Voussoirs`, x: tr`x of the left end`, y: tr`y of the base`, width: tr`Width`, height: tr`Height`, span: tr`Clear span`, rise: tr`Rise` };
 const group = (name) => name.replace(/\.\d+$/, "");
-const line = (points, close = "Z") => points.length ? `M${points.map((p) => p.map((v) => v.toFixed(1)).join(" ")).join("L")}${close}` : "";
 
 export function sheetPanel(app, frame, box) {
   const it = { blocks: [], ground: [], tool: "pier", chosen: new Set(), support: null, photo: null };
   const sizes = { courses: 5, units: 4, thickness: 0.5, voussoirs: 15, x: 0, y: 0, width: 1, height: 3, span: 4, rise: 2 };
-  const view = { k: 60, cx: 0, cy: 0, w: 0, h: 0 };
   let on = false, fresh = false, step = 0.25, taken = [], pointer = null, dragged = null, past = [], future = [], sent = 0, cursor = [0, 0];
 
   const grid = s("path", { class: "grid" }), zero = s("path", { class: "ground" }), image = s("image", { preserveAspectRatio: "none" });
   const drawn = s("g"), lines = s("g", { class: "marks" }), draft = s("g");
-  const words = s("text", { class: "sheet-words", x: 12, y: 20 });
-  const svg = s("svg", { class: "sheet", tabindex: "0", role: "application", "aria-label": tr`Sheet. Arrow keys move the cross, Enter sets a point, Escape cancels the shape, Delete removes the selected shape.` }, image, grid, zero, drawn, lines, draft, words);
-  svg.toggleAttribute("hidden", true);
-  box.append(svg);
+  const board = drawingBoard(frame, box, "sheet", {
+    picture: tr`Sheet. Arrow keys move the cross, Enter sets a point, Escape cancels the shape, Delete removes the selected shape.`,
+    tools: tr`Tools of the sheet`, options: tr`Options of the tool`,
+  }, [image, grid, zero, drawn, lines, draft], (first) => (first ? fit() : draw()));
+  const { view, words, svg, tools, options, bar, press, X, M } = board;
   const file = h("input", { type: "file", accept: "image/*", "aria-label": tr`Photograph as background`, onchange: () => { photograph(file.files[0]); file.value = ""; } });
-  const tools = h("div", { class: "layers", role: "group", "aria-label": tr`Tools of the sheet` });
-  const options = h("div", { class: "layers options", role: "group", "aria-label": tr`Options of the tool` });
-  const bar = h("div", { class: "sheet-bar", hidden: true }, tools, options);
-  frame.prepend(bar);
-  const press = (label, act, more = {}) => h("button", { class: "layer", onclick: act, ...more }, label);
 
-  // From places (px) to metres, and back
-
-  const X = ([x, y]) => [view.cx + view.k * x, view.cy - view.k * y];
-  const M = (px, py) => [(px - view.cx) / view.k, (view.cy - py) / view.k];
   const snap = (p, outlines = it.blocks.map((b) => b.points)) => snapped(p, outlines, NEAR / view.k) ?? p.map((v) => Math.round(v / step) * step);
   const picked = () => it.blocks.filter((b) => it.chosen.has(group(b.name)));
-  new ResizeObserver(() => {
-    const { clientWidth: w, clientHeight: hgt } = box;
-    if (!on || !w || !hgt) return;
-    const first = !view.w;
-    view.w = w; view.h = hgt;
-    set(svg, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt });
-    if (first) fit(); else draw();
-  }).observe(box);
   function fit() {
     const points = it.blocks.flatMap((b) => b.points), p = it.photo;
     if (p) points.push([p.x, p.y], [p.x + p.scale * p.w, p.y + p.scale * p.h]);
@@ -64,8 +47,7 @@ export function sheetPanel(app, frame, box) {
   }
   function zoom(by, x = view.w / 2, y = view.h / 2, dx = 0, dy = 0) {
     if (by === null) { fit(); return; }
-    view.k *= by;
-    view.cx = x + by * (view.cx + dx - x); view.cy = y + by * (view.cy + dy - y);
+    board.enlarge(by, x, y, dx, dy);
     draw();
   }
 
