@@ -287,7 +287,7 @@ contains
       call record_joints(run%model, run%record%joint(:, :, run%record%points))
    end subroutine record_state
 
-   !> Forces of the joints at the last forces, and what they lost so far
+   !> Forces of the joints at the last evaluation, and their energy losses up to then
    pure subroutine record_joints(model, joint)
       type(solid_model), intent(in) :: model
       real(wp), intent(out) :: joint(:, :)          !! (5, joints) on the first body [N]; friction, dashpots [J]

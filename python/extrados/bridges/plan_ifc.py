@@ -41,8 +41,8 @@ def deck_of_ifc(model: Path) -> str:
 
 
 def parse_ifc(content: bytes) -> dict[str, Any]:
-    """Elevations of storeys, walls as a (2), b (2), thickness, foot, head and openings (s from, to, z from, to) [m], and how many
-    walls have no such solid or one that is cut; run by the process that reads. Unreadable says what is wrong."""
+    """Elevations of storeys, walls as a (2), b (2), thickness, foot, head and openings (s from, to, z from, to) [m]; the number of
+    walls without an extruded solid, and of walls whose solid is cut. The contained process calls this; Unreadable gives the reason."""
     try:
         import ifcopenshell
     except ImportError:

@@ -1,6 +1,6 @@
 """HDF5 files of others: what of them lies in other files, and the arrays of a results file.
 
-What is called `parse_...` is run by the process that reads (`contained`).
+The contained process calls the functions `parse_...` (`contained`).
 """
 
 from typing import Any

@@ -39,7 +39,7 @@ export const LESSONS = [
   },
   {
     title: tr`A buttress`, tab: "structure",
-    task: tr`This vault stands on buttresses. Change their width, and watch the horizontal acceleration that the vault resists.`,
+    task: tr`This vault has buttresses. Change their width, and watch the horizontal acceleration that the vault resists.`,
     question: tr`How wide must the buttresses be for a capacity of 0.10 g, to within 2 %?`,
     choices: [tr`The capacity is proportional to the width.`, tr`The capacity is proportional to the weight of the vault.`, tr`Width has no influence.`], right: 0,
     history: tr`Builders sized buttresses by rules of proportion for centuries. La Hire (1712) compared the resistance of a pier to overturning with the thrust of the vault.`,

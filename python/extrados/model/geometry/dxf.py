@@ -104,7 +104,7 @@ def read_dxf(
 
 
 def parse_dxf(content: bytes, name: str, meaning: Mapping[str, Mapping[str, Any]], **how: Any) -> dict[str, Any]:
-    """The fields of the Drawing in the content of a file; run by the process that reads. Unreadable says what is wrong."""
+    """The fields of the Drawing in the content of a file. The contained process calls this; Unreadable gives the reason."""
     try:
         return asdict(drawing_of(content, name, meaning={k: Layer(**one) for k, one in meaning.items()}, **how))
     except BadGeometry as error:

@@ -51,7 +51,7 @@ def read_mesh_file(file: File) -> ForeignMesh:
 
 
 def parse_mesh_file(path: str) -> dict[str, Any]:
-    """The fields of ForeignMesh; run by the process that reads. Unreadable says what is wrong."""
+    """The fields of ForeignMesh. The contained process calls this; Unreadable gives the reason."""
     try:
         import meshio
     except ImportError:

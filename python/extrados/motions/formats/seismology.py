@@ -29,7 +29,7 @@ def read(file: File) -> list[Record]:
 
 
 def parse(content: bytes) -> list[tuple[np.ndarray, float, str]]:
-    """Samples, step [s] and name of each trace; run by the process that reads. Unreadable says what is wrong."""
+    """Samples, step [s] and name of each trace. The contained process calls this; Unreadable gives the reason."""
     try:
         import obspy
     except ImportError:

@@ -52,7 +52,7 @@ def read_meshes(file: File) -> list[Mesh]:
 
 
 def parse_meshes(content: bytes, name: str, sort: str) -> list[dict[str, Any]]:
-    """The fields of each Mesh of an OBJ or STL; run by the process that reads. Unreadable says what is wrong."""
+    """The fields of each Mesh of an OBJ or STL. The contained process calls this; Unreadable gives the reason."""
     try:
         if sort == ".stl":
             return [asdict(mesh) for mesh in read_stl(content, name)]
