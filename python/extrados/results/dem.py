@@ -6,6 +6,7 @@ from extrados.results.curves import between
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import NamedHinge
 from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
+from extrados.schema.quantities import three_figures
 
 #: What a joint does, in the stored array `hinge`: hinged at its first end (intrados) or its second (extrados)
 HINGED_FIRST, CLOSED, HINGED_SECOND, APART = -1, 0, 1, 2
@@ -143,19 +144,19 @@ class BlocksRun(KindResults):
         )
         if self.outcome == "collapse":
             how = f"{self.governing_block} collapses by {self.collapse_criterion}"
-            text = f"{how} and moves by more than the {1e3 * limit:.3g} mm that count as collapse.{unchecked}"
+            text = f"{how} and moves by more than the {three_figures(1e3 * limit)} mm that count as collapse.{unchecked}"
             return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
         if self.still_moving:
             return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
         slip = (
-            f"Blocks slide by up to {1e3 * self.peak_slip_m:.3g} mm. This is {100 * share:.3g} % of the joint length at "
+            f"Blocks slide by up to {three_figures(1e3 * self.peak_slip_m)} mm. This is {100 * share:.3g} % of the joint length at "
             f"{self.slipped_joint} (limit {100 * SLIP_LIMIT:g} %, at which half of the lever arm to the end of the joint is "
-            f"lost). The slip at the end is {1e3 * self.residual_slip_m:.3g} mm"
+            f"lost). The slip at the end is {three_figures(1e3 * self.residual_slip_m)} mm"
         )
         if share > SLIP_LIMIT:
             text = f"{slip}. The analysis does not decide whether the remaining contact suffices.{unchecked}"
             return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
-        text = f"No block moves by more than {1e3 * most:.3g} mm; {1e3 * limit:.3g} mm count as collapse."
+        text = f"No block moves by more than {three_figures(1e3 * most)} mm; {three_figures(1e3 * limit)} mm count as collapse."
         if self.slipped_joint is not None:
             text += f" {slip}."
         text += unchecked

@@ -25,6 +25,7 @@ from extrados.core import dem
 from extrados.model.structures.block import BlockAssembly
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
+from extrados.schema.quantities import three_figures
 from extrados.views.rockers.block import BlockModel
 
 
@@ -66,7 +67,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
     numbers = _numbers(options, trial, seen, ground) | chaos
     _store(options, seen, ground, result)
     if seen.slides:
-        result.warnings.append(f"joints slide by up to {1e3 * seen.sliding.peak:.3g} mm")
+        result.warnings.append(f"joints slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
     if who := numbers["off_footing"]:
         result.warnings.append(
             f"{', '.join(who[:6])} slides off its footing. To let detached blocks slide on a floor, give `dem` the key floor "

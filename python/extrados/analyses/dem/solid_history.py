@@ -25,6 +25,7 @@ from extrados.motions.motion import Motion
 from extrados.results.dem import APART, SolidDemRun
 from extrados.results.model import Array, Result, TableData
 from extrados.results.solid_files import glb, series
+from extrados.schema.quantities import three_figures
 
 
 def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Options:
@@ -73,7 +74,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
             Motion("", across).sample(found.time), ("time",), "m/s^2", "acceleration of the ground perpendicular to the direction"
         )
     if seen.slides:
-        result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding.peak:.3g} mm")
+        result.warnings.append(f"contacts slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
     result.warnings += doubts_of_run(found, chaos["violated"], r.still_moving)
     if moved is None:
         result.warnings.append("nothing moves it: add [motion]")

@@ -1,6 +1,7 @@
 """The answers of a run and of a tilt test in words."""
 
 from extrados.results.dem import ONE_PATH, Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt, TieRun
+from extrados.schema.quantities import three_figures
 
 
 def solved(c: Convergence) -> str:
@@ -30,13 +31,13 @@ def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
         return f"{r.governing_block} collapses first ({r.collapse_criterion}), at {r.collapse_time_s:.2f} s"
     if r.outcome == "slid":
         return (
-            f"Blocks slide by up to {1e3 * r.peak_slip_m:.3g} mm ({100 * r.slip_ratio:.3g} % of the {joint} "
-            f"{r.slipped_joint}). The slip at the end is {1e3 * r.residual_slip_m:.3g} mm; no {joint} opens"
+            f"Blocks slide by up to {three_figures(1e3 * r.peak_slip_m)} mm ({100 * r.slip_ratio:.3g} % of the {joint} "
+            f"{r.slipped_joint}). The slip at the end is {three_figures(1e3 * r.residual_slip_m)} mm; no {joint} opens"
         )
     if r.outcome == "at-rest":
         return f"No {joint} opens or slides"
     fate = f"rock and still move at {r.stop_time_s:.2f} s" if r.still_moving else "rock and come to rest"
-    return f"Blocks {fate}: greatest displacement {1e3 * r.peak_displacement_m:.3g} mm ({r.governing_block})"
+    return f"Blocks {fate}: greatest displacement {three_figures(1e3 * r.peak_displacement_m)} mm ({r.governing_block})"
 
 
 def _tied(ties: list[TieRun] | None) -> str:
@@ -60,8 +61,8 @@ def motion_answer(r: DemRun, idle: bool) -> str:
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
     return (
-        f"{first}; {turn[0]} rotates by {1e3 * abs(turn[1]):.3g} mrad at most, the greatest slip is "
-        f"{1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; {audit}.{_tied(r.ties)}"
+        f"{first}; {turn[0]} rotates by {three_figures(1e3 * abs(turn[1]))} mrad at most, the greatest slip is "
+        f"{three_figures(1e3 * r.peak_slip_m)} mm, {r.bounces} bounces; {audit}.{_tied(r.ties)}"
     )
 
 
@@ -88,12 +89,12 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
     turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
     first, audit = _fate(r, "contact"), _audit(r)
     if r.outcome == "rocked":
-        first += f", of which {1e3 * r.final_displacement_m:.3g} mm remain at the end"
+        first += f", of which {three_figures(1e3 * r.final_displacement_m)} mm remain at the end"
     if r.dowels:
         gave = f"slipped by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
     return (
-        f"{first}; {turn[0]} rotates by {1e3 * turn[1]:.3g} mrad at most, the greatest slip is {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} "
+        f"{first}; {turn[0]} rotates by {three_figures(1e3 * turn[1])} mrad at most, the greatest slip is {three_figures(1e3 * r.peak_slip_m)} mm, {r.bounces} "
         f"bounces; {r.blocks} blocks, {r.contacts} contacts; {audit}.{_tied(r.ties)}"
     )
 
