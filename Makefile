@@ -13,6 +13,7 @@ run: setup
 	@.venv/bin/extrados run $(DECK)
 
 test: setup
+	@$(if $(filter long,$(SUITE)),$(PYTHON) tools/extras.py ifc)
 	@$(PYTHON) -m pytest -q -n auto --maxprocesses 8 --dist worksteal $(MARKS)
 	@$(PYTHON) tools/native_tests.py
 

@@ -1,4 +1,7 @@
-"""Packages of an extra of pyproject.toml, which a tool installs as it first needs them."""
+"""Packages of an extra of pyproject.toml, which a tool installs as it first needs them.
+
+python tools/extras.py EXTRA ...
+"""
 
 import subprocess
 import sys
@@ -17,3 +20,8 @@ def install(extra: str) -> None:
             version(line.partition(">=")[0])
     except PackageNotFoundError:
         subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", *asked], check=True)
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:]:
+        install(name)

@@ -13,6 +13,7 @@ import numpy as np
 from extrados.bridges.plan_drawing import CLOSE, LEAST, MOST_WALLS, DrawnWall, WrittenWall, joined, written_deck
 from extrados.decks.reader import DeckError
 from extrados.model.files import LARGEST_FILE
+from extrados.model.geometry.polygons import signed_area
 from extrados.schema.contained import Unreadable, read_contained
 from extrados.schema.files import read
 
@@ -20,6 +21,8 @@ from extrados.schema.files import read
 PREFIX = {None: 1.0, "MILLI": 1e-3, "CENTI": 1e-2, "DECI": 1e-1, "KILO": 1e3}
 #: A wall belongs to a storey of which it covers more than this part
 COVERED = 0.5
+#: Part of its box that the solid of a wall fills at least; others, such as curved or L-shaped ones, are no straight walls
+FILLED = 0.95
 #: Most corners of a profile, steps along a chain of placements or clippings
 MOST_CORNERS, DEEPEST = 2000, 60
 
@@ -35,14 +38,14 @@ def deck_of_ifc(model: Path) -> str:
     said = [
         f"Walls, openings and storeys are read from the model {model.name}: boxes about their solids.",
         *([f"{found['cut']} walls are cut, as gables are by a roof: their boxes count (more masonry)."] if found["cut"] else []),
-        *([f"Not considered: {found['left']} walls whose solids are not extruded upward."] if found["left"] else []),
+        *([f"Not considered: {found['left']} walls whose solids are not straight boxes."] if found["left"] else []),
     ]
     return written_deck(walls, storeys, model.name, said)
 
 
 def parse_ifc(content: bytes) -> dict[str, Any]:
     """Elevations of storeys, walls as a (2), b (2), thickness, foot, head and openings (s from, to, z from, to) [m]; the number of
-    walls without an extruded solid, and of walls whose solid is cut. The contained process calls this; Unreadable gives the reason."""
+    walls without an extruded solid that fills its box, and of walls whose solid is cut. The contained process calls this; Unreadable gives the reason."""
     try:
         import ifcopenshell
     except ImportError:
@@ -57,14 +60,14 @@ def parse_ifc(content: bytes) -> dict[str, Any]:
     if len(every) > 10 * MOST_WALLS:
         raise Unreadable(f"{len(every)} walls, at most {10 * MOST_WALLS}")
     for wall in every:
-        corners = _corners(wall)
-        if corners is None:
+        corners, volume = _solid(wall)
+        if not volume > FILLED * np.prod(np.ptp(corners, axis=0)):
             left += 1
             continue
         walls.append(_wall(wall, corners, scale))
         cut += _is_cut(wall)
     if not walls:
-        raise Unreadable("no wall has an extruded solid")
+        raise Unreadable("no wall has an extruded solid that is a straight box")
     return {"elevations": elevations, "walls": walls, "left": left, "cut": cut}
 
 
@@ -108,8 +111,8 @@ def _placed(element: Any) -> np.ndarray:
     raise Unreadable("placements are nested too deeply")
 
 
-def _corners(element: Any) -> np.ndarray | None:
-    """Corners (n, 3) of the extruded solid of an element in its own axes; None without one."""
+def _solid(element: Any) -> tuple[np.ndarray, float]:
+    """Corners (n, 3) of the extruded solid of an element in its own axes, and its volume; a point and 0 without one."""
     shapes = element.Representation.Representations if element.Representation else ()
     for shape in shapes:
         for item in shape.Items if shape.RepresentationIdentifier in ("Body", None) else ():
@@ -120,8 +123,9 @@ def _corners(element: Any) -> np.ndarray | None:
             if item.is_a("IfcExtrudedAreaSolid") and (outline := _outline(item.SweptArea)) is not None:
                 way = item.Depth * np.array(item.ExtrudedDirection.DirectionRatios) / np.linalg.norm(item.ExtrudedDirection.DirectionRatios)
                 ends = np.concatenate([outline, outline + way])
-                return (_axes(item.Position) @ np.column_stack([ends, np.ones(len(ends))]).T).T[:, :3]
-    return None
+                volume = abs(signed_area(outline[:, :2]) * way[2])
+                return (_axes(item.Position) @ np.column_stack([ends, np.ones(len(ends))]).T).T[:, :3], volume
+    return np.zeros((1, 3)), 0.0
 
 
 def _is_cut(element: Any) -> bool:
@@ -135,16 +139,16 @@ def _is_cut(element: Any) -> bool:
 
 
 def _outline(profile: Any) -> np.ndarray | None:
-    """Corners (n, 3) of a profile in its plane; None of another kind than rectangles and polygons."""
+    """Corners (n, 3) of a profile in its plane; None of another kind than rectangles and polygons without holes and arcs."""
     if profile.is_a("IfcRectangleProfileDef"):
         x, y = 0.5 * profile.XDim, 0.5 * profile.YDim
         flat = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
         flat = (_axes(profile.Position)[:2, [0, 1, 3]] @ np.column_stack([flat, np.ones(4)]).T).T
-    elif profile.is_a("IfcArbitraryClosedProfileDef"):
+    elif profile.is_a("IfcArbitraryClosedProfileDef") and not profile.is_a("IfcArbitraryProfileDefWithVoids"):
         curve = profile.OuterCurve
         if curve.is_a("IfcPolyline"):
             flat = np.array([p.Coordinates[:2] for p in curve.Points])
-        elif curve.is_a("IfcIndexedPolyCurve"):
+        elif curve.is_a("IfcIndexedPolyCurve") and not any(part.is_a("IfcArcIndex") for part in curve.Segments or ()):
             flat = np.array([p[:2] for p in curve.Points.CoordList])
         else:
             return None
@@ -169,8 +173,8 @@ def _wall(wall: Any, corners: np.ndarray, scale: float) -> dict[str, Any]:
     openings = []
     for relation in wall.HasOpenings:
         opening = relation.RelatedOpeningElement
-        found = _corners(opening)
-        if found is None:
+        found, volume = _solid(opening)
+        if not volume > 0.0:
             raise Unreadable(f"wall {wall.Name or wall.GlobalId}: an opening has no extruded solid")
         points = scale * (_placed(opening) @ np.column_stack([found, np.ones(len(found))]).T).T[:, :3]
         s, z = (points - a) @ way, points[:, 2]
