@@ -92,11 +92,16 @@ def rigid(name, floors=None, **more):
 
 
 @pytest.mark.parametrize(
-    ("name", "flanges"),
-    [("frame/two-rooms", "effective"), ("frame/two-rooms", "none"), ("frame/joined", "effective"), ("frame/farmhouse", "effective")],
+    ("name", "flanges", "least"),
+    [
+        ("frame/two-rooms", "effective", 0.993),
+        ("frame/two-rooms", "none", 0.993),
+        ("frame/joined", "effective", 0.97),  # its ring beam remains elastic
+        ("frame/farmhouse", "effective", 0.993),
+    ],
 )
-def test_a_pushover_reaches_the_load_of_limit_analysis(name, flanges):
-    """Within 3 %, and never more than 1 % above, whatever the direction and sense."""
+def test_a_pushover_reaches_the_load_of_limit_analysis(name, flanges, least):
+    """Within 0.7 %, in all directions and senses."""
     frame = rigid(name, flanges=flanges)
     options = FramePushover(kind="frame-pushover", patterns=["static"], eccentricities=[0.0])
     level = max(one.level for one in frame.masses)
@@ -105,7 +110,7 @@ def test_a_pushover_reaches_the_load_of_limit_analysis(name, flanges):
         for push in pushes_of(frame, options, modes, level):
             path = core.push(push.forces, push.control, 0.03 * float(frame.plan.levels[level]), 150, 0.5)
             limit = limit_of(frame, push.forces)
-            assert 0.97 < path.multiple.max() / limit < 1.01, push.name
+            assert least < path.multiple.max() / limit < 1.007, push.name
 
 
 @pytest.mark.parametrize("floors", [None, 2e9])

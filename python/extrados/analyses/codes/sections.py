@@ -75,6 +75,6 @@ def plan_outlines(plan: Plan) -> Outlines:
     for wall in plan.walls:
         start, end = np.asarray(wall.start, dtype=float), np.asarray(wall.end, dtype=float)
         along = (end - start) / wall.length
-        side = 0.5 * (wall.thickness or wall.thicknesses[0]) * np.array([-along[1], along[0]])
+        side = 0.5 * plan.thickness_of(wall, plan.reach(wall)[0]) * np.array([-along[1], along[0]])
         found[wall.name] = np.array([start + side, end + side, end - side, start - side])
     return found

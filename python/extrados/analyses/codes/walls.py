@@ -84,7 +84,7 @@ def _material(building: Building, plan: Plan, wall: PlanWall, storey: int) -> Ma
 def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: dict[tuple[str, int], float]) -> WallPart:
     first, last = plan.reach(wall)
     materials = {k: _material(building, plan, wall, k) for k in range(storey, last + 1)}
-    thickness = [wall.thickness or wall.thicknesses[k - first] for k in range(first, last + 1)]
+    thickness = [plan.thickness_of(wall, k) for k in range(first, last + 1)]
     foot, arm = float(plan.levels[storey - 1]), 0.5 * thickness[storey - first]
     sole = plan.strips(wall, storey)[0][0]
     if not sole > MEETS:

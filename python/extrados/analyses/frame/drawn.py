@@ -74,7 +74,7 @@ def _thickness(frame: EquivalentFrame, w: int, storey: int) -> float:
     first, last = frame.plan.reach(wall)
     if not first <= storey <= last:
         return 0.0
-    return wall.thickness or wall.thicknesses[storey - first]
+    return frame.plan.thickness_of(wall, storey)
 
 
 def _floor(frame: EquivalentFrame, k: int) -> tuple[float, ...]:

@@ -99,8 +99,7 @@ def run(context: Context, options: FramePushover) -> Result:
 
         with ThreadPoolExecutor(max(1, context.threads)) as pool:
             paths = list(pool.map(one, pushes))
-    if any(path.stop == "no equilibrium under the weight" for path in paths):
-        raise Refused("the frame has no equilibrium under its own weight", ("structure", "walls"))
+    _refuse_unstable(paths)
     runs = [row_of(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
@@ -144,9 +143,14 @@ def push_once(frame: EquivalentFrame, options: FramePushover, direction: float) 
         (push,) = pushes_of(frame, options.model_copy(update=update), modes_of(frame, rest.tangent, MODES), level)
         height = float(frame.plan.levels[level])
         path = core.push(push.forces, push.control, options.target_drift * height, options.steps, options.drop)
-    if path.stop == "no equilibrium under the weight":
-        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+    _refuse_unstable([path])
     return row_of(frame, push, path), path
+
+
+def _refuse_unstable(paths: Sequence[Path]) -> None:
+    """Refused if the frame has no equilibrium before any push."""
+    if any(path.stop == "no equilibrium under the weight" for path in paths):
+        raise Refused("the frame has no equilibrium under its own weight", ("structure", "walls"))
 
 
 def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -> None:

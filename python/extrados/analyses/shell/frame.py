@@ -70,7 +70,7 @@ def _piers(
         low, high = max((o.z[0] for o in openings), default=0.0), min((o.z[1] for o in openings), default=tall)
         if low >= high:  # no height cuts all of them: that of the tallest
             low, high = max(((o.z[0], o.z[1]) for o in openings), key=lambda ends: ends[1] - ends[0])
-        thickness = wall.thickness or wall.thicknesses[storey - first]
+        thickness = plan.thickness_of(wall, storey)
         for pier in sections_at(model, under, w, storey, foot + 0.5 * (low + high)):
             beside = [o.z[1] - o.z[0] for o in openings if _touch(o.x, (pier.start, pier.end))]
             height, width, load = float(np.mean(beside)) if beside else tall, pier.end - pier.start, -pier.normal

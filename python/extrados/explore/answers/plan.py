@@ -12,6 +12,7 @@ from tomlkit.items import Table as TomlTable
 from extrados.analyses.frame.drawn import drawn_arrays
 from extrados.analyses.frame.pushover import push_once
 from extrados.analyses.frame.tables import FramePushover
+from extrados.bridges.plan_drawing import written_deck
 from extrados.core.frame import STATES
 from extrados.decks.reader import DeckError
 from extrados.explore.answers.decks import open_deck
@@ -22,30 +23,14 @@ from extrados.model.structures.plan import Plan, PlanWall
 
 #: Walls and openings of a plan, storeys of a drawn one, characters of a name
 MOST_WALLS, MOST_OPENINGS, MOST_STOREYS, LONGEST_NAME = 200, 200, 10, 40
-BLANK = """title = "A building"
-
-[structure]
-kind = "building"
-storeys = ["3.0 m"]
-
-[material]
-density = 1800
-young = "1.5 GPa"
-poisson = 0.25
-compressive_strength = "3 MPa"
-
-[joints]
-cohesion = "0.1 MPa"
-
-[[analysis]]
-kind = "frame-pushover"
-eccentricities = [0.0]
-frame.diagonal_strength = "50 kPa"
-"""
 #: Blank lines before a table, which tomlkit adds at each change
 SPACED = re.compile(r"\n{3,}\[")
 #: The floor that a drawn building without floors of its own gets on every storey
 FLOOR = {"kind": "rigid", "load": "3 kPa"}
+#: A building without walls, of the masonry that drawings get
+BLANK = written_deck([], [3.0], "the page", ["Floors, if any: rigid, with a load of 3 kPa."]).replace(
+    'kind = "frame-pushover"', 'kind = "frame-pushover"\neccentricities = [0.0]'
+)
 
 
 def plan(desk: Desk, _: Message) -> Iterator[Reply]:

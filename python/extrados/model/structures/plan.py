@@ -353,6 +353,10 @@ class Plan(Structure):
         """Heights of the ground and of the top of each storey [m]."""
         return np.concatenate([[0.0], np.cumsum(self.storeys)])
 
+    def thickness_of(self, wall: PlanWall, storey: int) -> float:
+        """Thickness of a wall in a storey that it reaches [m]."""
+        return wall.thickness or wall.thicknesses[storey - self.reach(wall)[0]]
+
     def foot_area(self, axis: int) -> float:
         """Area of the walls' soles at the ground without doors [m^2], each times the share of its direction along x (0) or
         y (1)."""
@@ -360,7 +364,7 @@ class Plan(Structure):
         for wall in self.walls:
             if self.reach(wall)[0] == 1:
                 sole = self.strips(wall, 1)[0][0]
-                total += (wall.thickness or wall.thicknesses[0]) * sole * abs(wall.direction[axis])
+                total += self.thickness_of(wall, 1) * sole * abs(wall.direction[axis])
         return float(total)
 
     @property

@@ -62,7 +62,7 @@ class Division:
                         storey,
                         (start, end, foot, foot + tall),
                         (start, end, foot + low, foot + low + height),
-                        thickness_of(plan, wall, storey),
+                        plan.thickness_of(wall, storey),
                         (self.node_at(w, storey - 1, s), self.node_at(w, storey, s)),
                     )
                 )
@@ -100,7 +100,7 @@ class Division:
                 level,
                 (*gap, low, high),
                 (start, end, low, high),
-                thickness_of(plan, wall, level),
+                plan.thickness_of(wall, level),
                 (i, j),
             )
         )
@@ -114,13 +114,8 @@ class Division:
         start, end, z = self.nodes[i].end, self.nodes[j].start, float(self.plan.levels[level])
         if depth > 0.0 and end - start > MEETS:
             box = (start, end, z - depth, z)
-            thickness = thickness_of(self.plan, wall, level)
+            thickness = self.plan.thickness_of(wall, level)
             self.strips.append(Strip("ring beam", f"{wall.name}, level {level}, ring beam {k + 1}", w, level, box, box, thickness, (i, j)))
-
-
-def thickness_of(plan: Plan, wall: PlanWall, storey: int) -> float:
-    """Thickness of a wall in a storey [m]."""
-    return wall.thickness or wall.thicknesses[storey - plan.reach(wall)[0]]
 
 
 def _between(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, Side, Side]]:

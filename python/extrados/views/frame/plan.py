@@ -15,7 +15,7 @@ from extrados.model.errors import BadGeometry, blaming
 from extrados.model.properties import Material
 from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
-from extrados.views.frame.division import Division, parts_around_openings, thickness_of
+from extrados.views.frame.division import Division, parts_around_openings
 from extrados.views.frame.flanges import Flange, effective_part
 from extrados.views.frame.frame import EquivalentFrame, PointMass, Strip
 from extrados.views.frame.options import FrameOptions
@@ -459,7 +459,7 @@ class _Maker(Division):
                 if not (p.start - MEETS <= s <= p.end + MEETS and q.start - MEETS <= t <= q.end + MEETS):
                     continue
                 tall = 0.5 * (plan.storeys[level - 1] + (plan.storeys[level] if level < len(plan.storeys) else 0.0))
-                thin = min(thickness_of(plan, wall, level) for wall in (one, two))
+                thin = min(plan.thickness_of(wall, level) for wall in (one, two))
                 material = self._material(one, max(level, plan.reach(one)[0]))
                 shear = o.stiffness * material.young / (2.0 * (1.0 + material.poisson))
                 f = o.flange_strength or o.cohesion or self.building.joints.cohesion
@@ -477,7 +477,7 @@ class _Maker(Division):
     def _flange(self, web: int, wall: int, level: int) -> float:
         """Weight [N] on the effective width of a wall on a level as the flange of another."""
         plan = self.plan
-        thickness, half = (thickness_of(plan, plan.walls[w], level) for w in (wall, web))
+        thickness, half = (plan.thickness_of(plan.walls[w], level) for w in (wall, web))
         start, end = effective_part(plan, self.junctions, web, wall, level, thickness, 0.5 * half)
         weight = self._on(wall, level, start, end)
         self.flanges.append(Flange(web, wall, level, start, end, weight))
