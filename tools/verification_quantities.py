@@ -77,7 +77,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"(?:least|greatest)_acceleration_g",
         r"base_shear_coefficient",
         r"sliding_capacity_N",
-        r"frame-pushover\.base_shear_N",
+        r"frame-pushover\.(?:base_shear_N|ring_beam_moment_Nm)",
         r"associated_g",
         r"pyramids\.",
         r"stable_limits",

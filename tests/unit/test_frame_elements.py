@@ -178,6 +178,9 @@ def test_strength_is_lost_beyond_a_drift_limit():
     assert path.multiple[lost] == pytest.approx(178.89, rel=1e-3)
     assert abs(path.multiple[-1]) < 1e-4 * N
     assert path.force[-1, 0, 0] == pytest.approx(N, rel=1e-6)
+    coarse = push(frame, 0.03, 11)  # steps of 2.7 mm: the limit is located within a fiftieth of one
+    first = coarse.control[np.flatnonzero(coarse.state[:, 0] == 5)[0]] / 3.0
+    assert 0.004 <= first <= 0.004 + 0.03 / 11 / 50 / 3.0
 
 
 def test_beam_between_hinges_and_what_it_keeps():
