@@ -103,7 +103,7 @@ contains
       type(frame_state) :: past, now
       real(wp) :: multiple, trial, start, moved, step, most, greatest
       type(last_step) :: last
-      logical :: goes_on
+      logical :: goes_on, cut
       integer :: failed
       path%count = 0
       goes_on = .false.
@@ -138,8 +138,8 @@ contains
          call equilibrate(model, 1.0_wp, past, pattern, control, start + moved + step, .true., now, trial, status)
          if (status /= status_ok) then
             status = status_ok
-            goes_on = .not. goes_on .and. last%length > 0.0_wp
-            if (.not. goes_on .and. last%length > 0.0_wp) cycle
+            call begin_otherwise(last, goes_on, cut)
+            if (.not. cut) cycle
             step = 0.5_wp * step
             ended = frame_stop_step
             if (step < least_step * most) then
@@ -192,6 +192,15 @@ contains
       multiple = multiple + ratio * last%multiple
    end subroutine go_on
 
+   !> How a step that failed begins anew: first from the last equilibrium; then it is cut, and goes on as the last one did
+   pure subroutine begin_otherwise(last, goes_on, cut)
+      type(last_step), intent(in) :: last
+      logical, intent(inout) :: goes_on
+      logical, intent(out) :: cut
+      cut = .not. goes_on
+      goes_on = cut .and. last%length > 0.0_wp
+   end subroutine begin_otherwise
+
    !> Keep the step from one state to the next
    pure subroutine keep_step(last, length, past, now, multiple)
       type(last_step), intent(inout) :: last
@@ -219,7 +228,7 @@ contains
       type(frame_state) :: now, from
       type(last_step) :: last
       real(wp) :: part, trial, kept
-      logical :: goes_on
+      logical :: goes_on, cut
       integer :: failed, e, tries
       call frame_state_new(model, now, failed)
       if (failed == 0) call frame_state_new(model, from, failed)
@@ -241,8 +250,8 @@ contains
          if (goes_on) call go_on(last, part, now, trial)
          call equilibrate(model, 1.0_wp, from, pattern, control, start + moved, .true., now, trial, status)
          if (status /= status_ok) then
-            goes_on = .not. goes_on .and. last%length > 0.0_wp
-            if (.not. goes_on .and. last%length > 0.0_wp) cycle
+            call begin_otherwise(last, goes_on, cut)
+            if (.not. cut) cycle
             part = 0.5_wp * part
             if (part < 1.0e-3_wp) then
                if (now%lagged) return
