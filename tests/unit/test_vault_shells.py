@@ -7,9 +7,9 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Refused
-from extrados.analyses.shell import pushover
 from extrados.analyses.shell.model import build
 from extrados.analyses.shell.tables import Pushover
+from extrados.analyses.shell.words import pressing
 from extrados.core import sla as core
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.properties import Material
@@ -262,7 +262,7 @@ def test_wrong_stages_are_reported(keys, words):
     ],
 )
 def test_the_force_of_a_foot_on_the_ground_is_reported_in_words(thrust, vertical, words):
-    assert pushover._pressing({"thrust_N": thrust, "vertical_N": vertical}, 1e5) == words
+    assert pressing({"thrust_N": thrust, "vertical_N": vertical}, 1e5) == words
 
 
 def test_thick_walls_are_no_shells():
