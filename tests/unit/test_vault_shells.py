@@ -10,7 +10,7 @@ from extrados.analyses.context import Refused
 from extrados.analyses.shell.model import build
 from extrados.analyses.shell.tables import Pushover
 from extrados.analyses.shell.words import pressing
-from extrados.core import sla as core
+from extrados.core.shell import shell_axes
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.properties import Material
 from extrados.model.structures.arch import Arch
@@ -92,7 +92,7 @@ def test_normals_look_outward():
     for name, structure in EVERY.items():
         mesh = meshed(structure)
         for part in mesh.parts:
-            normal = core.shell_axes(mesh.xyz, part.connect)[:, 2]
+            normal = shell_axes(mesh.xyz, part.connect)[:, 2]
             middle = mesh.xyz[part.connect].mean(axis=1)
             if part.name.endswith("wall"):
                 assert (normal[:, 0] * middle[:, 0] > 0.0).all()
