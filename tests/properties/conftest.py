@@ -1,4 +1,4 @@
-"""What tools/seeded_faults.py asks of the tests of this folder: their lines of the package, their answers, and runs with a fault planted."""
+"""What tools/fault_tests.py asks of the tests of this folder: their lines of the package, their answers, and runs with a fault planted."""
 
 import gc
 import hashlib

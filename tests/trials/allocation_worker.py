@@ -2,7 +2,7 @@
 
     allocation_worker.py SHIM [FUNCTION ...]
 
-Prints a line of JSON for each function of api_worker: its name, the number of its allocations, how often the call ended
+Prints a line of JSON for each function of core_calls: its name, the number of its allocations, how often the call ended
 how, and what was wrong. Each failure is tried in a child, whose death ends nothing but itself. Of more than MOST
 allocations, those are tried that are the first or the last of their place in the program.
 """
@@ -16,7 +16,8 @@ import tempfile
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from api_worker import _valid, bits
+from api_worker import bits
+from core_calls import valid_calls
 
 from extrados import _core
 
@@ -72,7 +73,7 @@ def in_children(function: Callable[..., Any], keys: dict[str, Any], todo: list[i
 
 
 def main() -> None:
-    for function, keys in _valid():
+    for function, keys in valid_calls():
         if sys.argv[2:] and function.__name__ not in sys.argv[2:]:
             continue
         keys = {**keys, "threads": 1} if "threads" in keys else keys

@@ -40,7 +40,7 @@ def test_the_core_is_abused() -> None:
 
 
 def test_every_function_of_the_core_is_reached() -> None:
-    """A new facade gets a call in the worker, or nothing abuses it."""
+    """A new facade gets a call in core_calls, or nothing abuses it."""
     child = subprocess.run([sys.executable, str(WORKER), "unreached"], capture_output=True, text=True, check=True)
     called_as_it_loads = {"api_support.init_libraries", "api_support.list_entry"}
     assert set(child.stdout.split()) <= called_as_it_loads | {"api_support.cancel_requested", "api_support.handle_count"}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from extrados.core import sla as core
-from extrados.core.shell import node_frames
+from extrados.core.shell import node_frames, shell_axes
 from extrados.schema.constants import GRAVITY
 from extrados.views.shell.mesh import nodal_areas, spread
 
@@ -124,7 +124,7 @@ def test_a_barrel_vault_on_spreading_springings_opens_in_three_hinge_lines():
     assert events.monitors[-1, 0] < weight.monitors[-1, 0] < 0.0  # the crown comes down as the springings part
     cracked = (report["tooth_n"] > 3).reshape(n - 1, 4, 7).any(axis=1)
     middle = 0.5 * (angle[1:] + angle[:-1])
-    outside = core.shell_axes(xyz, quads)[:, 2] @ np.array([0.0, 0.0, 1.0])
+    outside = shell_axes(xyz, quads)[:, 2] @ np.array([0.0, 0.0, 1.0])
     top = 6 if outside[(n - 1) // 2] > 0 else 0  # the layer on the extrados
     free = (middle > 10.0) & (middle < 170.0)  # beside the clamps the shell bends otherwise
     intrados, extrados = middle[free & cracked[:, 6 - top]], middle[free & cracked[:, top]]

@@ -87,7 +87,7 @@ def test_a_build_apart_holds_no_source_that_is_gone(tmp_path: Path, monkeypatch:
 
 def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
-    rooms = tool("tools/seeded_faults.py").ROOMS
+    rooms = tool("tools/fault_tests.py").ROOMS
     sources = [path for root in ("fortran", "c") for end in ("f90", "c") for path in (ROOT / root).glob(f"*/*.{end}")]
     # facades hold no mechanics of their own
     assert {path.parent.relative_to(ROOT).as_posix() for path in sources} - {"fortran/api"} == set(rooms)

@@ -7,10 +7,10 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Refused
-from extrados.analyses.shell import pushover
 from extrados.analyses.shell.model import build
 from extrados.analyses.shell.tables import Pushover
-from extrados.core import sla as core
+from extrados.analyses.shell.words import pressing
+from extrados.core.shell import shell_axes
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.properties import Material
 from extrados.model.structures.arch import Arch
@@ -92,7 +92,7 @@ def test_normals_look_outward():
     for name, structure in EVERY.items():
         mesh = meshed(structure)
         for part in mesh.parts:
-            normal = core.shell_axes(mesh.xyz, part.connect)[:, 2]
+            normal = shell_axes(mesh.xyz, part.connect)[:, 2]
             middle = mesh.xyz[part.connect].mean(axis=1)
             if part.name.endswith("wall"):
                 assert (normal[:, 0] * middle[:, 0] > 0.0).all()
@@ -262,7 +262,7 @@ def test_wrong_stages_are_reported(keys, words):
     ],
 )
 def test_the_force_of_a_foot_on_the_ground_is_reported_in_words(thrust, vertical, words):
-    assert pushover._pressing({"thrust_N": thrust, "vertical_N": vertical}, 1e5) == words
+    assert pressing({"thrust_N": thrust, "vertical_N": vertical}, 1e5) == words
 
 
 def test_thick_walls_are_no_shells():

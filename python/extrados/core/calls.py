@@ -36,6 +36,11 @@ def real(name: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> npt.
     return array
 
 
+def real_each(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
+    """One value for all elements, or one for each."""
+    return real(name, np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy(), (count,))
+
+
 def integers(name: str, value: npt.ArrayLike, length: int | None = None) -> npt.NDArray[np.int32]:
     """`value` as a vector (length) of int32; refuses fractions, which f2py would cut off silently."""
     array = np.asarray(value)
@@ -69,6 +74,11 @@ def _whole(name: str, array: npt.NDArray[Any]) -> npt.NDArray[np.int32]:
 
 
 _INT32 = np.iinfo(np.int32)
+
+
+def stack_rows(*rows: np.ndarray) -> np.ndarray:
+    """Arrays by element as the rows of one, in Fortran order."""
+    return np.asfortranarray(np.stack(rows))
 
 
 def room_for(*lengths: int) -> None:

@@ -1,16 +1,32 @@
-"""Flat shells in space: the axes of their nodes."""
+"""Flat shells in space: the axes of elements and of their nodes."""
 
 from collections.abc import Iterable
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
+from extrados.core.calls import indices, real
 from extrados.core.errors import check
-from extrados.core.sla import shell_axes
+from extrados.core.sla_groups import BadElement
 from extrados.core.sla_parts import THROUGH
 
 #: Normals that differ by less than this angle are those of one plane [rad]
 FLAT = 1e-5
+
+
+def shell_axes(xyz: npt.ArrayLike, connect: npt.ArrayLike) -> np.ndarray:
+    """Axes (elements, 3, 3) of flat shells, rows x, y, normal: x is horizontal, y goes up; of horizontal ones x is x.
+
+    xyz (nodes, 3) [m]; connect (elements, 3 or 4), from 0.
+    """
+    place = real("xyz", np.transpose(xyz), (3, None))
+    nodes = indices("connect", np.transpose(connect), place.shape[1], (None, None))
+    axes, bad, status = _core.api_shell.axes_of(place, nodes)
+    if bad:
+        raise BadElement(bad - 1, "shell")
+    check(status, "axes of shells")
+    return np.array(np.transpose(axes, (2, 0, 1)))
 
 
 def node_frames(xyz: np.ndarray, groups: Iterable[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

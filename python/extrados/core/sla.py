@@ -1,4 +1,7 @@
-"""Sequentially linear analysis in the core (fortran/sla, c/sparse): teeth, models, batches of events."""
+"""Sequentially linear analysis in the core (fortran/sla, c/sparse): models and batches of events.
+
+The laws, groups and parts of a model are in sla_laws, sla_groups and sla_parts; their names are here too.
+"""
 
 import os
 from collections.abc import Sequence
@@ -8,11 +11,12 @@ import numpy.typing as npt
 
 from extrados import _core
 from extrados.core import lists
-from extrados.core.calls import indices, integers, long_call, real, room_for, thread_count
+from extrados.core.calls import indices, integers, long_call, real, real_each, room_for, stack_rows, thread_count
 from extrados.core.errors import Cancelled, check, status_code
 from extrados.core.handles import Owner
+from extrados.core.sla_groups import BadElement, add_group, body_force
+from extrados.core.sla_laws import MOST_TEETH, intervals, largest_band, teeth
 from extrados.core.sla_parts import (
-    BEARS,
     CRACKING,
     DIRECTIONS,
     ELEMENTS,
@@ -46,6 +50,7 @@ __all__ = [
     "EVENT",
     "EVENTS",
     "LAWS",
+    "MOST_TEETH",
     "REPORT",
     "STOPS",
     "THROUGH",
@@ -71,7 +76,6 @@ __all__ = [
     "intervals",
     "largest_band",
     "memory_limit",
-    "shell_axes",
     "teeth",
 ]
 
@@ -96,7 +100,6 @@ REPORT = (
     "shut",
     "band",
 )
-MOST_TEETH = 4096
 #: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
 #: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
 START, HELD, HELD_RATE, MARK, MODE = 0, 1, 6, 8, 10
@@ -106,8 +109,6 @@ VARIANTS = tuple(lists.numbers("sla_variant"))
 CONTINUATIONS = ("newton", "implicit-explicit")
 #: Rows of the histories of a point, see fortran/sla/group.f90
 HISTORIES = 8
-#: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
-BAND_STEP = 1.02
 
 
 class FreeNode(ValueError):
@@ -116,66 +117,6 @@ class FreeNode(ValueError):
     def __init__(self, node: int, direction: str, ratio: float):
         super().__init__(f"node {node + 1} is free to move in {direction}")
         self.node, self.direction, self.ratio = node, direction, ratio
-
-
-class BadElement(ValueError):
-    """An element is inverted or has no area; its 0-based number."""
-
-    def __init__(self, element: int, what: str):
-        super().__init__(f"{what} {element + 1} is inverted or has no size")
-        self.element = element
-
-
-def teeth(softening: Softening, young: float, band: float) -> tuple[np.ndarray, np.ndarray]:
-    """Secant moduli (teeth) [Pa] and peak stresses (teeth) [Pa] of a crack band `band` [m] wide; young [Pa]."""
-    s = softening
-    n, modulus, strength, status = _core.api_sla_laws.teeth(
-        LAWS[s.law], young, s.strength, s.energy, band, s.ripple, int(s.exact), int(s.overshoot), MOST_TEETH
-    )
-    check(status, f"teeth of a {s.law} law: the crack band is {band:g} m (largest possible: {largest_band(s, young):g} m)")
-    return np.array(modulus[:n]), np.array(strength[:n])
-
-
-def largest_band(softening: Softening, young: float) -> float:
-    """The crack band width beyond which the law snaps back [m]."""
-    return float(_core.api_sla_laws.band(LAWS[softening.law], young, softening.strength, softening.energy))
-
-
-def intervals(alpha: float, beta: float, a: npt.ArrayLike, b: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Multipliers lo, hi (n) that keep r <= alpha - beta m under stresses a + lambda b, both (n, 3)."""
-    a = real("a", np.transpose(a), (3, None))
-    lo, hi = _core.api_sla_laws.intervals(alpha, beta, a, real("b", np.transpose(b), (3, a.shape[1])))
-    return lo, hi
-
-
-def body_force(kind: str, points: tuple[int, int], xy: npt.ArrayLike, connect: npt.ArrayLike, density: npt.ArrayLike) -> np.ndarray:
-    """Consistent nodal forces (nodes, 2) [N] of a density (elements, 2): force per wall area [N/m^2].
-
-    xy (nodes, 2) [m]; connect (elements, nodes of one), from 0.
-    """
-    place = real("xy", np.transpose(xy), (2, None))
-    nodes = indices("connect", np.transpose(connect), place.shape[1], (ELEMENTS[kind], None))
-    force, bad, status = _core.api_sla_model.body_force(
-        ELEMENTS[kind], *points, place, nodes, real("density", np.transpose(density), (2, nodes.shape[1]))
-    )
-    if bad:
-        raise BadElement(bad - 1, "element")
-    check(status, "body force")
-    return np.array(force.T)
-
-
-def shell_axes(xyz: npt.ArrayLike, connect: npt.ArrayLike) -> np.ndarray:
-    """Axes (elements, 3, 3) of flat shells, rows x, y, normal: x is horizontal, y goes up; of horizontal ones x is x.
-
-    xyz (nodes, 3) [m]; connect (elements, 3 or 4), from 0.
-    """
-    place = real("xyz", np.transpose(xyz), (3, None))
-    nodes = indices("connect", np.transpose(connect), place.shape[1], (None, None))
-    axes, bad, status = _core.api_shell.axes_of(place, nodes)
-    if bad:
-        raise BadElement(bad - 1, "shell")
-    check(status, "axes of shells")
-    return np.array(np.transpose(axes, (2, 0, 1)))
 
 
 def memory_limit() -> int:
@@ -262,140 +203,11 @@ class Model(Owner):
             self.close()
             raise
 
-    def _tables(self, count: int, group: Plane | Joints | Bars) -> tuple[list[np.ndarray], np.ndarray]:
-        """Hand over the tooth tables of a group; for tension, compression and of joints cohesion, the table of each
-        element (1-based, 0 none), and (2, elements) those of its narrowest and widest tension band."""
-        young, band = _each("young", group.young, count), _each("band", group.band, count)
-        reach = group.reach if isinstance(group, Plane) else None
-        rows: list[tuple[float, ...]] = []
-        tension = _softenings(group.tension, count)
-        bedded = [law is not None and bed is not None for law, bed in zip(tension, _beddings(group, count), strict=True)]
-        plain = [None if b else law for b, law in zip(bedded, tension, strict=True)]
-        if reach is None:
-            number, ladder = _one_band(plain, young, band, rows), np.zeros((2, count), dtype=np.int32)
-        else:
-            number, ladder = _many_bands(plain, young, band, real("reach", reach, (count, 2)), rows)
-        if any(bedded):
-            ends = np.column_stack([band, band]) if reach is None else np.asarray(reach)
-            stretch = np.array([(1.0, 1.0) if bed is None else bed.stretch() for bed in _beddings(group, count)])
-            other = [law if b else None for b, law in zip(bedded, tension, strict=True)]
-            more, rungs = _many_bands(other, young, band, ends * stretch, rows)
-            number, ladder = np.where(bedded, more, number), np.where(bedded, rungs, ladder)
-        numbers = [number]
-        numbers.append(_one_band(_softenings(group.compression, count), young, band, rows))
-        if isinstance(group, Joints):
-            slip = _each("shear stiffness", group.shear_stiffness, count)
-            numbers.append(_one_band(_softenings(group.cohesion, count), slip, band, rows))
-        if rows:
-            table = real("softening", np.transpose(rows), (8, None))
-            bad, status = _core.api_sla_model.tables(self.handle, table)
-            if bad:
-                kind, modulus, strength, energy, width = table[:5, bad - 1]
-                name = next(word for word, number in LAWS.items() if number == int(kind))
-                largest = largest_band(Softening(strength, energy, name), modulus)
-                check(
-                    status,
-                    (
-                        f"teeth of a {name} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: the crack band is "
-                        f"{width:g} m, and the largest possible is {largest:g} m"
-                    ),
-                )
-            check(status, "softening laws")
-        return numbers, ladder
-
     def _add(self, group: Plane | Joints | Bars | Springs) -> None:
-        if isinstance(group, Springs):
-            self._add_springs(group)
-            return
-        per = np.shape(group.connect)[1] if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
-        connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
-        count = connect.shape[1]
-        young = _each("young", group.young, count)
-        tables, ladder = self._tables(count, group)
-        if isinstance(group, Bars):
-            gradient, length = group.strains(self.xy)
-            bad, status = _core.api_sla_model.bars(
-                self.handle,
-                connect,
-                real("gradient", np.transpose(gradient, (2, 1, 0)), (self.xy.shape[1], per, count)),
-                _rows(_each("area", group.area, count) * length, young),
-                _rows(*tables, np.full(count, BEARS[group.bears], dtype=np.int32)),
-            )
-            what = "bar"
-        elif isinstance(group, Joints):
-            bad, status = self._add_joints(group, connect, tables)
-            what = "joint element"
-        else:
-            axis = np.broadcast_to(np.asarray(group.axis, dtype=float), (count,))
-            given = np.isfinite(axis)
-            properties = _rows(
-                _each("thickness", group.thickness, count),
-                young,
-                _each("nu", group.nu, count),
-                _each("lateral", group.lateral, count),
-                np.where(given, axis, 0.0),
-                _each("confinement", group.confinement, count),
-                *_bed_rows(group, count),
-            )
-            choices = _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32))
-            if isinstance(group, Shells):
-                bad, status = _core.api_shell.shells(
-                    self.handle,
-                    ELEMENTS[group.kind],
-                    integers("section", [THROUGH[group.through], group.layers, int(group.bends), int(group.selective)], 4),
-                    real("frames", np.transpose(group.frames, (1, 2, 0)), (3, 3, self.nodes)),
-                    integers("flat", np.asarray(group.flat).astype(int), self.nodes),
-                    connect,
-                    properties,
-                    choices,
-                )
-            else:
-                bad, status = _core.api_sla_model.plane(
-                    self.handle,
-                    ELEMENTS[group.kind],
-                    integers("points", [*group.points, int(group.selective)], 3),
-                    connect,
-                    properties,
-                    choices,
-                )
-            what = "element"
-        if not isinstance(group, Bars):
+        add_group(self.handle, self.xy, self.freedoms, group)
+        if isinstance(group, Plane | Joints):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
             self.plane_points.append((group, first, group.points_each))
-        if bad:
-            raise BadElement(int(bad) - 1, what)
-        check(status, f"{what}s")
-
-    def _add_joints(self, group: Joints, connect: np.ndarray, tables: list[np.ndarray]) -> tuple[int, int]:
-        count = connect.shape[1]
-        friction = np.broadcast_to(np.asarray(group.friction, dtype=float), (count,))
-        properties = _rows(
-            *real("area", np.transpose(group.area), (2, count)),
-            _each("normal stiffness", group.normal_stiffness, count),
-            _each("shear stiffness", group.shear_stiffness, count),
-            np.where(np.isnan(friction), -1.0, friction),
-            _each("small", group.small, count),
-            *real("normal", np.transpose(group.normal), (2, count)),
-        )
-        dry = np.broadcast_to(np.asarray(group.dry, dtype=np.int32), (count,))
-        choices, ripple = _rows(*tables, dry), float(group.ripple)
-        if isinstance(group, ShellJoints):
-            row = real("row", group.row.reshape(2 * count, 3, 24).transpose(2, 1, 0), (24, 3, 2 * count))
-            return _core.api_sla_joints.joints_between_shells(self.handle, connect, properties, choices, ripple, row)
-        return _core.api_sla_joints.joints(self.handle, connect, properties, choices, ripple)
-
-    def _add_springs(self, group: Springs) -> None:
-        count = len(group.stiffness)
-        ground = np.asarray(group.node) == -1  # the ground is the core's node 0
-        node = indices("node of a spring", np.asarray(group.node).T + 1, self.nodes + 1, (2, count)) - np.int32(1)
-        direction = np.where(ground, 0, np.asarray(group.direction))
-        status = _core.api_sla_model.springs(
-            self.handle,
-            node,
-            indices("direction of a spring", direction.T, self.freedoms, (2, count)),
-            real("stiffness", group.stiffness, (count,)),
-        )
-        check(status, "springs")
 
     def factorise(self) -> float:
         """Factor of the present damage; returns the smallest over the largest pivot."""
@@ -475,7 +287,7 @@ class Model(Owner):
             self.handle,
             int(room),
             first,
-            _rows(node, direction),
+            stack_rows(node, direction),
             real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )
         interrupted = status == status_code("cancelled")
@@ -602,7 +414,7 @@ class Model(Owner):
                 continue
             at = first + np.flatnonzero(damage[MODE, first : first + per * len(group.connect)] % 4)
             bond = report["ratio_s"][at]
-            stiffness = np.repeat(_each("shear stiffness", group.shear_stiffness, len(group.connect)), per)[at - first]
+            stiffness = np.repeat(real_each("shear stiffness", group.shear_stiffness, len(group.connect)), per)[at - first]
             slip = report["stress_ns"][at] / stiffness - bond * (report["strain_ns"][at] - damage[START, at])
             damage[MARK, at] = report["strain_ns"][at] - slip / (1.0 - bond)
             damage[HELD, at] = damage[HELD_RATE, at] = damage[MODE, at] = 0.0
@@ -628,83 +440,3 @@ class Model(Owner):
         """
         self.set_damage(damage)
         check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (34,))), "stored events")
-
-
-def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:
-    """The law of each element."""
-    each = [law] * count if law is None or isinstance(law, Softening) else list(law)
-    if len(each) != count:
-        raise ValueError(f"there are {len(each)} softening laws for {count} elements; expected one for each element")
-    return each
-
-
-def _beddings(group: Plane | Bars | Joints, count: int) -> list[Bedding | None]:
-    """The bed joints of each element."""
-    bedding = group.bedding if isinstance(group, Plane) else None
-    each = [bedding] * count if bedding is None or isinstance(bedding, Bedding) else list(bedding)
-    if len(each) != count:
-        raise ValueError(f"there are {len(each)} laws of bed joints for {count} elements; expected one for each element")
-    return each
-
-
-def _bed_rows(group: Plane, count: int) -> np.ndarray:
-    """(8, elements) the components of the core's `bedding`: none where nothing cracks or crushes."""
-    rows = np.zeros((8, count))
-    rows[3] = 1.0
-    for k, criterion in enumerate(group.hill or ()):
-        if criterion is not None:
-            rows[[0, 5, 6, 7], k] = criterion.angle, criterion.ratio, criterion.coupling, criterion.shear
-    if group.bedding is None:
-        return rows
-    width = _each("band", group.band, count) if group.reach is None else np.zeros(count)
-    for k, (bed, law) in enumerate(zip(_beddings(group, count), _softenings(group.tension, count), strict=True)):
-        if bed is not None and law is not None:
-            rows[:5, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
-    return rows
-
-
-def _one_band(laws: list[Softening | None], young: np.ndarray, band: np.ndarray, rows: list) -> np.ndarray:
-    """The table of each element (1-based, 0 none), one for each law and band; the tables go to `rows`."""
-    found = {row: k + 1 for k, row in enumerate(rows)}
-    number = np.zeros(len(laws), dtype=np.int32)
-    for k, law in enumerate(laws):
-        if law is not None:
-            row = tuple(law.row(float(young[k]), float(band[k])))
-            if row not in found:
-                rows.append(row)
-                found[row] = len(rows)
-            number[k] = found[row]
-    return number
-
-
-def _many_bands(
-    laws: list[Softening | None], young: np.ndarray, band: np.ndarray, reach: np.ndarray, rows: list
-) -> tuple[np.ndarray, np.ndarray]:
-    """As `_one_band`, for bands between the two of `reach` (elements, 2): every law has tables for bands that grow by
-    BAND_STEP. The table of each element at its `band`, and (2, elements) those at both ends of its reach."""
-    members: dict[tuple[Softening, float], list[int]] = {}
-    for k, law in enumerate(laws):
-        if law is not None:
-            members.setdefault((law, float(young[k])), []).append(k)
-    number = np.zeros(len(laws), dtype=np.int32)
-    ladder = np.zeros((2, len(laws)), dtype=np.int32)
-    for (law, modulus), mine in members.items():
-        low, high = float(reach[mine, 0].min()), float(reach[mine, 1].max())
-        steps = max(1, int(np.ceil(np.log(high / low) / np.log(BAND_STEP))))
-        step = np.log(high / low) / steps
-        first = len(rows) + 1
-        rows += [tuple(law.row(modulus, low * float(np.exp(i * step)))) for i in range(steps + 1)]
-        for target, wanted in ((number, band), (ladder[0], reach[:, 0]), (ladder[1], reach[:, 1])):
-            at = np.rint(np.log(wanted[mine] / low) / step) if step > 0.0 else np.zeros(len(mine))
-            target[mine] = first + np.clip(at, 0, steps).astype(np.int32)
-    return number, ladder
-
-
-def _each(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
-    """One value for all elements, or one for each."""
-    return real(name, np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy(), (count,))
-
-
-def _rows(*rows: np.ndarray) -> np.ndarray:
-    """Arrays by element as the rows of one, in Fortran order."""
-    return np.asfortranarray(np.stack(rows))

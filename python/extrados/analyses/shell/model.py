@@ -21,7 +21,7 @@ from extrados.analyses.sla.model import (
     teeth_of_joints,
 )
 from extrados.core import sla as core
-from extrados.core.shell import layers_of, node_frames
+from extrados.core.shell import layers_of, node_frames, shell_axes
 from extrados.model.errors import BadGeometry
 from extrados.schema.constants import GRAVITY
 from extrados.views.mesh.mesh import JointLaw
@@ -142,7 +142,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         count, number = int(freedoms.equation.max()) + 1, freedoms.equation
         freedoms = core.Freedoms(np.where(number < 0, -1, (number - len(moved)) % count), freedoms.factor, len(moved))
     for part in mesh.parts:
-        own = core.shell_axes(mesh.xyz, part.connect)
+        own = shell_axes(mesh.xyz, part.connect)
         axes.append(own)
         groups.append(_shells(mesh, part, own, frames, flat, options))
     groups += [_joint(joint, frames, options) for joint in mesh.joints]
