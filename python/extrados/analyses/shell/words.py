@@ -70,16 +70,16 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
     )
     if load is None:
         return f"{sense}: no equilibrium state was found."
-    bears = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
+    carries = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
     part = f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
     slides = curve["capacity_N"] < load
     if slides:
         text = (
             f"{sense}, the {word} carries a base shear of at most {curve['capacity_N'] / 1e3:.4g} kN({part}), and then slides "
-            f"at {curve['sliding_level']} by Coulomb's law. Without this sliding the model {bears} {load / 1e3:.4g} kN"
+            f"at {curve['sliding_level']} by Coulomb's law. Without this sliding the model {carries} {load / 1e3:.4g} kN"
         )
     else:
-        text = f"{sense}, the {word} {bears} a base shear of {load / 1e3:.4g} kN, {part}"
+        text = f"{sense}, the {word} {carries} a base shear of {load / 1e3:.4g} kN, {part}"
     if curve["roof_drift"] is not None:
         text += f", at a drift of {100 * curve['roof_drift']:.2g} %"
     if "first_crack" in curve:
