@@ -100,6 +100,18 @@ def test_openings_and_ends_limit_a_flange():
     assert (part.start, part.end) == pytest.approx((0.0, 0.9))
 
 
+@pytest.mark.parametrize("shear", ["none", "least"])
+def test_corners_without_cohesion_are_not_bonded_and_it_is_said(shear):
+    walls = [
+        {"name": "web", "start": [0, 0], "end": [3, 0], "thickness": 0.3},
+        {"name": "flange", "start": [0, -4], "end": [0, 4], "thickness": 0.3},
+    ]
+    for cohesion, bonded in ((0.0, False), (1e4, True)):
+        frame = building(walls, cohesion=cohesion).frame(FrameOptions(shear=shear))
+        assert bool(frame.links) == bool(frame.flanges) == bonded
+        assert any("not bonded" in remark for remark in frame.weaknesses) != bonded
+
+
 def test_strength_of_spandrels_by_hand():
     assert [strut_of(0.8, 0.4, tie, 1.5e6) for tie in (50e3, 400e3)] == pytest.approx([50e3, 192e3])
     assert strut_strength(0.8, 0.4, 50e3, 1.5e6) == pytest.approx(20e3 * (1 - 50 / 408))

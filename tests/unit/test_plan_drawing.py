@@ -78,7 +78,7 @@ def test_axes_with_gaps(tmp_path):
 def test_a_turned_plan_is_the_same(tmp_path, angle):
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     straight, _ = walls_in(deck_of_plan(drawn(tmp_path), ["A-WALL"], ["A-GLAZ"], None, [3.0]))
-    turned, _ = walls_in(
+    turned, deck = walls_in(
         deck_of_plan(drawn(tmp_path, [np.array(FACES[0]) @ turn], [np.array(WINDOW[0]) @ turn]), ["A-WALL"], ["A-GLAZ"], None, [3.0])
     )
 
@@ -86,6 +86,7 @@ def test_a_turned_plan_is_the_same(tmp_path, angle):
         return sorted((round(w.length, 2), w.thickness, len(w.openings)) for w in walls.values())
 
     assert described(turned) == described(straight)
+    assert not any("do not meet" in remark for remark in deck.building.frame(deck.analyses[0].frame).remarks)
 
 
 @pytest.mark.parametrize(

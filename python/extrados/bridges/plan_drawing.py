@@ -298,7 +298,8 @@ def written_deck(walls: Sequence[WrittenWall], storeys: Sequence[float], name: s
 
 
 def _point(at: np.ndarray) -> str:
-    return f"[{at[0]:.4f}, {at[1]:.4f}]"
+    """Coordinates to a tenth of a micrometre: walls of a deck meet within one."""
+    return f"[{', '.join(f'{round(float(v), 7) + 0.0:.12g}' for v in at)}]"
 
 
 def _quoted(text: str) -> str:

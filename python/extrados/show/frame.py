@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Rectangle
@@ -105,18 +106,20 @@ def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 word = ("load", "membrane", "rigid", "joists")[int(kind)]
                 ax.annotate(word, (x, y), (6, 0), textcoords="offset points", va="center", fontsize=7, color=style.EDGE)
             ax.set_aspect("equal")
+            ax.margins(0.12)  # room for the names of walls
             ax.autoscale_view()
             ax.grid(False)
             ax.set_title(f"storey {storey}")
             ax.set_xlabel("x [m]")
         axes[0].set_ylabel("y [m]")
-        handles = [
-            Patch(facecolor=style.STONE, edgecolor=style.EDGE, label="pier"),
-            Patch(facecolor="white", edgecolor=style.EDGE, label="opening"),
-            Patch(facecolor="none", edgecolor=style.HINGE, hatch="////", label="flange of effective width"),
-            Line2D([], [], color=style.SAFE, linestyle="--", label="ring beam"),
-            Line2D([], [], color=style.THRUST, label="tie rod"),
-        ]
+        drawn = {
+            "opening": Patch(facecolor="white", edgecolor=style.EDGE, label="opening"),
+            "flange": Patch(facecolor="none", edgecolor=style.HINGE, hatch="////", label="flange of effective width"),
+            "ring_beam": Line2D([], [], color=style.SAFE, linestyle="--", label="ring beam"),
+            "rod": Line2D([], [], color=style.THRUST, label="tie rod"),
+        }
+        handles: list[Artist] = [Patch(facecolor=style.STONE, edgecolor=style.EDGE, label="pier")]
+        handles += [handle for part, handle in drawn.items() if len(run.array(name, part))]
         fig.legend(handles=handles, loc="outside lower center", ncols=3)
         saved = style.save(fig, folder, f"{name}-plan")
     return saved, "The frame on the plan: piers between openings, the flanges that walls lift at their corners, floors."
@@ -171,7 +174,7 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
         ax.set_xlabel("distance along the walls, side by side [m]")
         ax.set_ylabel("height [m]")
         ax.set_title(told)
-        handles = [Patch(facecolor=c, edgecolor=style.EDGE, label=w) for c, w in zip(COLOURS, WORDS, strict=True)]
+        handles: list[Artist] = [Patch(facecolor=c, edgecolor=style.EDGE, label=w) for c, w in zip(COLOURS, WORDS, strict=True)]
         handles.append(Patch(facecolor="#b9b2a3", edgecolor=style.EDGE, label="rigid node"))
         fig.legend(handles=handles, loc="outside lower center", ncols=4)
         saved = style.save(fig, folder, f"{name}-walls-{word}")

@@ -202,7 +202,8 @@ def run(context: Context, options: FrameFragility) -> Result:
             ),
             ("analysis", "frame", "confidence_factor"),
         )
-    context.warnings += context.building.frame(options.frame).remarks
+    frame = context.building.frame(options.frame)
+    context.warnings += frame.remarks + frame.weaknesses
     source, there = source_of(context, options.seed)
     motions = options.count or there or MOTIONS
     sample = sample_of(context.building, options.frame, options.uncertain, motions, options.seed or 0)

@@ -43,7 +43,7 @@ def run(context: Context, options: FrameHistory) -> Result:
     """Displacements, base shear and states of the elements over time."""
     result = Result("frame-history")
     frame = context.building.frame(options.frame)
-    context.warnings += frame.remarks
+    context.warnings += frame.remarks + frame.weaknesses
     motion = context.motion
     way = way_of(options.direction)
     end = options.end_time or motion.end + AFTER

@@ -83,7 +83,7 @@ def run(context: Context, options: FramePushover) -> Result:
         divided = {"confidence_factor": confidence_factor(context, options.verification)}
         options = options.model_copy(update={"frame": options.frame.model_copy(update=divided)})
     frame = context.building.frame(options.frame)
-    context.warnings += frame.remarks
+    context.warnings += frame.remarks + frame.weaknesses
     level = options.control_level or max(one.level for one in frame.masses)
     height = float(frame.plan.levels[level])
     with interruptible(), frame.core() as core:
@@ -117,7 +117,7 @@ def run(context: Context, options: FramePushover) -> Result:
         spandrels=frame.spandrels,
         **_ring_beams(frame, paths),
         walls=[wall.name for wall in frame.plan.walls],
-        remarks=frame.remarks,
+        remarks=frame.remarks + frame.weaknesses,
     )
     verified = verify_frame(context, result, frame, rest.tangent, options, pushes, paths)
     if verified is not None:

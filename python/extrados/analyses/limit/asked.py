@@ -194,7 +194,7 @@ def cuts_of(building: Building, options: Thrust) -> list[Cut]:
         key: Key = ("analysis", "section", number) if options.section else ("analysis",)
         contacts, above = _contacts_of(assembly, table, key)
         if len(contacts):
-            found.append(_cut(assembly, table, contacts, above, middle, None if options.section else options.direction, key))
+            found.append(_cut(assembly, table, contacts, above, middle, None if options.section else options.direction or 0.0, key))
         elif options.section:
             raise Refused(f"section '{table.name}': no contact lies between blocks on both sides", key)
     return found

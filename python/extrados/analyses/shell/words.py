@@ -69,13 +69,17 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
         f"Under the load towards {curve['sense']} ({options.direction:g} degrees in plan)" if main is None else f"In stage {main['name']}"
     )
     if load is None:
+        if curve["stop"] == "no point limits the load":
+            return (
+                f"{sense} there is no limit of the load, because the deck gives no strength by which the masonry cracks, crushes or slides."
+            )
         return f"{sense}: no equilibrium state was found."
     carries = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
     part = f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
     slides = curve["capacity_N"] < load
     if slides:
         text = (
-            f"{sense}, the {word} carries a base shear of at most {curve['capacity_N'] / 1e3:.4g} kN({part}), and then slides "
+            f"{sense}, the {word} carries a base shear of at most {curve['capacity_N'] / 1e3:.4g} kN ({part}), and then slides "
             f"at {curve['sliding_level']} by Coulomb's law. Without this sliding the model {carries} {load / 1e3:.4g} kN"
         )
     else:

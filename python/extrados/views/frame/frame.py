@@ -69,6 +69,8 @@ class EquivalentFrame:
     flanges: list[Flange] = field(default_factory=list)
     #: Wall and level: freedom of its displacement along the wall
     along: dict[tuple[int, int], int] = field(default_factory=dict)
+    #: Remarks on strengths, which vibration does not use
+    weaknesses: list[str] = field(default_factory=list)
 
     @property
     def piers(self) -> int:

@@ -62,13 +62,6 @@ class _Maker(Division):
         for k, corner in enumerate(plan.corners):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
-        o = self.options
-        if o.shear not in ("none", "damage") and not (o.cohesion or o.diagonal_strength or self.building.joints.cohesion):
-            self.remarks.append(
-                f"Neither cohesion nor diagonal_strength is given: piers slide at {o.friction:g} times their compression, spandrels without a "
-                f"tie have no strength, and walls that meet at corners {'are' if o.flange_strength else 'are not'} bonded. Give [joints] "
-                "cohesion, or diagonal_strength in [analysis.frame], for masonry in mortar."
-            )
         if plan.beds:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
         if plan.ring_beams:
@@ -126,7 +119,20 @@ class _Maker(Division):
             self.remarks,
             self.flanges,
             self.along,
+            self._unbonded(),
         )
+
+    def _unbonded(self) -> list[str]:
+        """A statement of what masonry without cohesion lacks; none with a cohesion or a diagonal strength."""
+        o = self.options
+        if o.cohesion or o.diagonal_strength or self.building.joints.cohesion:
+            return []
+        slides = "" if o.shear in ("none", "damage") else f"piers slide at {o.friction:g} times their compression, "
+        corners = ", and walls that meet at corners are not bonded" if self.junctions and not o.flange_strength else ""
+        return [
+            f"Neither cohesion nor diagonal_strength is given: {slides}spandrels have no strength{corners}. For masonry in mortar, give "
+            "[joints] cohesion, or diagonal_strength in [analysis.frame]."
+        ]
 
     def _named(self, name: str) -> int:
         return next(w for w, wall in enumerate(self.plan.walls) if wall.name == name)
@@ -466,6 +472,8 @@ class _Maker(Division):
                 strength = f / o.confidence_factor * thin * tall
                 if bond is not None:
                     strength *= bond.strength
+                if not strength > 0.0:
+                    continue
                 strengths, returns = (strength, strength), False
                 if o.flanges == "effective" and abs(float(one.direction @ two.direction)) < PARALLEL:
                     lifted = self._flange(b, a, level), self._flange(a, b, level)  # of one by two, of two by one
