@@ -512,14 +512,13 @@ contains
    end subroutine respond
 
    !> As of plane points; the transverse shear follows the cracks
-   pure subroutine update(group, u, lost, ahead)
+   pure subroutine update(group, u, lost)
       class(shell_points), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: lost
-      real(wp), intent(in), optional :: ahead
       integer :: p
-      call update_plane(group, u, lost, ahead)
-      if (present(ahead) .or. .not. group%section%bends) return
+      call update_plane(group, u, lost)
+      if (.not. group%section%bends) return
       call show_plane(group, u)
       do p = 1, group%points
          call set_transverse(group, p)

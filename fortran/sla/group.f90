@@ -155,12 +155,14 @@ module sla_group
       real(wp), allocatable :: history(:, :)   !! (rows of the group's own, points), no more than history_rows
       real(wp), allocatable :: kept(:, :)      !! (rows, points) of the last state in equilibrium
       real(wp), allocatable :: rate(:, :)      !! (rows, points) growth in the last step
+      real(wp), allocatable :: before_loop(:, :)   !! (rows, points) before the last loop of a staggered step
       real(wp), allocatable :: damage_kept(:, :)   !! (state_rows, points) there: crack bands that a step may fix
    contains
       procedure(continues_interface), deferred :: continues
       procedure(begin_interface), deferred :: begin
       procedure(respond_interface), deferred :: respond
       procedure(update_interface), deferred :: update
+      procedure(go_ahead_interface), deferred :: go_ahead
       procedure(show_interface), deferred :: show
       procedure :: new_histories
       procedure :: keep
@@ -321,16 +323,24 @@ module sla_group
          logical, intent(out) :: couples     !! else k is zero
       end subroutine couple_interface
 
-      !> The histories follow the displacements, or go `ahead` by a multiple of their growth beyond `rate`; the energy
-      !> that this costs is added
-      pure subroutine update_interface(group, u, lost, ahead)
+      !> The histories follow the displacements; the energy that this costs is added
+      pure subroutine update_interface(group, u, lost)
          import :: history_group, wp
          implicit none (type, external)
          class(history_group), intent(inout) :: group
          real(wp), intent(in) :: u(0:)
          real(wp), intent(inout) :: lost     !! [J]
-         real(wp), intent(in), optional :: ahead
       end subroutine update_interface
+
+      !> The histories grow on by a multiple of their growth in the last loop of a staggered step
+      pure subroutine go_ahead_interface(group, u, ratio, lost)
+         import :: history_group, wp
+         implicit none (type, external)
+         class(history_group), intent(inout) :: group
+         real(wp), intent(in) :: u(0:)       !! displacements of that loop
+         real(wp), intent(in) :: ratio       !! of the growth ahead to that of the loop
+         real(wp), intent(inout) :: lost     !! the energy that this costs is added, now or by the next update [J]
+      end subroutine go_ahead_interface
 
       !> Axes, teeth and stiffness of the points by their histories, for `report` and `state`
       pure subroutine show_interface(group, u)
@@ -447,13 +457,14 @@ contains
       integer :: info
       info = 0
       if (.not. allocated(group%history)) allocate (group%history(rows, group%points), &
-         group%kept(rows, group%points), group%rate(rows, group%points), &
+         group%kept(rows, group%points), group%rate(rows, group%points), group%before_loop(rows, group%points), &
          group%damage_kept(state_rows, group%points), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       group%history(:, :) = 0.0_wp
       group%kept(:, :) = 0.0_wp
       group%rate(:, :) = 0.0_wp
+      group%before_loop(:, :) = 0.0_wp
    end subroutine new_histories
 
    !> A state in equilibrium: its histories are those of the next step's start

@@ -437,19 +437,19 @@ contains
          if (before > 0.0_wp) ratio = model%path%residual / before
          before = model%path%residual
          if (ratio < slow .or. iterations < many_loops) cycle
-         call update_all(model, lost, ahead=min(most_ahead, ratio / max(1.0_wp - ratio, 0.1_wp)))
+         call go_ahead_all(model, min(most_ahead, ratio / max(1.0_wp - ratio, 0.1_wp)), lost)
          before = 0.0_wp
       end do
    end subroutine staggered_step
 
-   !> Histories of this loop, beyond which damage goes ahead
+   !> Histories before this loop: damage may go ahead by a multiple of their growth in it
    subroutine remember(model)
       type(element_model), intent(inout) :: model
       integer :: g
       do g = 1, size(model%mesh%holders)
          select type (group => model%mesh%holders(g)%group)
          class is (history_group)
-            group%rate(:, :) = group%history
+            group%before_loop(:, :) = group%history
          end select
       end do
    end subroutine remember
@@ -562,17 +562,30 @@ contains
    end function loads_run_away
 
    !> All histories follow the displacements
-   subroutine update_all(model, lost, ahead)
+   subroutine update_all(model, lost)
       type(element_model), intent(inout) :: model
       real(wp), intent(inout) :: lost          !! [J]
-      real(wp), intent(in), optional :: ahead  !! see history_group
       integer :: g
       do g = 1, size(model%mesh%holders)
          select type (group => model%mesh%holders(g)%group)
          class is (history_group)
-            call group%update(model%path%u, lost, ahead)
+            call group%update(model%path%u, lost)
          end select
       end do
    end subroutine update_all
+
+   !> All histories grow on by a multiple of their growth in the last loop
+   subroutine go_ahead_all(model, ratio, lost)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: ratio
+      real(wp), intent(inout) :: lost          !! [J]
+      integer :: g
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            call group%go_ahead(model%path%u, ratio, lost)
+         end select
+      end do
+   end subroutine go_ahead_all
 
 end module sla_iterations

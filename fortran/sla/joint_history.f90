@@ -20,6 +20,7 @@ module sla_joint_history
       procedure :: respond
       procedure :: couple
       procedure :: update
+      procedure :: go_ahead
       procedure :: show
    end type joint_history
 
@@ -176,22 +177,15 @@ contains
       end do
    end subroutine couple
 
-   !> See history_group. The next update counts the energy from the start of the step, what went ahead included
-   pure subroutine update(group, u, lost, ahead)
+   !> See history_group
+   pure subroutine update(group, u, lost)
       class(joint_history), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: lost
-      real(wp), intent(in), optional :: ahead
       real(wp) :: local(most_entries)
       type(joint_material) :: law
       type(joint_state) :: state
       integer :: e, p
-      if (present(ahead)) then
-         associate (now => group%history(1:damage_rows, :))
-            now(:, :) = now + ahead * (now - group%rate(1:damage_rows, :))
-         end associate
-         return
-      end if
       do e = 1, group%elements
          law = law_of(group, e)
          call group%gather(e, u, local)
@@ -204,6 +198,17 @@ contains
          end do
       end do
    end subroutine update
+
+   !> See history_group: the damage alone. The next update counts its energy, from the start of the step
+   pure subroutine go_ahead(group, u, ratio, lost)
+      class(joint_history), intent(inout) :: group
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(in) :: ratio
+      real(wp), intent(inout) :: lost
+      associate (unused_u => u, unused_lost => lost, now => group%history(1:damage_rows, :))
+         now(:, :) = now + ratio * (now - group%before_loop(1:damage_rows, :))
+      end associate
+   end subroutine go_ahead
 
    pure subroutine show(group, u)
       class(joint_history), intent(inout) :: group

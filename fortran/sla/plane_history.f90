@@ -18,6 +18,7 @@ module sla_plane_history
       procedure :: begin
       procedure :: respond => respond_plane
       procedure :: update => update_plane
+      procedure :: go_ahead
       procedure :: show => show_plane
    end type plane_history
 
@@ -112,13 +113,31 @@ contains
       end do
    end subroutine respond_plane
 
-   !> See history_group. The energy of one open crack is that of its law; a second one in tension shares the damage of
-   !> the first and loses in proportion to the square of its strain
-   pure subroutine update_plane(group, u, lost, ahead)
+   !> See history_group
+   pure subroutine update_plane(group, u, lost)
       class(plane_history), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: lost
-      real(wp), intent(in), optional :: ahead
+      call grow_histories(group, u, lost)
+   end subroutine update_plane
+
+   !> See history_group
+   pure subroutine go_ahead(group, u, ratio, lost)
+      class(plane_history), intent(inout) :: group
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(in) :: ratio
+      real(wp), intent(inout) :: lost
+      call grow_histories(group, u, lost, ratio)
+   end subroutine go_ahead
+
+   !> Histories grow to the displacements, or by a `ratio` of their growth in the last loop, and the energy that this costs.
+   !> That of one open crack is that of its law; a second one in tension shares the damage of the first and loses in
+   !> proportion to the square of its strain
+   pure subroutine grow_histories(group, u, lost, ratio)
+      class(plane_history), intent(inout) :: group
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(inout) :: lost          !! [J]
+      real(wp), intent(in), optional :: ratio
       real(wp) :: local(most_entries), eps(3, most_per), gain(2)
       type(coaxial_law) :: law
       type(coaxial_state) :: state
@@ -129,7 +148,7 @@ contains
          do p = (e - 1) * group%per + 1, e * group%per
             law = law_of(group, e, p)
             call coaxial_response(law, eps(:, p - (e - 1) * group%per), group%history(:, p), by_secant, state)
-            if (present(ahead)) state%history = group%history(:, p) + ahead * (group%history(:, p) - group%rate(:, p))
+            if (present(ratio)) state%history = group%history(:, p) + ratio * (group%history(:, p) - group%before_loop(:, p))
             gain = law%lost_energy(state%history) - law%lost_energy(group%history(:, p))
             lost = lost + group%weight(p) * (gain(1) * (1.0_wp + state%shared) + gain(2))
             group%history(:, p) = state%history
@@ -138,7 +157,7 @@ contains
             end if
          end do
       end do
-   end subroutine update_plane
+   end subroutine grow_histories
 
    !> The crack band of a point that has cracked; the damage stays
    pure subroutine fix_band(group, e, p, law, normal)
