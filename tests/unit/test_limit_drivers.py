@@ -151,7 +151,11 @@ def test_survey(tmp_path: Path) -> None:
     assert result["weakest"] == "thin" and result["weakest_collapse_acceleration_g"] == 0.0
     assert result.tables["survey"].columns["status"] == ["ok", "cannot-stand", "no-answer", "ok", "ok"]
     for text, words in (
-        ("name,girth\na,1\n", "no key 'girth'"),
+        (
+            "name,girth\na,1\n",
+            "s.csv:1: [structure] of kind 'arch' has no key 'girth'; its keys are radius, thickness, embrace, voussoirs, "
+            "thickness_factor, depth, skew, stones_across and 'name'",
+        ),
         ("name,thickness\na\n", "s.csv:2"),
         ("", "expected a header"),
         ("name,name\na,b\n", "occurs twice"),

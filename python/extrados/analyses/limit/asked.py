@@ -110,7 +110,7 @@ def sections_of(context: Context, options: Survey) -> tuple[list[str], list[list
             raise Refused(
                 (
                     f"{options.file}:1: [structure] of kind '{structure.kind}' has no key '{name}'; its keys are "
-                    f"{', '.join(k for k in type(structure).model_fields if k != 'kind')}and 'name'"
+                    f"{', '.join(k for k in type(structure).model_fields if k != 'kind')} and 'name'"
                 ),
                 key,
             )
