@@ -156,7 +156,7 @@ class DirectedPulse:
         return self.indicator > 0.0 and self.before < LATE
 
 
-def classify_directions(components: np.ndarray, step: float, shortest: float = 0.25, longest: float = 15.0) -> list[DirectedPulse]:
+def classify_directions(components: np.ndarray, step: float, shortest: float = SHORTEST, longest: float = LONGEST) -> list[DirectedPulse]:
     """Up to five candidates, strongest first, of two horizontal accelerations (2, points) [m/s^2]; none where nothing moves or the motion is
     over before a pulse. The sum of both squared coefficients of a wavelet is that in the direction of its greatest one."""
     from scipy.signal import fftconvolve
