@@ -19,7 +19,7 @@ from extrados.limit.solid_states import SolidState, SolidStates
 from extrados.limit.solids import Programme, SolidLimit
 from extrados.model.geometry.deviation import resurveyed_solids
 from extrados.model.geometry.solids.assembly import SolidAssembly, Stone, assemble
-from extrados.model.geometry.solids.polyhedra import box
+from extrados.model.geometry.solids.polyhedra import box, prism
 from extrados.results.model import Result
 from extrados.running.run import Run, compute
 from extrados.schema.constants import GRAVITY
@@ -216,7 +216,6 @@ def test_a_sweep_of_friction_of_a_slab() -> None:
 def test_random_surveys_of_a_block_by_hand() -> None:
     """Its moment about the line through both corners of its base on the side of the push."""
     solids = assemble([Stone("block", [box((0.0, 0.0, 0.0), (1.0, 2.0, 3.0))], 2000.0)])
-    spread = []
     for seed in range(20):
         one = resurveyed_solids(solids, 0.02, np.random.default_rng(seed))
         assert np.linalg.norm(one.polygon[0] - solids.polygon[0], axis=1).max() <= 0.02
@@ -226,8 +225,35 @@ def test_random_surveys_of_a_block_by_hand() -> None:
         arm, edge = one.centroid[0] - first, second - first
         by_hand = -(edge @ np.cross(arm, [0.0, 0.0, -1.0])) / (edge @ np.cross(arm, [1.0, 0.0, 0.0]))
         assert found.gamma == pytest.approx(by_hand, abs=1e-7)
-        spread.append(found.gamma)
-    assert np.std(spread) == pytest.approx(0.02 / np.sqrt(5.0) / np.sqrt(2.0) / 1.5, rel=0.4)
+
+
+def test_points_of_a_random_survey_lie_evenly_in_a_ball() -> None:
+    """Of the radius mean 3/4 and variance 3/80, of each coordinate variance 1/5, in radii of the ball; the mass to first order."""
+    solids = assemble([Stone("block", [box((0.0, 0.0, 0.0), (1.0, 2.0, 3.0))], 2000.0)])
+    points = np.tile(solids.polygon[0], (5000, 1))
+    way = resurveyed_solids(replace(solids, polygon=[points]), 0.02, np.random.default_rng(1)).polygon[0] - points
+    radius = np.linalg.norm(way, axis=1) / 0.02
+    assert radius.max() <= 1.0 + 1e-9
+    # 20,000 points: five standard errors of the means
+    assert radius.mean() == pytest.approx(3 / 4, abs=5 * np.sqrt(3 / 80 / 20000))
+    assert radius.var() == pytest.approx(3 / 80, rel=0.04)
+    assert way.mean(axis=0) / 0.02 == pytest.approx(np.zeros(3), abs=5 * np.sqrt(1 / 5 / 20000))
+    assert np.cov(way.T) / 0.02**2 == pytest.approx(np.eye(3) / 5, abs=5 * np.sqrt(8 / 175 / 20000))
+    assert np.mean((way / 0.02) ** 4) == pytest.approx(3 / 35, rel=0.04)  # in all directions
+    (part,) = solids.parts
+    slope = np.zeros_like(part.vertices)  # of the volume: each triangle adds det(a, b, c) / 6
+    for a, b, c in part.triangles.tolist():
+        for i, j, k in ((a, b, c), (b, c, a), (c, a, b)):
+            slope[i] += np.cross(part.vertices[j], part.vertices[k]) / 6
+    share = [float(resurveyed_solids(solids, 1e-3, np.random.default_rng(k)).mass[0] / solids.mass[0]) for k in range(500)]
+    assert np.std(share) == pytest.approx(1e-3 / np.sqrt(5) * np.linalg.norm(slope) / 6.0, rel=0.1)
+
+
+def test_the_middle_of_a_contact_is_its_centre_of_area() -> None:
+    """A rectangle of 1 m x 2 m beside a triangle of equal area: ((1/2 + 5/3) / 2, (1 + 2/3) / 2), not the mean of the corners."""
+    ring = np.array([(0.0, 0.0), (3.0, 0.0), (1.0, 2.0), (0.0, 2.0)])
+    limit = SolidLimit(assemble([Stone("block", [prism(ring, 0.0, 1.0)], 2000.0)]), 0.7)
+    assert states_of(limit).middle == pytest.approx(np.array([[13 / 12, 5 / 6, 0.0]]), abs=1e-12)
 
 
 def test_imperfections_of_a_bonded_corner(tmp_path: Path) -> None:
