@@ -268,6 +268,27 @@ def test_a_stiff_dashpot_shortens_the_step_and_stops_the_block() -> None:
     assert abs(run.rate[-1, 0, 0]) < 1e-3 and run.reason == "end"
 
 
+@pytest.mark.parametrize("rigid", [False, True])
+def test_a_dashpot_brings_a_block_to_rest_in_coarse_steps(rigid: bool) -> None:
+    """c v^0.5 changes a small rate by more than itself in a step: the block never turns back, no step gives it energy."""
+    step, law = 0.05, dem.Law(1e4, 1e4, 0.6)  # contacts as soft as the step is long; nothing touches
+    line = ties(TO_THE_SIDE, stiffness=0.0, least=0.0, most=0.0)
+    dash = replace(line, damping=np.array([4e3]), power=np.array([0.5]))
+    start = np.array([[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    options = replace(FLOATING, end_time=2.0, output_step=step, step=step, rigid=rigid)
+    plane = dem.run(replace(free_block(dash), laws=[law]), options, shift=np.zeros((2, 3)), rate=start)
+    high = replace(dash, place=np.array([[0.0, 0.0, 5.0], [-3.0, 0.0, 5.0]]))
+    body = replace(solids([box((-0.5, -0.5, 4.5), (0.5, 0.5, 5.5))], law), ties=high)
+    rates = np.zeros((2, 6))
+    rates[0, 0] = 0.5
+    space = dem3.run(body, dem3.Options(2.0, step, step=step, gravity=(0.0, 0.0, 0.0), rigid=rigid), rate=rates)
+    for run in (plane, space):
+        gone = np.diff(run.place[:, 0, 0])
+        assert gone.min() >= 0.0 and run.rate[:, 0, 0].min() >= 0.0 and run.rate[-1, 0, 0] < 1e-9
+        assert np.diff(run.energy["kinetic"]).max() <= 0.0 and np.diff(run.energy["leapfrog"]).max() <= 0.0
+        assert run.energy["damping"][-1] == pytest.approx(0.5 * MASS * 0.5**2, rel=1e-12) and run.residual < 1e-12
+
+
 def shaken(analysis: dict[str, Any], dampers: list[dict[str, Any]]) -> tuple[np.ndarray, np.ndarray, Any]:
     """Times, greatest displacement of the centroid and results of a block under a sine pulse."""
     kind = str(analysis["kind"])
