@@ -442,7 +442,7 @@ contains
       end do
    end subroutine staggered_step
 
-   !> Histories before this loop, whose growth in it damage may go ahead by
+   !> Histories before this loop: damage may go ahead by a multiple of their growth in it
    subroutine remember(model)
       type(element_model), intent(inout) :: model
       integer :: g

@@ -34,6 +34,7 @@ LAYERS = {
     "bridges": {"decks", "model", "views", "schema"},
     "running": {"interrupts", "objects", "kinds", "analyses", "tables", "model", "views", "decks", "motions", "results", "show", "schema"},
     "explore": {
+        "bridges",
         "interrupts",
         "kinds",
         "analyses",

@@ -37,7 +37,7 @@ def real(name: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> npt.
 
 
 def real_each(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
-    """One value for all elements, or one for each."""
+    """`value`, one for all elements or one for each, as a vector (count)."""
     return real(name, np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy(), (count,))
 
 
@@ -77,7 +77,7 @@ _INT32 = np.iinfo(np.int32)
 
 
 def stack_rows(*rows: np.ndarray) -> np.ndarray:
-    """Arrays by element as the rows of one, in Fortran order."""
+    """Arrays by element (m) as the `rows` (n, m) of one, in Fortran order."""
     return np.asfortranarray(np.stack(rows))
 
 
