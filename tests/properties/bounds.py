@@ -9,7 +9,7 @@ from buildings import SMALL, SOLIDS, arches, changed, cut, decks, drawn, number,
 from conservation import building
 from hypothesis import reject
 from hypothesis import strategies as st
-from relations import CRACKS, GRAVITY, MASONRY, PUSH, RECTANGLES, RIGID, STONES, WEAK, ok, relation, statics
+from relations import CRACKS, GRAVITY, MASONRY, PUSH, RECTANGLES, RIGID, SLOW, STONES, WEAK, ok, relation, statics
 
 #: What makes a structure of a kind stouter
 STOUT = {
@@ -103,6 +103,27 @@ def a_stronger_tie(deck: Deck, force: float, factor: float, within: float) -> No
     found = [bare, *(ask({**section, "ties": [{**tie, "yield_force": f * weight}]}, "tilt") for f in (force, force * factor))]
     for less, most in itertools.pairwise(found):
         at_most("a tie", less.capacity, most.capacity, within)
+
+
+VISCOUS = st.tuples(RECTANGLES, st.integers(2, 8), number(0.5, 1.0))
+
+
+@relation("tilt dem", VISCOUS, 2e-3, share=0.3, examples=(((1.0, 4.0), 6, 0.875),))
+def a_viscous_damper_in_statics(size: tuple[float, float], exponent: int, share: float, within: float) -> None:
+    """A dashpot changes no state of equilibrium: elements fall where they fall without it, and where limit analysis says; it says so.
+
+    exponent: of the damping, 10^k N s/m; share: height of the damper over that of the block.
+    """
+    width, height = size
+    bare = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": 2.0}}
+    up = round(share * height, 4)
+    damper = {"start": [0.5 * width, up], "ground": [4.0 * width, up], "start_stone": "block", "damping": 10.0**exponent}
+    free, held = (ask(deck, "dem", **SLOW) for deck in (bare, {**bare, "dampers": [damper]}))
+    ok(free)
+    must((held.capacity == free.capacity).all(), f"{held.capacity} with the damper, {free.capacity} without it")
+    must(any("no force in statics" in text for text in held.warnings), f"does not say it: {held.warnings}")
+    near("limit analysis", held.capacity, ask(bare, "tilt").capacity, 2.0 * within)
+    must(ask({**bare, "dampers": [damper]}, "tilt").status == "refused", "limit analysis takes a damper")
 
 
 @relation("tilt", st.tuples(decks("arch", "column", "block"), number(3.0, 100.0), number(1.1, 4.0)), 1e-4)

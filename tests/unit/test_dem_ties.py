@@ -326,6 +326,34 @@ def test_a_damped_block_rocks_as_by_the_equation_of_rocking(damper: dict[str, An
     assert results.ties[0].state == ("viscous" if "damping" in damper else "yielded")
 
 
+@pytest.mark.parametrize("damping", ["1 kN*s/m", "100 MN*s/m"])
+@pytest.mark.parametrize("solver", ["nonsmooth", "compliant", "space"])
+def test_a_viscous_damper_takes_no_part_in_a_tilt_test(solver: str, damping: str) -> None:
+    """b/h = 0.25 g whatever its damping, which carried up to eight times as much while the push was brought in."""
+    damper: dict[str, Any] = {**VISCOUS, "damping": damping}
+    asked: dict[str, Any] = {"kind": "dem", "test": "tilt", "solver": "nonsmooth"}
+    if solver == "space":
+        asked["direction"] = 0.0
+        damper |= {"start": [0.5, 0.0, 3.5], "ground": [3.5, 0.0, 3.5]}
+    else:
+        asked["solver"] = solver
+    structure = {"kind": "block", "width": 1.0, "height": 4.0}
+    joints = {"friction": 0.7, "normal_stiffness": 2e10}
+    found = extrados.run({"structure": structure, "joints": joints, "dampers": [damper], "analysis": asked}).results[0]
+    assert found["collapse_acceleration_g"] == pytest.approx(0.25, rel=5e-3)
+    assert found["collapse_acceleration_opposite_g"] == pytest.approx(0.25, rel=5e-3)
+    assert any("dem does not use this key: a viscous damper has no force in statics" in text for text in found.warnings)
+    assert found["ties"] is None
+
+
+def test_a_viscous_damper_has_no_force_in_a_quasi_static_run() -> None:
+    run = {"kind": "dem", "solver": "nonsmooth", "quasi_static": True, "end_time": 0.1}
+    deck = {"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "dampers": [VISCOUS, SLIDING], "analysis": run}
+    found = extrados.run(deck).results[0]
+    assert [text for text in found.warnings if "dem does not use this key: a viscous damper has no force in statics" in text]
+    assert [row.name for row in found["ties"]] == ["damper 2"]
+
+
 def test_dampers_in_space_need_three_coordinates() -> None:
     with pytest.raises(Exception, match=r"blocks in space need \[x, y, z\] of both ends of a damper"):
         shaken({"kind": "dem", "direction": 0.0}, [VISCOUS])

@@ -56,11 +56,23 @@ def left_out(deck: Deck) -> list[Remark]:
                 if name not in asked[k] and (names[k], name) not in found:
                     words = f"{names[k]} does not use this key{_known_to(name, deck.analyses)}"
                     found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
+    found |= _dashpots(deck, names)
     if deck.code is not None and not any(getattr(o, "by", o.kind) in BY_CODE for o in deck.analyses):
         found["", "code"] = Remark(
             deck.complaint(None, ("code",), f"no analysis of this deck uses this table; {', '.join(BY_CODE)} can use it"), 0
         )
     return list(found.values())
+
+
+def _dashpots(deck: Deck, names: list[str]) -> dict[tuple[str, str], Remark]:
+    """Viscous dampers of the deck, where statics are asked."""
+    still = [k for k, options in enumerate(deck.analyses) if not options.has_rates]
+    who = f"{', '.join(names[k] for k in still)} {'does' if len(still) == 1 else 'do'} not use this key: a viscous damper has no force in statics"
+    return {
+        ("dampers", str(n)): Remark(deck.complaint(None, ("dampers", n, "damping"), who), still[0])
+        for n, damper in enumerate(deck.building.dampers)
+        if still and damper.damping is not None
+    }
 
 
 def _reckoned_with(options: Analysis, building: Building) -> set[str]:

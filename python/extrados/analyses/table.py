@@ -75,6 +75,11 @@ class Analysis(Table):
         building, or which the answer or a refusal names; what a deck says in others is told to be left out."""
         return {*self.rests_on(building), *self.beside}
 
+    @property
+    def has_rates(self) -> bool:
+        """Whether rates count in it: a viscous damper has no force in statics."""
+        return True
+
 
 class BuildingAnalysis(Analysis):
     """Base of the analyses of a building: they may override its properties for themselves."""

@@ -62,5 +62,5 @@ def make_model(context: Context, options: DemTable) -> Model:
         joint = ArchModel(assembly).four_hinge.joint
         groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
     rigid = building.rigid(groups, options.floor)
-    ties = element_ties(building, section_strands(building), rigid.body_of_block)
+    ties = element_ties(building, section_strands(building), rigid.body_of_block, options.has_rates)
     return Model(assembly, rigid, joint_values(building), ties)

@@ -112,7 +112,7 @@ def _law(values: ContactValues, stiffness: float, shear: float, friction: float,
 def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     """The model of a building's blocks in space."""
     assembly = building.solids()
-    ties = element_ties(building, (*building.strands(), *damper_strands(building)), np.arange(len(assembly.mass)))
+    ties = element_ties(building, (*building.strands(), *damper_strands(building)), np.arange(len(assembly.mass)), options.has_rates)
     return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties)
 
 

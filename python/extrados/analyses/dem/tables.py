@@ -272,6 +272,11 @@ class DemDomain(SpatialDem):
         max_length=20,
     )
 
+    @property
+    def has_rates(self) -> bool:
+        """A tilt test finds the force at which no equilibrium is left, and a quasi-static run follows states of equilibrium."""
+        return self.test == "motion" and not self.quasi_static
+
     @model_validator(mode="after")
     def _ascending(self) -> "DemDomain":
         if any(b <= a for a, b in itertools.pairwise(self.durations)) or self.durations[0] <= 0.0:

@@ -60,18 +60,25 @@ def section_strands(building: Building) -> tuple[Strand, ...]:
     return tuple(found)
 
 
-def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block: np.ndarray) -> ElementTies:
+def _dashpot(one: Tie | Damper) -> Damper | None:
+    return one if isinstance(one, Damper) and one.damping is not None else None
+
+
+def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block: np.ndarray, has_rates: bool) -> ElementTies:
     """The strands on the bodies of their blocks; Refused where a tie has no stiffness.
 
     The stiffness of a deck is that of the whole line: a segment of a bonded chain is as much stiffer as it is shorter.
+    has_rates: False leaves viscous dampers out, which would carry a load that creeps.
     """
+    given: tuple[Tie | Damper, ...] = (*building.ties, *building.dampers)
+    if not has_rates:
+        strands = tuple(s for s in strands if _dashpot(given[s.tie]) is None)
     if not strands:
         return NO_TIES
     refuse_rigid_ties(building)
     whole = np.bincount([s.tie for s in strands], [s.length for s in strands])
-    given: tuple[Tie | Damper, ...] = (*building.ties, *building.dampers)
     tables = [given[s.tie] for s in strands]
-    dashpots = [t if isinstance(t, Damper) and t.damping is not None else None for t in tables]
+    dashpots = [_dashpot(t) for t in tables]
     anchors = [
         (point, -1 if block < 0 else int(body_of_block[block]), place)
         for point, (place, blocks) in enumerate((p, b) for s in strands for p, b in zip(s.point, s.blocks, strict=True))
