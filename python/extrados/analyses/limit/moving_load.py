@@ -1,5 +1,6 @@
 """moving-load: the collapse load, or adequacy factor of a train, at every place along a vault or a bridge."""
 
+import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -41,7 +42,7 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
-PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
+PATTERNS = 500  # patterns of even loads that are tried at a place
 #: What makes the model of a bridge whole
 MODEL = (
     'The ring alone does not represent a bridge. Add fill to the structure, and backing: as blocks, or with the structure of kind "bridge".'
@@ -88,35 +89,37 @@ class Places:
     def collapse(self, k: int) -> Collapse | None:
         """Collapse under the train; None where it brings nothing down.
 
-        Even loads that stand only where they are adverse, and the mechanism that they belong to, are found in turn,
-        from the axles alone, from the whole train and from each half of it: each step lessens the factor of its start, and the least of all
-        counts.
+        Even loads that stand only where they are adverse, and the mechanism that they belong to, are found in turn: each step
+        lessens the factor of its start, and the least of all counts.
         """
         axles, (force, x, block) = self._axles(k), self._even(k)
-        every = np.ones(len(force), dtype=bool)
-        starts = [every]
-        if self.adverse and len(force):
-            half = x <= 0.5 * (x.min() + x.max())
-            starts += [half, ~half] + ([~every] if axles.any() else [])
         best: Collapse | None = None
-        for standing in starts:
-            own: Collapse | None = None
-            for _ in range(PATTERNS):
-                live = axles + pressed(np.where(standing, force, 0.0), x, block, len(axles))
-                found = self.under(live, standing)
-                if found is None or (own is not None and found.factor >= own.factor * (1.0 - 1e-9)):
+        followed: set[bytes] = set()
+        for start in self._starts(x, bool(axles.any())):
+            standing = start
+            while standing.tobytes() not in followed and len(followed) < PATTERNS:
+                followed.add(standing.tobytes())
+                found = self.under(axles + pressed(np.where(standing, force, 0.0), x, block, len(axles)), standing)
+                if found is None:
                     break
-                own = found
-                if not self.adverse or not len(force):
+                if best is None or found.factor < best.factor * (1.0 - 1e-9):
+                    best = found
+                if not self.adverse:
                     break
                 v = found.mechanism.velocity[block]
-                downward = v[:, 1] + v[:, 2] * (x - self.assembly.centroid[block, 0]) < 0.0
-                if not (downward != standing).any():
-                    break
-                standing = downward
-            if own is not None and (best is None or own.factor < best.factor):
-                best = own
+                standing = v[:, 1] + v[:, 2] * (x - self.assembly.centroid[block, 0]) < 0.0
         return best
+
+    def _starts(self, x: np.ndarray, axles: bool) -> list[np.ndarray]:
+        """Which even loads at x [m] stand at first: all of them; where they may be left away also those on the parts of every arch, because
+        loads on more of a thick arch may only compress it. Axles select a mechanism: none beside them, and halves, are enough."""
+        every = np.ones(len(x), dtype=bool)
+        if not self.adverse or not len(x):
+            return [every]
+        arches = [np.sort(self.assembly.q[[joints[0], joints[-1]], 0]) for joints in self.assembly.chains.values()] or [self.span]
+        cuts = [np.linspace(*ends, parts + 1) for ends in arches for parts in ((2,) if axles else (4, 8))]
+        within = [(low <= x) & (x <= high) for cut in cuts for low, high in itertools.pairwise(cut)]
+        return [every, *([~every] if axles else []), *(one for one in within if one.any())]
 
     def under(self, live: np.ndarray, standing: np.ndarray) -> Collapse | None:
         """Collapse under given loads on the blocks, None where they bring nothing down."""
