@@ -343,7 +343,7 @@ def test_a_viscous_damper_takes_no_part_in_a_tilt_test(solver: str, damping: str
     assert found["collapse_acceleration_g"] == pytest.approx(0.25, rel=5e-3)
     assert found["collapse_acceleration_opposite_g"] == pytest.approx(0.25, rel=5e-3)
     assert any("dem does not use this key: a viscous damper has no force in statics" in text for text in found.warnings)
-    assert found["ties"] is None
+    assert found.results.ties is None
 
 
 def test_a_viscous_damper_has_no_force_in_a_quasi_static_run() -> None:
