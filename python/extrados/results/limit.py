@@ -412,9 +412,13 @@ class MovingLoad(KindResults):
     chain: str | None = fact("arch that the load crosses; null if the load crosses the whole top")
     collapse_load_N: float = fact("least collapse load over all positions; for a train, the total load on the structure at collapse", "N")
     collapse_load_kN_per_m: float = fact("least collapse load per metre of depth", "kN/m")
-    worst_place_m: float = fact("x of the first axle at the governing position (least collapse load)", "m")
+    worst_place_m: float = fact(
+        "x of the first axle at the governing position (least collapse load); for a train without axles, x of the point from which "
+        "its uniform loads are measured",
+        "m",
+    )
     worst_place_over_span: float = fact(
-        "ratio of the distance between the first axle and the left springing, at the governing position, to the span"
+        "ratio of the distance between this point and the left springing, at the governing position, to the span"
     )
     worst_way: Literal["+x", "-x"] = fact("direction of travel of the train at the governing position")
     hinges: list[NamedHinge] = fact("hinges of the collapse mechanism at the governing position")
