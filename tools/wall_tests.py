@@ -9,9 +9,9 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     codes     `code-checks` of a panel, by NTC 2018, the code of decks that name none; its least lateral strength
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
     units     `sla` of its units and joints, likewise, to 75 % of the peak; walls of more than 200 units have units twice as long and
-              as high. Head joints of blocks in thin beds are unfilled: without bond, with friction if closed. Blocks are
-              units of 190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a unit). Walls with the same deck
-              share one run. The failure mode is that of the state at the peak: does more than half of the displacement
+              as high. Head joints of blocks in thin beds are unfilled and carry no stress (Mann and Mueller 1982). Blocks are units of
+              190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a unit). Walls with the same deck share
+              one run. The failure mode is that of the state at the peak: does more than half of the displacement
               of the top come from the rotation of horizontal sections (F), or from the slip of beds and the shear of units (S)?
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
               part and Turnsek-Cacovic; without drift limits, to 2 % drift
@@ -256,7 +256,7 @@ def by_units(wall: Wall) -> dict[str, Predicted]:
 
 def has_unfilled_heads(wall: Wall) -> bool:
     """Are these blocks in thin beds? EN 1996-1-1 halves the initial shear strength where head joints are unfilled (3.6.2); here they
-    have no bond."""
+    carry no stress."""
     bed = wall.height / math.floor(wall.height / wall.unit_height + 1e-6) - wall.unit_height
     return wall.unit_height >= BLOCK and bed <= THIN_BED
 
@@ -278,7 +278,7 @@ def units_deck(wall: Wall) -> dict[str, Any]:
         "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
     }
     if has_unfilled_heads(wall):
-        joints["types"] = [{"joints": ["heads"], "cohesion": 0.0, "tension": 0.0}]
+        joints["types"] = [{"joints": ["heads"], "cohesion": 0.0, "tension": 0.0, "normal_stiffness": OPEN}]
     units = {"tensile_strength": cracks, "fracture_energy": CRACK_DUCTILITY * cracks}
     deck = _panel(wall, bond, units, joints, {"size": 0.5 * bond["unit_length"], "joints": "interfaces"})
     deck["analysis"][0]["stop_fraction"] = ENOUGH
@@ -361,6 +361,8 @@ MOST_UNITS, BUDGET = 200, 180.0
 ENOUGH = 0.75
 #: Least height of blocks; greatest thickness of beds of thin layer mortar [m]
 BLOCK, THIN_BED = 0.19, 3e-3
+#: Stiffness of unfilled head joints [Pa/m]: 1 kPa for each mm
+OPEN = 1e6
 #: Energies over strengths of cracks, slip and crushing [m], assumed for all walls
 CRACK_DUCTILITY, SLIP_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 200e-6, 1.6e-3
 #: Tension of joints over their cohesion, and of units over the compressive strength of masonry, assumed for all walls
