@@ -116,8 +116,8 @@ class Places:
         every = np.ones(len(x), dtype=bool)
         if not self.adverse or not len(x):
             return [every]
-        arches = [np.sort(self.assembly.q[[joints[0], joints[-1]], 0]) for joints in self.assembly.chains.values()] or [self.span]
-        cuts = [np.linspace(*ends, parts + 1) for ends in arches for parts in ((2,) if axles else (4, 8))]
+        arches = [np.sort(self.assembly.q[[joints[0], joints[-1]], 0]) for joints in self.assembly.chains.values()] or [np.array(self.span)]
+        cuts = [np.linspace(ends[0], ends[1], parts + 1) for ends in arches for parts in ((2,) if axles else (4, 8))]
         within = [(low <= x) & (x <= high) for cut in cuts for low, high in itertools.pairwise(cut)]
         return [every, *([~every] if axles else []), *(one for one in within if one.any())]
 
