@@ -83,6 +83,8 @@ class Fracture(ResultModel):
 
 #: What results say of a capacity in whose mechanism pressed joints slide
 DILATANT = "upper bound (dilatant friction)"
+#: And where mortar is not lost
+DUCTILE = "upper bound (ductile mortar)"
 
 
 #: g: bounds that differ less are equal
@@ -291,6 +293,13 @@ def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -
     found = judge_acceleration(capacity, demand, "upper")
     why = f" No state without dilatancy is given: {reason}." if reason else ""
     return found.model_copy(update={"statement": f"{found.statement} Joints slide: {DILATANT}.{why}"})
+
+
+def judge_ductile(capacity: float, dry: float, demand: Demand) -> Verdict:
+    """An upper bound by mortar that lasts until collapse [g], beside the capacity of dry joints [g], against the peak of the motion."""
+    found = judge_acceleration(capacity, demand, "upper")
+    more = f"The joints keep cohesion and tension until collapse: {DUCTILE}. Without mortar the collapse acceleration is {dry:.3g} g."
+    return found.model_copy(update={"statement": f"{found.statement} {more}"})
 
 
 def judge_design(design: float, least: float | None, most: float, demand: Demand) -> Verdict:

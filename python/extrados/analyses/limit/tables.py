@@ -92,6 +92,13 @@ class Tilt(SpatialLimit, Animated):
         ge=4,
         le=720,
     )
+    mortar: Literal["neglected", "ductile"] = key(
+        "neglected",
+        (
+            'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints keep both until '
+            "collapse. Mortar is brittle, so this result is an upper bound; the result for dry joints is given too"
+        ),
+    )
     face_law: bool | None = key(
         None,
         (
@@ -112,6 +119,11 @@ class Tilt(SpatialLimit, Animated):
         ge=3,
         le=64,
     )
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Mortar counts where it lasts."""
+        mortar = ("joints.cohesion", "joints.tension") if self.mortar == "ductile" else ()
+        return super().rests_on(building) | dict.fromkeys(mortar)
 
 
 class Section(Table):
