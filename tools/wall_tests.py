@@ -278,7 +278,7 @@ def units_deck(wall: Wall) -> dict[str, Any]:
         "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
     }
     if has_unfilled_heads(wall):
-        joints["types"] = [{"joints": ["heads"], "cohesion": 0.0, "tension": 0.0, "normal_stiffness": OPEN}]
+        joints["types"] = [{"joints": ["heads"], **UNFILLED}]
     units = {"tensile_strength": cracks, "fracture_energy": CRACK_DUCTILITY * cracks}
     deck = _panel(wall, bond, units, joints, {"size": 0.5 * bond["unit_length"], "joints": "interfaces"})
     deck["analysis"][0]["stop_fraction"] = ENOUGH
@@ -361,8 +361,8 @@ MOST_UNITS, BUDGET = 200, 180.0
 ENOUGH = 0.75
 #: Least height of blocks; greatest thickness of beds of thin layer mortar [m]
 BLOCK, THIN_BED = 0.19, 3e-3
-#: Stiffness of unfilled head joints [Pa/m]: 1 kPa for each mm
-OPEN = 1e6
+#: Unfilled head joints: 1 kPa for each mm [Pa/m], and a crushing energy that this stress never reaches [N/m]
+UNFILLED = {"cohesion": 0.0, "tension": 0.0, "normal_stiffness": 1e6, "crushing_energy": 1e10}
 #: Energies over strengths of cracks, slip and crushing [m], assumed for all walls
 CRACK_DUCTILITY, SLIP_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 200e-6, 1.6e-3
 #: Tension of joints over their cohesion, and of units over the compressive strength of masonry, assumed for all walls

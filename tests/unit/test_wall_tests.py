@@ -112,7 +112,7 @@ def test_head_joints_of_blocks_in_thin_beds_are_unfilled(tmp_path, height: float
     """Courses of 250 mm of units of 248 mm; of 200 mm of 190 mm; of 250 mm of 238 mm; bricks."""
     (wall,) = walls(tmp_path, f"1,x,A,block,{height},1,0.2,250,{unit},5,,,0.3,0.6,0.5,0.6,F,40,40")
     types = tool.units_deck(wall)["joints"].get("types")
-    assert types == ([{"joints": ["heads"], "cohesion": 0.0, "tension": 0.0, "normal_stiffness": 1e6}] if unfilled else None)
+    assert types == ([{"joints": ["heads"], **tool.UNFILLED}] if unfilled else None)
 
 
 def test_walls_of_one_deck_are_run_once(tmp_path, monkeypatch) -> None:
