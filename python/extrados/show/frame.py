@@ -63,8 +63,8 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             f"at a loss of 20 % of the base shear or when all piers of a wall in one storey reach their drift limits.",
         )
     )
-    for angle in angles:
-        number = min((k for k, row in enumerate(r.runs, 1) if row.direction_deg == angle), key=lambda k: r.runs[k - 1].peak_base_shear_N)
+    weakest = [min((row.peak_base_shear_N, k) for k, row in enumerate(r.runs, 1) if row.direction_deg == angle) for angle in angles]
+    for (_, number), angle in sorted(zip(weakest, angles, strict=True)):
         row = r.runs[number - 1]
         state = run.array(name, f"state_{number}")
         told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"
@@ -104,7 +104,9 @@ def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                         "", (x + way[0], y + way[1]), (x - way[0], y - way[1]), arrowprops={"arrowstyle": "<->", "color": style.EDGE}
                     )
                 word = ("load", "membrane", "rigid", "joists")[int(kind)]
-                ax.annotate(word, (x, y), (6, 0), textcoords="offset points", va="center", fontsize=7, color=style.EDGE)
+                aside = (7, 0) if abs(dy) > abs(dx) else (0, -7)
+                place = {"textcoords": "offset points", "ha": "left" if aside[0] else "center", "va": "center"}
+                ax.annotate(word, (x, y), aside, **place, fontsize=7, color=style.EDGE)
             ax.set_aspect("equal")
             ax.margins(0.12)  # room for the names of walls
             ax.autoscale_view()
@@ -187,7 +189,7 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     r = run.results_of(name, Modes) if blocks else run.results_of(name, FrameModes)
     place, shape = run.array(name, "place"), run.array(name, "shape")
     count = min(3, len(r.modes))
-    scale = 0.15 * float(np.ptp(place[:, :2], axis=0).max())
+    scale = 0.2 * float(np.ptp(place[:, :2], axis=0).max())
     with style.figure(2.6 * count, 3.0, 1, count) as (fig, axes):
         for k, ax in enumerate(axes):
             ax.plot(place[:, 0], place[:, 1], ".", color=style.STONE, markersize=3)
@@ -200,8 +202,8 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 angles="xy",
                 scale_units="xy",
                 scale=1.0,
-                width=0.006,
-                cmap="viridis",
+                width=0.008,
+                cmap="viridis_r",
             )
             ax.set_aspect("equal")
             for set_limit, axis in ((ax.set_xlim, 0), (ax.set_ylim, 1)):
@@ -209,9 +211,10 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 set_limit(ends.min() - 0.3 * scale, ends.max() + 0.3 * scale)
             ax.set_xlabel("x [m]")
             ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
+        axes[0].set_ylabel("y [m]")
         saved = style.save(fig, folder, f"{name}-modes")
     where = "on the plan" if place.shape[1] == 3 else "of the blocks in their section"
-    return [(saved, f"Displacements in the first modes, {where}. The colour shows the height above the ground.")]
+    return [(saved, f"Displacements in the first modes, {where}. The darker an arrow, the higher above the ground.")]
 
 
 def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

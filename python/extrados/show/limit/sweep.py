@@ -149,7 +149,7 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
         given = r.given_collapse_acceleration_g
         ax.axvline(given, color=style.HINGE, linestyle="--", label=f"geometry of the deck: {given:.4f} g")
         ax.set_xlabel("lesser collapse acceleration of +x and -x [g]")
-        ax.set_ylabel("share of random geometries with at most this acceleration")
+        ax.set_ylabel("share of random geometries")
         ax.set_ylim(0.0, 1.0)
         ax.set_title("Capacity within the tolerance of the survey")
         style.legend_below(fig, ax)
