@@ -74,6 +74,7 @@ SLOW = {
     "rougher",
     "solids-through-compas",
     "statics-of-another-density",
+    "strength-of-barrels",
     "stouter",
     "translation-of-a-section",
 }

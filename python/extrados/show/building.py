@@ -253,15 +253,18 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
         sheet = Sheet(fig, [plan])
         middle = 0.5 * (low + high)
         for wall, (start, end) in zip(walls, ends, strict=True):
-            thick = wall.get("thickness") or max(wall["thicknesses"])
+            thicknesses = wall.get("thicknesses") or [wall["thickness"]]
+            thick = max(thicknesses)
             along = (end - start) / np.linalg.norm(end - start)
             across = np.array([-along[1], along[0]])
-            half = 0.5 * thick * across
-            sheet.stone(plan, [start + half, end + half, end - half, start - half], False)
+            for each in sorted(set(thicknesses), reverse=True):
+                half = 0.5 * each * across
+                sheet.stone(plan, [start + half, end + half, end - half, start - half], each < thick)
             out = across if across @ (0.5 * (start + end) - middle) >= 0.0 else -across
             place = sheet.to_paper(plan, [0.5 * (start + end) + out * 0.5 * thick])[0] + 3.5 * out
             turn = np.degrees(np.arctan2(along[1], along[0]))
-            told = f"{wall['name']}: {words.number(float(np.linalg.norm(end - start)))} m, {words.quantity(thick, 'm')}"
+            of_storeys = " / ".join(words.number(t) for t in dict.fromkeys(thicknesses))
+            told = f"{wall['name']}: {words.number(float(np.linalg.norm(end - start)))} m, {of_storeys} m"
             sheet.ax.text(
                 *style.pair(place),
                 told,
@@ -277,7 +280,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
         saved = style.save(fig, folder, NAME)
     *first, last = [words.number(h) for h in structure["storeys"]]
     heights = f"{words('Storeys, from the ground up')}: {', '.join([*first, last])} m" if first else f"{words('Storey')}: {last} m"
-    told = words("for each wall the length of its middle plane and its greatest thickness")
+    told = words("for each wall the length of its middle plane and its thicknesses, that of the lowest storey first")
     found = [(saved, f"{words('Plan of the building')}: {told}. {heights}.")]
     faces = elevation.wall_views(walls, storeys, words)
     with style.canvas() as fig:
