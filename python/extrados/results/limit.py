@@ -407,8 +407,9 @@ class Thrust(KindResults):
             return judge("The most central thrust line was not found.", None, None)
         if self.geometric_safety_factor is None:
             text = "a thrust line passes within 1 % of the joint length from the middles of all joints: no horizontal demand."
-            return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0)
-        return judge(f"At {self.gamma_g:g} g a thrust line exists within the central {100.0 * part:.3g} % of the joints.", part, 1.0)
+            return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0, "of the joint")
+        text = f"a thrust line exists within the central {100.0 * part:.3g} % of the joints."
+        return judge(f"At {self.gamma_g:g} g {text}", part, 1.0, "of the joint")
 
 
 #: Beside a verdict on a load whose partial factors are all 1
@@ -481,6 +482,7 @@ class MovingLoad(KindResults):
                 f"The adequacy factor is {self.adequacy_factor:.3g} on the {factored}train at the most dangerous position.{judged}",
                 1.0,
                 self.adequacy_factor,
+                "times the train",
                 bound=bound,
                 violated=violated,
             )

@@ -31,11 +31,11 @@ from extrados.limit.finite_motion import finite_motion
 from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
+from extrados.model.dimensions import with_article
 from extrados.model.errors import WHOLE
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import is_stack
 from extrados.model.geometry.earth import skyline
-from extrados.model.structure import Structure
 from extrados.results import limit as out
 from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, TableData
@@ -308,7 +308,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         **tie_rows(building, dead, state),
         duality_gap=gap,
         characteristic=factors == PartialFactors(),
-        violated=_violated(train, assembly, structure),
+        violated=_violated(train, assembly),
         **asked,
     )
     result.results = r
@@ -335,7 +335,9 @@ def run(context: Context, options: MovingLoad) -> Result:
     columns = {"place": places, **({"way": ways, "adequacy": adequacy} if train.known else {}), "collapse_load": finite}
     result.tables = {"moving_load": TableData({**columns, "mechanism": mechanisms}, {"place": "m", "collapse_load": "N"})}
     result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
-    result.answer = _words(options, r, structure, _where(job, k, worst, r), len(places))
+    filled = structure.kind == "blocks" and assembly.earth is not None
+    crossed = r.chain or ("bridge" if filled else structure.word)
+    result.answer = _words(options, r, with_article(crossed), _where(job, k, worst, r), len(places))
     return result
 
 
@@ -468,17 +470,17 @@ def _where(job: Places, k: int, worst: Collapse, r: out.MovingLoad) -> str:
     return "uniform loads on x = " + " and ".join(f"{start:.2f} to {stop:.2f} m" for start, stop in _standing(job, k, worst))
 
 
-def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure, where: str, positions: int) -> str:
-    what = r.chain or structure.word
+def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positions: int) -> str:
+    """The result in words; what: the chain or the structure that the load crosses."""
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
         factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
         text = (
-            f"The {what} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
+            f"{what[:1].upper()}{what[1:]} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
             f"the most dangerous place, with {where}{heading}: {r.collapse_load_N / 1e3:.4g} kN are then on the structure."
         )
     else:
-        text = f"The least collapse load of the {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with {where}."
+        text = f"The least collapse load of {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with {where}."
     if r.places_without_limit:
         text += f" At {r.places_without_limit} of {positions} positions no multiple of the load causes collapse."
     if options.force is not None:
@@ -497,7 +499,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure, where: 
     return text + spoken_ties(r.ties)
 
 
-def _violated(train: Train, assembly: Assembly, structure: Structure) -> list[str]:
+def _violated(train: Train, assembly: Assembly) -> list[str]:
     """What a load that crosses a bridge supposes of the structure, where it has none: earth that spreads the load."""
     if assembly.earth is not None:
         return []
@@ -505,7 +507,7 @@ def _violated(train: Train, assembly: Assembly, structure: Structure) -> list[st
     load = f"The {train.name}" if train.name in ("load", "train") else train.name
     return [
         (
-            f"{load} acts on the blocks of the {structure.word} directly{weight}: fill does not spread the load, and neither "
-            f"passive pressure nor backing restrains the {structure.word}."
+            f"{load} acts directly on the blocks{weight}: fill does not spread the load, and neither "
+            "passive pressure nor backing restrains the blocks."
         )
     ]
