@@ -8,11 +8,12 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     limit     bricks in running bond, joints without cohesion that crush; the load acts at the shear span
     codes     `code-checks` of a panel, by NTC 2018, the code of decks that name none; its least lateral strength
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
-    units     `sla` of its units and joints, likewise, to 75 % of the peak; walls of more than 200 units have units twice as long and
-              as high. Head joints of blocks in thin beds are unfilled and carry no stress (Mann and Mueller 1982). Blocks are units of
-              190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a unit). Walls with the same deck share
-              one run. The failure mode is that of the state at the peak: does more than half of the displacement
-              of the top come from the rotation of horizontal sections (F), or from the slip of beds and the shear of units (S)?
+    units     `sla` of its units and joints, likewise, to 75 % of the peak, on a bed joint at the foot. Walls of more than 200 units
+              have units twice as long and as high. Head joints of blocks in thin beds are unfilled and carry no stress (Mann and
+              Mueller 1982). Blocks are units of 190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a
+              unit). Walls with the same deck share one run. The failure mode is that of the state at the peak: does more than half
+              of the displacement of the top come from the rotation of horizontal sections (F), or from the slip of beds and the
+              shear of units (S)?
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
               part and Turnsek-Cacovic; to 2 % drift, without drift limits but for the drift at the loss of 20 %
 
@@ -284,6 +285,7 @@ def units_deck(wall: Wall) -> dict[str, Any]:
     units = {"tensile_strength": cracks, "fracture_energy": CRACK_DUCTILITY * cracks}
     deck = _panel(wall, bond, units, joints, {"size": 0.5 * bond["unit_length"], "joints": "interfaces"})
     deck["analysis"][0]["stop_fraction"] = ENOUGH
+    del deck["supports"]  # a bed joint at the foot
     return deck
 
 
