@@ -165,12 +165,12 @@ class SolidTilt(KindResults):
 
 
 class SectionThrust(ResultModel):
-    """Horizontal thrust of a section of blocks in space."""
+    """Horizontal thrust of a section of blocks in space: the sum over its contacts."""
 
     name: str = fact("its name")
-    direction: str = fact("direction of the thrust: in plan, or outward from the middle of the structure")
+    direction: str = fact("direction of the thrust of each contact: in plan, or outward from the middle of the structure")
     contacts: int = fact("contacts of the section")
-    least_N: float | None = fact("least thrust; null if the thrust has no least value", "N")
+    least_N: float | None = fact("least thrust, summed over the contacts; null if the thrust has no least value", "N")
     central_N: float | None = fact("thrust of the most central state; null without one", "N")
     greatest_N: float | None = fact("greatest thrust; null if the thrust has no greatest value, as between rigid supports", "N")
 

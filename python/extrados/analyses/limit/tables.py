@@ -283,8 +283,10 @@ TrainName = Literal[
 class UniformLoad(Table):
     """A load spread evenly along a train, over all of the width that carries it."""
 
-    start: Length | None = key(None, "start of the load, as a distance behind the first axle; default: unlimited")
-    stop: Length | None = key(None, "end of the load, as a distance behind the first axle; default: unlimited")
+    start: Length | None = key(
+        None, "start of the load, as a distance behind the first axle (without axles: behind the position of the train); default: unlimited"
+    )
+    stop: Length | None = key(None, "end of the load, as a distance behind the same point; default: unlimited")
     load: LineForce = key(about="load per length of bridge", gt=0)
 
 
@@ -347,7 +349,9 @@ class MovingLoad(LimitAnalysisTable):
         ),
     )
     both_ways: bool = key(False, "whether the train also crosses towards the left, with its first axle in front")
-    count: int = key(81, "number of positions along the span", ge=3, le=2000)
+    count: int = key(
+        81, "number of positions while a load crosses the span; a train longer than the span has proportionally more", ge=3, le=2000
+    )
     places: list[Length] | None = key(None, "positions of the first axle; replaces count", min_length=1, max_length=2000)
 
     @model_validator(mode="after")
