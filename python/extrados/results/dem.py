@@ -156,7 +156,13 @@ class BlocksRun(KindResults):
         if share > SLIP_LIMIT:
             text = f"{slip}. The analysis does not decide whether the remaining contact suffices.{unchecked}"
             return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
-        text = f"No block moves by more than {three_figures(1e3 * most)} mm; {three_figures(1e3 * limit)} mm count as collapse."
+        if most < limit:
+            text = f"No block moves by more than {three_figures(1e3 * most)} mm; {three_figures(1e3 * limit)} mm count as collapse."
+        else:
+            text = (
+                f"A block moves by {three_figures(1e3 * most)} mm. This exceeds the {three_figures(1e3 * limit)} mm that count as collapse, "
+                "but the block neither rotates nor sinks as in a collapse."
+            )
         if self.slipped_joint is not None:
             text += f" {slip}."
         text += unchecked

@@ -49,6 +49,10 @@ class Verdict(ResultModel):
     statement: str = fact("the verdict in one or two sentences")
 
 
+#: Units in words: of demands and capacities that are shares or multiples
+SHARES = ("of the joint", "of the critical rotation", "of the limit", "of all runs", "times the train")
+
+
 class Demand(Protocol):
     """Demand of the deck's motion, where it is one motion.
 

@@ -258,7 +258,7 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Forces of the ties over time, of those with the greatest; nothing without any."""
+    """Forces of ties and dampers over time, of those with the greatest; nothing without any."""
     if "tie_force" not in run.arrays[name]:
         return []
     time, force, rows = run.array(name, "time"), run.array(name, "tie_force"), run[name].get("ties") or []
@@ -272,7 +272,7 @@ def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(0.0, time[-1] or 1.0)
         style.legend_above(ax)
         saved = style.save(fig, folder, f"{name}-ties")
-    return [(saved, "Forces of the ties" + (f", the {SHOWN} ties with the greatest forces." if len(rows) > SHOWN else "."))]
+    return [(saved, "Forces of ties and dampers" + (f", the {SHOWN} with the greatest forces." if len(rows) > SHOWN else "."))]
 
 
 def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:

@@ -16,7 +16,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.perturbed import probe_chaos
 from extrados.analyses.dem.seen import Seen, begun_result, doubts_of_run, numbers_of
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.ties import section_arrays, tie_arrays, tie_columns
+from extrados.analyses.dem.ties import segment_arrays, tie_arrays, tie_columns
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
 from extrados.analyses.dem.words import motion_answer
@@ -136,7 +136,7 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
         "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
         **{f"{name}_energy": Array(values, ("time",), "J") for name, values in found.energy.items() if name != "leapfrog"},
         **tie_arrays(model.ties, found.tension),
-        **section_arrays(model.ties),
+        **segment_arrays(model.ties, 2),
         "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
         **measures.support_arrays(model),

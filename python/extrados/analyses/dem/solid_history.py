@@ -17,7 +17,7 @@ from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.ties import tie_arrays, tie_columns
+from extrados.analyses.dem.ties import segment_arrays, tie_arrays, tie_columns
 from extrados.analyses.dem.words import solid_answer
 from extrados.analyses.limit.solids import scene_arrays
 from extrados.core import dem3
@@ -103,7 +103,9 @@ def _numbers(options: Dem, seen: SolidsSeen, collapse: Collapse) -> dict[str, An
 
 def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str, Array]:
     """The stones and their motion, for pictures and for other programs; `shown`: times of the drawings [s]."""
-    return scene_arrays(model.assembly) | {
+    return {
+        **scene_arrays(model.assembly),
+        **segment_arrays(model.ties, 3),
         "time": Array(run.time, ("time",), "s", "output times"),
         "pose": Array(
             solid_measures.poses(model, run),
