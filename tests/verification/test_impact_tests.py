@@ -113,7 +113,7 @@ def growing(frequency: float) -> dict:
 
 def amplitude_at_collapse(rule: str, frequency: float) -> float:
     """Amplitude [g] that the motion has reached when Arch1 falls by an impact rule; NaN where it stays up."""
-    analysis = {"kind": "rocking", "output_step": 0.02}
+    analysis = {"kind": "rocking", "output_step": 0.02, "hand_over": False}
     run = extrados.run({**growing(frequency), "joints": {"restitution": rule}, "analysis": [analysis]}, threads=2)
     time = run["rocking"].collapse_time_s
     return np.nan if time is None else reached(time)
