@@ -15,7 +15,7 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
               of the displacement of the top come from the rotation of horizontal sections (F), or from the slip of beds and the
               shear of units (S)?
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
-              part and Turnsek-Cacovic; without drift limits, to 2 % drift
+              part and Turnsek-Cacovic; to 2 % drift, without drift limits but for the drift at the loss of 20 %
 
 Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested, and without it (stone masonry) shear by
 diagonal cracking alone; tensile strength of the diagonal test, else the cohesion; modulus 600 times the compressive strength.
@@ -38,6 +38,8 @@ from typing import Any
 import numpy as np
 
 import extrados
+from extrados.core.frame import STATE, UNLIMITED, Frame, MacroElement
+from extrados.core.frame import Path as PushPath
 
 FRICTION = 0.4
 CRUSHES_AT = 0.85  # of the compressive strength: the rectangular stress block of codes
@@ -378,10 +380,20 @@ def by_macro_element(wall: Wall) -> dict[str, Predicted]:
 
 
 def _pier(wall: Wall, law: str) -> Predicted:
-    """Strength, and drifts at which 99 % of it is reached and at which it drops below 80 %. Without an initial shear strength a pier
-    fails diagonally, whatever the law."""
-    from extrados.core.frame import STATE, Frame, MacroElement
+    """Strength without drift limits, and drifts at which 99 % of it is reached and at which it drops below 80 %, at the latest at a drift
+    limit. Without an initial shear strength a pier fails diagonally, whatever the law."""
+    path, limited = (_pushed(wall, law, limits) for limits in ((UNLIMITED, UNLIMITED), LIMITS))
+    peak = int(path.multiple.argmax())
+    sheared = bool((path.state[: peak + 1, 0] == STATE["shear"]).any())
+    reached = int((path.multiple >= 0.99 * path.multiple[peak]).argmax())
+    last = int(limited.multiple.argmax())
+    lost = np.flatnonzero(limited.multiple[last:] < 0.8 * limited.multiple[last])
+    drop = float(limited.control[last + lost[0]]) / wall.height if len(lost) else math.nan
+    return Predicted(float(path.multiple[peak]), "S" if sheared else "F", "", float(path.control[reached]) / wall.height, drop)
 
+
+def _pushed(wall: Wall, law: str, limits: tuple[float, float]) -> PushPath:
+    """Push of one pier to a drift of 2 %."""
     double, diagonal = wall.span < 0.75, math.isnan(wall.cohesion)
     height = wall.height * max(wall.span, 1.0)
     pier = MacroElement(
@@ -398,20 +410,13 @@ def _pier(wall: Wall, law: str) -> Predicted:
         tension=wall.tensile,
         slenderness=min(max(wall.height / wall.length, 1.0), 1.5),
         second_order=False,
-        drifts=LIMITS,
+        drifts=limits,
     )
     n = 2 if double else 3
     weight, along = np.zeros(n), np.zeros(n)
     weight[1], along[0] = -wall.axial, 1.0
     with Frame([pier], [], np.zeros((n, n)), weight, np.zeros((n, n))) as frame:
-        path = frame.push(along, along, 0.02 * wall.height, 800, 0.0)
-    peak = int(path.multiple.argmax())
-    sheared = bool((path.state[: peak + 1, 0] == STATE["shear"]).any())
-    drift = path.control / wall.height
-    reached = int((path.multiple >= 0.99 * path.multiple[peak]).argmax())
-    fallen = np.flatnonzero(path.multiple[peak:] < 0.8 * path.multiple[peak])
-    drop = float(drift[peak + fallen[0]]) if len(fallen) else math.nan
-    return Predicted(float(path.multiple[peak]), "S" if sheared else "F", "", float(drift[reached]), drop)
+        return frame.push(along, along, 0.02 * wall.height, 800, 0.0)
 
 
 #: Drift limits in flexure and in shear, of NTC 2018 7.8.2.2.1 and 7.8.2.2.2

@@ -24,6 +24,7 @@ class FrameModes(KindResults):
     weight_N: float = fact("weight of walls and floors", "N")
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
+    walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
 
     def judged(self, demand: Demand) -> Verdict:
         """Modes are neither a demand nor a capacity."""
