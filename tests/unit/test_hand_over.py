@@ -1,5 +1,7 @@
 """Rocking that hands over to rigid contacts: the criterion, the state, and the outcome of the whole motion."""
 
+import re
+import time
 from dataclasses import fields, replace
 
 import numpy as np
@@ -7,7 +9,8 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.rocking.hand_over import Fate, Fates, Leaving, Left, contacts_of, leaving_time, level_of
+from extrados.analyses.rocking.failure_domain import unit_pulse
+from extrados.analyses.rocking.hand_over import STEPS, Fate, Fates, Leaving, Left, contacts_of, leaving_time, level_of
 from extrados.analyses.statistics.fragility import empty_rows
 from extrados.analyses.statistics.handed import Handed
 from extrados.core import dem
@@ -371,3 +374,38 @@ def test_contacts_follow_a_condition_that_fails_long_after_the_motion() -> None:
     leaving = Late(**{f.name: getattr(fates.contacts.leaving, f.name) for f in fields(Leaving)})
     fate = replace(fates, contacts=replace(fates.contacts, leaving=leaving)).follow(motion, 1.0, late + 1.0)
     assert fate.outcome == 0 and fate.ratio < 1e-3
+
+
+def test_the_answer_states_one_limit_of_friction() -> None:
+    """Rocking requires .53 up to its end, and .50 until contacts go on: the answer states the first alone."""
+    found, _ = both({"kind": "block", "width": 0.45, "height": 1.0}, 0.5, sine(0.8, 0.6), 0.0)
+    assert found.results.hand_over is not None
+    assert found.results.required_friction != pytest.approx(found.results.conditions.required_friction, abs=0.01)
+    assert set(re.findall(r"below (?:the )?([0-9.]+[0-9])", found.answer)) == {f"{found.results.conditions.required_friction:.2f}"}
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("structure", [ARCH, VAULT, STACK])
+def test_coarse_steps_decide_cells_as_those_of_single_runs(structure: dict) -> None:
+    """Of a map every cell whose mechanism a condition leaves; the least time is that of the processor."""
+    deck = make_deck({"structure": structure, "joints": {"friction": 0.5}, "analysis": {"kind": "failure-domain"}})
+    building = deck.buildings[0]
+    rocker = building.rocker(soft_base=True)
+    contacts = contacts_of(rocker, building)
+    assert contacts is not None
+    fine = Fates.of(Context(deck), contacts)
+    spent = np.zeros(2)
+    for period in (1.0, 2.0, 4.0):
+        ground = unit_pulse("sine", period * rocker.time_unit).ground
+        for ratio in (1.4, 2.1, 2.8, 3.5):
+            scale, end = ratio * rocker.uplift * GRAVITY, ground.end + 12.0 * rocker.time_unit
+            if contacts.leaving.leave(ground, end, scale).time is None:
+                continue
+            found = []
+            for k, fates in enumerate((fine, replace(fine, steps=STEPS))):
+                begin = time.process_time()
+                found.append(fates.follow(ground, scale, end).outcome)
+                spent[k] += time.process_time() - begin
+            assert found[0] == found[1], (period, ratio)
+    print(f"{structure['kind']}: {spent[0] / spent[1]:.1f} times faster")
+    assert spent[1] < spent[0]

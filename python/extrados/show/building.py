@@ -1,5 +1,6 @@
 """The drawing of the building to scale: section, cross-section and elevation, or plan and elevations of the walls."""
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,8 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
     if earth is not None:
         high[1] = max(high[1], earth["road"])
     levels = _levels([row for row in rows if row["aside"] == "below"])
-    section = View(words("Section"), low, high, 2.2 * LINE, LINE * (1.0 + max(levels, default=0)))
+    beside_it = sum(row["aside"] == "left" for row in rows)
+    section = View(words("Section"), low, high, LINE * (1.2 + max(beside_it, 1)), LINE * (1.0 + max(levels, default=0)))
     cut = drawing["crown_m"] if drawing["crown_m"] is not None else 0.5 * float(low[0] + high[0])
     pieces = _cut(outlines, cut + 1e-4)
     upright = np.array([[0.0, low[1]], [depth, high[1]]])
@@ -65,7 +67,7 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
         sheet.dimension(foot[0], foot[1], words.number(depth), -LINE)
         sheet.finish(words, _titled(deck), blocks)
         saved = style.save(fig, folder, NAME)
-    told = "; ".join(f"{name_of(words, row['name'])} {words.number(row['length_m'])} m" for row in rows)
+    told = "; ".join(f"{name_of(words, row['name'])}: {words.number(row['length_m'])} m" for row in rows)
     told = f" {told[:1].upper()}{told[1:]}." if told else ""
     views = words(
         "The building: section, cross-section and elevation at scale 1:{scale} on A4."
@@ -160,6 +162,8 @@ DIMENSIONS = (
     "width at the base",
     "width",
     "height",
+    "height of the masonry",
+    "total height",
     "thickness",
     "width of the left buttress",
     "width of the right buttress",
@@ -209,14 +213,14 @@ def _levels(rows: list[dict[str, Any]]) -> list[int]:
 
 def _dimensions(sheet: Sheet, view: View, rows: list[dict[str, Any]], levels: list[int], words: Language) -> None:
     bottom = sheet.to_paper(view, [view.low])[0]
-    free = iter(levels)
+    free, upright = iter(levels), itertools.count(1.4)
     for row in rows:
         a, b = sheet.to_paper(view, [row["start"], row["end"]])
         text = words.number(row["length_m"])
         if row["aside"] == "below":
             sheet.dimension(np.array([a[0], bottom[1]]), np.array([b[0], bottom[1]]), text, -LINE * next(free))
         elif row["aside"] == "left":
-            sheet.dimension(np.array([bottom[0], a[1]]), np.array([bottom[0], b[1]]), text, -1.4 * LINE)
+            sheet.dimension(np.array([bottom[0], a[1]]), np.array([bottom[0], b[1]]), text, -next(upright) * LINE)
         elif row["aside"] == "right":  # a thickness: its number beside it
             middle = np.array([max(a[0], b[0]) + 5.0, max(a[1], b[1]) + 2.5])
             sheet.ax.plot(*np.array([a, b]).T, color=INK, linewidth=1.0, zorder=6)
@@ -240,8 +244,10 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
     """The walls of a building on its plan, with names, lengths and thicknesses, and the heights of its storeys."""
     walls = structure["walls"]
     ends = np.array([[wall["start"], wall["end"]] for wall in walls], dtype=float)
-    low, high = ends.min(axis=(0, 1)), ends.max(axis=(0, 1))
-    plan = View(words("Plan"), low, high, 3.0 * LINE, 3.0 * LINE)
+    # outer faces; the names of the walls are written outside of them
+    outside = 0.5 * max(wall.get("thickness") or max(wall["thicknesses"]) for wall in walls)
+    low, high = ends.min(axis=(0, 1)) - outside, ends.max(axis=(0, 1)) + outside
+    plan = View(words("Plan"), low, high, 2.0 * LINE, 2.0 * LINE, LINE)
     storeys = np.concatenate([[0.0], np.cumsum(structure["storeys"])])
     with style.canvas() as fig:
         sheet = Sheet(fig, [plan])

@@ -68,8 +68,8 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             f"at a loss of 20 % of the base shear or when all piers of a wall in one storey reach their drift limits.",
         )
     )
-    for angle in angles:
-        number = min((k for k, row in enumerate(r.runs, 1) if row.direction_deg == angle), key=lambda k: r.runs[k - 1].peak_base_shear_N)
+    weakest = [min((row.peak_base_shear_N, k) for k, row in enumerate(r.runs, 1) if row.direction_deg == angle) for angle in angles]
+    for (_, number), angle in sorted(zip(weakest, angles, strict=True)):
         row = r.runs[number - 1]
         state = run.array(name, f"state_{number}")
         told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"

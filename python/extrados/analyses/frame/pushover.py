@@ -45,9 +45,10 @@ class Push:
     @property
     def name(self) -> str:
         """As results call it."""
-        axis = {0.0: "x", 90.0: "y"}.get(self.direction % 360.0, f"{self.direction:g} deg ")
+        axis = {0.0: "x", 90.0: "y"}.get(self.direction % 360.0)
+        towards = f"{self.sense}{axis}" if axis else f"{self.direction:g} deg, sense {self.sense},"
         shift = "" if self.eccentricity == 0.0 else f", eccentricity {100 * self.eccentricity:+.3g} %"
-        return f"{self.sense}{axis} {self.pattern}{shift}"
+        return f"{towards} {self.pattern}{shift}"
 
 
 def pushes_of(frame: EquivalentFrame, options: FramePushover, modes: Sequence[Mode], level: int) -> list[Push]:

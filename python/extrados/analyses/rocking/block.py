@@ -61,10 +61,9 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         )
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
-    result.answer = (
-        answer_of(context, ran, f"The {rocker.word}", "overturns", rocker.uplift)
-        + f" If friction is below {needed:.2f}, the {rocker.word} slides instead."
-    )
+    result.answer = answer_of(context, ran, f"The {rocker.word}", "overturns", rocker.uplift)
+    if ran.conditions.slides_first is None:  # else the conditions state the friction that rocking requires
+        result.answer += f" If friction is below {needed:.2f}, the {rocker.word} slides instead."
     return result
 
 

@@ -12,7 +12,7 @@ from extrados.model.errors import BadGeometry
 from extrados.model.geometry.polygons import signed_area
 from extrados.model.places import Opening, Range
 from extrados.model.structure import Structure
-from extrados.schema.quantities import Angle, Force, Length, Stiffness, Stress
+from extrados.schema.quantities import Angle, Area, Force, Length, Stiffness, Stress
 from extrados.schema.table import Table, key
 
 #: Distance within which two walls meet [m]
@@ -153,7 +153,7 @@ class StoreyFloor(Table):
     young: Stress | None = key(None, "for a flexible floor: its modulus; for joists: the modulus of their wood", gt=0)
     thickness: Length | None = key(None, "of a flexible floor", gt=0)
     poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
-    joist_area: Annotated[float, Field(gt=0)] | None = key(None, "for joists: cross-section of one joist in m^2")
+    joist_area: Annotated[Area, Field(gt=0)] | None = key(None, "for joists: cross-section of one joist")
     joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
     load: Stress = key(0.0, "weight per area of the floor and its loads; of a roof, per area of its slopes", ge=0)
     pitch: Angle | None = key(None, "slope of a roof from the horizontal", gt=0, le=75)
