@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from asking import Answer, Deck, ask, at_most, must, near, same
-from buildings import changed, decks, number
+from buildings import changed, decks, drawn, number
 from definitions_codes import code_spectrum
 from definitions_keys import EFFECTS
 from fields import dimension, leaning, numbers, questions
@@ -239,7 +239,7 @@ def moved_model(text: str, shift: list[float], turn: int, skew: float, noise: fl
 )
 def models_anywhere(deck: Deck, shift: tuple, turn: int, skew: float, within: float) -> None:
     """A model of COMPAS at any place, across x or y, is the same section; a block that is no prism is refused by its name."""
-    one = ask(deck, "tilt")
+    one = ask(drawn(deck), "tilt")  # an export has chords in place of arcs
     text = extrados.export({**deck, "analysis": [{"kind": "tilt"}]}, "compas")
     with tempfile.TemporaryDirectory() as name:
         there = {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}}

@@ -138,8 +138,9 @@ def test_dowels_carry_their_shear() -> None:
         weight = solids.mass[1] * GRAVITY
         if dowels == 500.0:  # the pyramids of dowels that give way are bounded by their strength
             limit = SolidLimit(solids, building.friction(solids))
-            low, high = limit.pyramids(0.0, 6)
-            assert low <= pushed(limit).gamma <= high <= 0.2 / np.cos(np.pi / 6) ** 2 + 500.0 / weight / np.cos(np.pi / 6) + 1e-9
+            low, high = limit.pyramids(0.0, 24)
+            most = 0.2 + 500.0 / weight
+            assert low == pytest.approx(most, abs=1e-7) and high == pytest.approx(most / np.cos(np.pi / 24), abs=1e-7)
     assert found[None] == pytest.approx(0.2, abs=1e-7)
     assert found[500.0] == pytest.approx(0.2 + 500.0 / weight, abs=1e-7)
     assert found["unbroken"] == pytest.approx(1.0, abs=1e-7)  # over the corner of its base
