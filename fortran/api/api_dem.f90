@@ -67,8 +67,8 @@ contains
    subroutine moves(handle, nmove, body, move, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_out_of_memory
-      use dem_plane_handle, only : built_blocks, blocks_take, set_moves
-      use dem_loading, only : support_move
+      use dem_plane_handle, only : built_blocks, blocks_take
+      use dem_loading, only : accept_moves, support_move
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nmove
       integer(c_int), intent(in) :: body(nmove)               !! support that moves
@@ -85,7 +85,7 @@ contains
          do k = 1, nmove
             given(k) = support_move(int(body(k)), move(1:3, k), move(4, k), move(5, k))
          end do
-         call set_moves(built, given, status)
+         call accept_moves(built%load, given, built%set%item%fixed, status)
       end if
       call handle_leave(handle)
    end subroutine moves

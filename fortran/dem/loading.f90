@@ -2,14 +2,16 @@
 module dem_loading
    use common_kinds, only : wp, pi
    use common_signal, only : signal
+   use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_out_of_memory
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: loading, support_move, mean_acceleration, move_rate, movement_end
+   public :: loading, support_move, accept_moves, mean_acceleration, move_rate, movement_end
 
-   !> A support moves by (dx, dy, turn) between two times, starting and ending at rest
+   !> A support moves by (dx, dy, turn), in space by (dx, dy, dz), between two times, starting and ending at rest
    type :: support_move
       integer :: body = 0
-      real(wp) :: shift(3) = 0.0_wp        !! [m, m, rad]
+      real(wp) :: shift(3) = 0.0_wp        !! [m, m, rad], in space [m]
       real(wp) :: start = 0.0_wp           !! [s]
       real(wp) :: duration = 1.0_wp        !! [s]
    end type support_move
@@ -22,6 +24,29 @@ module dem_loading
    end type loading
 
 contains
+
+   !> Take over movements of supports: bodies that are `fixed`
+   subroutine accept_moves(load, move, fixed, status)
+      type(loading), intent(inout) :: load
+      type(support_move), intent(in) :: move(:)
+      logical, intent(in) :: fixed(:)         !! (bodies)
+      integer(c_int), intent(out) :: status
+      type(support_move), allocatable :: copy(:)
+      integer :: k, failed
+      do k = 1, size(move)
+         status = status_bad_index
+         if (move(k)%body < 1 .or. move(k)%body > size(fixed)) return
+         if (.not. fixed(move(k)%body)) return
+         status = status_invalid_argument
+         if (.not. move(k)%duration > 0.0_wp) return
+      end do
+      status = status_out_of_memory
+      allocate (copy(size(move)), stat=failed)
+      if (failed /= 0) return
+      copy(:) = move
+      call move_alloc(copy, load%move)
+      status = status_ok
+   end subroutine accept_moves
 
    !> Mean ground acceleration between two times: exact across jumps, so that a pulse gives its velocity
    pure subroutine mean_acceleration(ground, segment, t0, t1, mean)

@@ -5,6 +5,7 @@ module dem3_handle
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
       status_out_of_memory, status_wrong_handle
    use dem_handle, only : built_model, count_ties, model_register, model_take
+   use dem_loading, only : loading
    use dem_rigid, only : set_rigid
    use dem_simulation, only : run_record_new
    use dem3_bodies, only : body_set, body_set_new, copy_bodies
@@ -18,6 +19,7 @@ module dem3_handle
    type, extends(built_model) :: built_solids
       type(body_set) :: set
       integer, allocatable :: law_of(:, :)            !! (3, joints): bodies, the lower first, and law
+      type(loading) :: load                           !! without the ground; supports move along x, y, z
       type(dowel), allocatable :: dowels(:)           !! not allocated: none
       real(wp), allocatable :: rate(:, :)             !! (6, bodies) velocity and spin at the start
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
@@ -206,6 +208,12 @@ contains
          model%law(:) = built%law
          model%law_of(:, :) = built%law_of
          model%joint_loss = 0.0_wp
+         if (allocated(built%load%move)) then
+            allocate (model%load%move(size(built%load%move)), stat=failed)
+            if (failed /= 0) status = status_out_of_memory
+            if (failed /= 0) return
+            model%load%move(:) = built%load%move
+         end if
          model%gravity = built%gravity
          model%way = built%way
          call set_rigid(model%rigid, model%model_clock, built%rigid, norm2(model%gravity), model%set%size, &
