@@ -52,27 +52,17 @@ contains
    !> Supports that move, without rotation
    subroutine moves(handle, nmove, body, move, status)
       use common_handles, only : handle_leave
-      use common_status, only : status_ok, status_out_of_memory
-      use dem_loading, only : accept_moves, support_move
-      use dem3_handle, only : built_solids, solids_take
+      use common_status, only : status_ok
+      use dem3_handle, only : built_solids, set_moves, solids_take
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nmove
       integer(c_int), intent(in) :: body(nmove)               !! support that moves
       real(c_double), intent(in) :: move(5, nmove)            !! dx, dy, dz [m], start, duration [s]
       integer(c_int), intent(out) :: status
       type(built_solids), pointer :: built
-      type(support_move), allocatable :: given(:)
-      integer :: k, failed
       call solids_take(handle, built, status)
       if (status /= status_ok) return
-      allocate (given(nmove), stat=failed)
-      status = status_out_of_memory
-      if (failed == 0) then
-         do k = 1, nmove
-            given(k) = support_move(int(body(k)), move(1:3, k), move(4, k), move(5, k))
-         end do
-         call accept_moves(built%load, given, built%set%item%fixed, status)
-      end if
+      call set_moves(built, body, move, status)
       call handle_leave(handle)
    end subroutine moves
 

@@ -26,25 +26,26 @@ module dem_loading
 contains
 
    !> Take over movements of supports: bodies that are `fixed`
-   subroutine accept_moves(load, move, fixed, status)
+   subroutine accept_moves(load, body, value, fixed, status)
       type(loading), intent(inout) :: load
-      type(support_move), intent(in) :: move(:)
+      integer(c_int), intent(in) :: body(:)   !! (moves), 1-based
+      real(wp), intent(in) :: value(:, :)     !! (5, moves) shift, see support_move; start, duration [s]
       logical, intent(in) :: fixed(:)         !! (bodies)
       integer(c_int), intent(out) :: status
-      type(support_move), allocatable :: copy(:)
+      type(support_move), allocatable :: move(:)
       integer :: k, failed
-      do k = 1, size(move)
-         status = status_bad_index
-         if (move(k)%body < 1 .or. move(k)%body > size(fixed)) return
-         if (.not. fixed(move(k)%body)) return
-         status = status_invalid_argument
-         if (.not. move(k)%duration > 0.0_wp) return
-      end do
+      status = status_bad_index
+      if (any(body < 1) .or. any(body > size(fixed))) return
+      if (.not. all(fixed(body))) return
+      status = status_invalid_argument
+      if (.not. all(value(5, :) > 0.0_wp)) return
       status = status_out_of_memory
-      allocate (copy(size(move)), stat=failed)
+      allocate (move(size(body)), stat=failed)
       if (failed /= 0) return
-      copy(:) = move
-      call move_alloc(copy, load%move)
+      do k = 1, size(body)
+         move(k) = support_move(int(body(k)), value(1:3, k), value(4, k), value(5, k))
+      end do
+      call move_alloc(move, load%move)
       status = status_ok
    end subroutine accept_moves
 

@@ -61,7 +61,8 @@ class SupportMove:
 
     def times(self, factor: float) -> "SupportMove":
         """The same movement, larger by a factor."""
-        return replace(self, shift=tuple(factor * value for value in self.shift))
+        x, y, z = self.shift
+        return replace(self, shift=(factor * x, factor * y, factor * z))
 
     @property
     def values(self) -> list[float]:
