@@ -35,11 +35,16 @@ module frame_model
       type(element_state), allocatable :: element(:)
       real(wp), allocatable :: plastic(:)         !! of links [m]
       logical :: lagged = .false.                 !! shear strengths by the forces of the last equilibrium
+      logical :: damped = .false.                 !! equilibrium by damped iterations
    end type frame_state
 
    !> Forces out of balance, over the greatest sum of constant loads
    real(wp), parameter :: tolerance = 1.0e-7_wp
-   integer, parameter :: most_iterations = 40, patience = 8
+   integer, parameter :: most_iterations = 40, patience = 8, most_damped = 400
+   !> Share of the damping that remains after an iteration that leaves the forces out of balance as they were
+   real(wp), parameter :: faster = 0.9_wp
+   !> Least and greatest damping over the elastic stiffness, and the least and greatest change of it in an iteration
+   real(wp), parameter :: damping_range(2) = [1.0e-9_wp, 1.0e2_wp], damping_change(2) = [0.2_wp, 4.0_wp]
 
    interface
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
@@ -149,7 +154,10 @@ contains
 
    !> Equilibrium under a share of the constant loads and a multiple of `pattern`.
    !>
-   !> With `controlled` the multiple is sought at which control . d has the value; else it is kept.
+   !> With `controlled` the multiple is sought at which control . d has the value; else it is kept. A `damped` state is found by
+   !> pseudo-transient continuation (Kelley and Keyes 1998): the diagonal of the stiffness times a factor is added to the
+   !> tangent, and the factor follows the forces out of balance. Newton's method overshoots where a rigid node turns on a pier
+   !> whose force acts at its edge, or a link carries its strength: there the tangent is nearly singular.
    subroutine equilibrate(model, weighed, past, pattern, control, value, controlled, now, multiple, status)
       type(frame), intent(in) :: model
       real(wp), intent(in) :: weighed            !! share of the constant loads
@@ -161,19 +169,44 @@ contains
       type(frame_state), intent(inout) :: now    !! a first guess in
       real(wp), intent(inout) :: multiple
       integer(c_int), intent(out) :: status
-      real(wp) :: right(model%n, 2), scale, more, part
-      integer :: iteration, columns
+      real(wp) :: right(model%n, 2), matrix(model%n, model%n), stiff(model%n), taken(model%n)
+      real(wp) :: scale, more, part, damping, out, before
+      integer :: iteration, columns, i
       columns = merge(2, 1, controlled)
-      do iteration = 1, most_iterations
+      damping = merge(1.0_wp, 0.0_wp, now%damped)
+      before = huge(1.0_wp)
+      stiff = 0.0_wp
+      taken = 0.0_wp
+      more = 0.0_wp
+      do iteration = 1, merge(most_damped, most_iterations, now%damped)
          call assemble(model, past, now, status)
-         if (status /= status_ok) return
+         if (status /= status_ok) then
+            if (.not. now%damped .or. iteration == 1) return
+            damping = min(damping_range(2), damping_change(2) * damping)   ! half the way back
+            taken = 0.5_wp * taken
+            more = 0.5_wp * more
+            now%d(:) = now%d - taken
+            if (controlled) multiple = multiple - more
+            cycle
+         end if
          right(:, 1) = weighed * model%weight + multiple * pattern - now%force
          right(:, 2) = pattern
-         if (.not. maxval(abs(right(:, 1))) <= huge(1.0_wp)) exit
+         out = maxval(abs(right(:, 1)))
+         if (.not. out <= huge(1.0_wp)) exit
          scale = tolerance * max(sum(abs(model%weight)), sum(abs(multiple * pattern)), sum(abs(model%link%force)), &
             tiny(1.0_wp))
-         if (iteration > 1 .and. maxval(abs(right(:, 1))) <= scale) return
-         call solve(now%tangent, right(:, 1:columns), status)
+         if (iteration > 1 .and. out <= scale) return
+         matrix(:, :) = now%tangent
+         if (now%damped) then
+            if (iteration > 1) damping = min(damping_range(2), max(damping_range(1), damping &
+               * min(damping_change(2), max(damping_change(1), faster * out / before))))
+            before = max(out, tiny(1.0_wp))
+            do i = 1, model%n
+               stiff(i) = max(stiff(i), now%tangent(i, i))
+               matrix(i, i) = matrix(i, i) + damping * stiff(i)
+            end do
+         end if
+         call solve(matrix, right(:, 1:columns), status)
          if (status /= status_ok) return
          if (controlled) then
             more = (value - dot_product(control, now%d + right(:, 1))) / dot_product(control, right(:, 2))
@@ -181,9 +214,10 @@ contains
          end if
          ! Iterations that go to and fro between sliding and sticking settle in shorter steps
          part = 1.0_wp
-         if (iteration > patience) part = merge(0.5_wp, 0.8_wp, mod(iteration, 2) == 0)
+         if (iteration > patience .and. .not. now%damped) part = merge(0.5_wp, 0.8_wp, mod(iteration, 2) == 0)
          if (controlled) multiple = multiple + part * more
-         now%d(:) = now%d + part * right(:, 1)
+         taken = part * right(:, 1)
+         now%d(:) = now%d + taken
       end do
       status = status_too_many_steps
    end subroutine equilibrate

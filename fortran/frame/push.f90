@@ -14,6 +14,7 @@ module frame_push
    !> States in equilibrium along a run
    type :: push_path
       integer :: count = 0
+      integer :: loose = 0                            !! freedom that moved most when no equilibrium was found; 0: none
       real(wp), allocatable :: curve(:, :)            !! (2, most) control displacement [m], multiple of the pattern
       real(wp), allocatable :: displacement(:, :)     !! (n, most)
       real(wp), allocatable :: force(:, :, :)         !! (3, elements, most) N, moments at both ends
@@ -106,6 +107,7 @@ contains
       logical :: goes_on, cut
       integer :: failed
       path%count = 0
+      path%loose = 0
       goes_on = .false.
       ended = frame_stop_weight
       call weigh_frame(model, past, status)
@@ -143,8 +145,11 @@ contains
             step = 0.5_wp * step
             ended = frame_stop_step
             if (step < least_step * most) then
-               if (now%lagged) return
-               now%lagged = .true.
+               if (now%damped) then
+                  path%loose = maxloc(abs(now%d - past%d), 1)
+                  return
+               end if
+               call try_otherwise(now)
                step = lagged_step * most
             end if
             cycle
@@ -155,6 +160,7 @@ contains
             cycle
          end if
          now%lagged = .false.
+         now%damped = .false.
          goes_on = .true.
          call keep_step(last, step, past, now, trial - multiple)
          moved = moved + step
@@ -191,6 +197,13 @@ contains
       now%element%slip = now%element%slip + ratio * last%slip
       multiple = multiple + ratio * last%multiple
    end subroutine go_on
+
+   !> What is tried where no smaller step converges: strengths by the last equilibrium, then damped iterations
+   pure subroutine try_otherwise(now)
+      type(frame_state), intent(inout) :: now
+      now%damped = now%lagged
+      now%lagged = .not. now%lagged
+   end subroutine try_otherwise
 
    !> How a step that failed begins anew: first from the last equilibrium; then it is cut, and goes on as the last one did
    pure subroutine begin_otherwise(last, goes_on, cut)
@@ -254,12 +267,17 @@ contains
             if (.not. cut) cycle
             part = 0.5_wp * part
             if (part < 1.0e-3_wp) then
-               if (now%lagged) return
-               now%lagged = .true.
+               if (now%damped) then
+                  path%loose = maxloc(abs(now%d - past%d), 1)
+                  return
+               end if
+               call try_otherwise(now)
                part = 0.05_wp
             end if
             cycle
          end if
+         now%lagged = .false.
+         now%damped = .false.
          goes_on = .true.
          call keep_step(last, part, past, now, trial - multiple)
          multiple = trial

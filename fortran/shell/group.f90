@@ -5,6 +5,10 @@
 !> point stand upright on the shell. A tooth changes the stiffness by rank three: the modulus across the crack, the
 !> shear modulus in the plane and the transverse one.
 !>
+!> In equilibrium iterations the transverse shear is linear within a step, t = A (g - s), and A follows the cracks in the
+!> state at its end. Where a crack opens its stress falls. Where one closes, the stress stays and the slip s moves: a
+!> crack that closes brings no energy.
+!>
 !> Nodes have six freedoms: displacements along x, y, z and rotations about three axes of their own, the third of which
 !> is held where the shell is flat: rotations about the normal have no stiffness there and need none.
 module shell_group
@@ -17,7 +21,7 @@ module shell_group
    use sla_element, only : most_points
    use sla_group, only : event_vectors, material_options, most_entries
    use sla_plane_damage, only : plane_damage, damage_point
-   use sla_plane_history, only : respond_plane, show_plane, update_plane
+   use sla_plane_history, only : begin_plane, respond_plane, show_plane, update_plane
    use sla_plane_points, only : points_new, points_ready, direction_modulus, refresh_plane, axis_joint
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
@@ -28,6 +32,9 @@ module shell_group
    !> Stiffness of the tie between the rotation about the normal and that of the membrane, over the shear modulus: any
    !> converges (Hughes and Brezzi 1989); little of it leaves the membrane as it is
    real(wp), parameter :: drilling = 1.0e-2_wp
+
+   !> Rows of a point's history: those of its law, transverse slip and shear moduli xx, yy, xy in the axes of the element
+   integer, parameter :: all_rows = 7, slip_x = 3, slip_y = 4, shear_xx = 5, shear_yy = 6, shear_xy = 7
 
    !> How shells are integrated
    type :: shell_section
@@ -57,6 +64,8 @@ module shell_group
       procedure :: force
       procedure :: damage
       procedure :: refresh
+      procedure :: begin
+      procedure :: extrapolate
       procedure :: respond
       procedure :: update
    end type shell_points
@@ -474,6 +483,28 @@ contains
       end do
    end subroutine set_transverse
 
+   !> As of plane points; the transverse shear begins without slip
+   subroutine begin(group, u, status)
+      class(shell_points), intent(inout) :: group
+      real(wp), intent(in) :: u(0:)
+      integer(c_int), intent(out) :: status
+      integer :: p
+      call begin_plane(group, u, merge(all_rows, 2, group%section%bends), status)
+      if (status /= status_ok .or. .not. group%section%bends) return
+      do p = 1, group%points
+         call set_shear(group, p, [0.0_wp, 0.0_wp])
+      end do
+      group%kept(:, :) = group%history
+   end subroutine begin
+
+   !> As of plane points; slip and transverse shear moduli are those of the last state
+   pure subroutine extrapolate(group, ratio)
+      class(shell_points), intent(inout) :: group
+      real(wp), intent(in) :: ratio
+      group%history(:, :) = group%kept
+      group%history(1:2, :) = group%kept(1:2, :) + ratio * group%rate(1:2, :)
+   end subroutine extrapolate
+
    !> As of plane points, with transverse shear and the rotations about the normal, which are linear within a step
    pure subroutine respond(group, e, local, how, f, k, energy)
       class(shell_points), intent(in) :: group
@@ -483,45 +514,114 @@ contains
       real(wp), intent(out) :: f(:)
       real(wp), intent(out) :: k(:, :)
       real(wp), intent(out) :: energy
-      real(wp) :: one(most_entries), v(6, most_corners), part(6, most_corners), column(most_entries)
-      real(wp) :: none(3, 3, most_points), g(2, 2, most_points), a(3, 3), b(3, 3), d(3, 3)
+      real(wp) :: one(most_entries), column(most_entries), sheared, none
       integer :: i, n
       call respond_plane(group, e, local, how, f, k, energy)
       if (.not. group%section%bends) return
       n = group%freedoms
-      none = 0.0_wp
-      do i = 1, group%rule%points
-         call of_section(group, e, i, a, b, d, g(:, :, i))
-      end do
-      call to_element(group, e, local, v)
-      part = 0.0_wp
-      call add_forces(group, e, none, none, none, g, v, part)
-      call from_element(group, e, part, column)
+      call respond_across(group, e, local, .true., column, sheared)
       f(1:n) = f(1:n) + column(1:n)
-      energy = energy + 0.5_wp * dot_product(local(1:n), column(1:n))
+      energy = energy + sheared
       if (size(k) == 0) return
       do i = 1, n
          one = 0.0_wp
          one(i) = 1.0_wp
-         call to_element(group, e, one, v)
-         part = 0.0_wp
-         call add_forces(group, e, none, none, none, g, v, part)
-         call from_element(group, e, part, column)
+         call respond_across(group, e, one, .false., column, none)
          k(1:n, i) = k(1:n, i) + column(1:n)
       end do
    end subroutine respond
 
-   !> As of plane points; the transverse shear follows the cracks
+   !> Nodal forces and energy of an element's transverse shear and of the rotations about the normal
+   pure subroutine respond_across(group, e, local, slips, column, energy)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:)
+      logical, intent(in) :: slips                   !! from the slip on, else from none
+      real(wp), intent(out) :: column(most_entries)
+      real(wp), intent(out) :: energy                !! [J]
+      real(wp) :: v(6, most_corners), part(6, most_corners), none(3, 3, most_points), g(2, 2, most_points)
+      real(wp) :: held(2, most_points), a(2, 2), slip(2)
+      integer :: k, l, p
+      none = 0.0_wp
+      part = 0.0_wp
+      g = 0.0_wp
+      held = 0.0_wp
+      energy = 0.0_wp
+      call to_element(group, e, local, v)
+      do k = 1, group%rule%points
+         do l = 1, int(group%section%layers)
+            p = (e - 1) * group%per + (k - 1) * int(group%section%layers) + l
+            a = shear_share * group%weight(p) * shear_of(group, p)
+            slip = group%history(slip_x:slip_y, p)
+            if (.not. slips) slip = 0.0_wp
+            g(:, :, k) = g(:, :, k) + a
+            held(:, k) = held(:, k) + matmul(a, slip)
+            energy = energy + 0.5_wp * dot_product(slip, matmul(a, slip))
+         end do
+         energy = energy - dot_product(held(:, k), shearing(group, e, k, v))
+      end do
+      call add_forces(group, e, none, none, none, g, v, part)
+      energy = energy + 0.5_wp * sum(part(:, 1:group%rule%nodes) * v(:, 1:group%rule%nodes))
+      do k = 1, group%rule%points
+         call add_product(group%shear(:, :, k, e), -held(:, k), part)
+      end do
+      call from_element(group, e, part, column)
+   end subroutine respond_across
+
+   !> Transverse shear moduli of a point's history as a matrix [Pa]
+   pure function shear_of(group, p) result(a)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: p
+      real(wp) :: a(2, 2)
+      associate (h => group%history(:, p))
+         a = reshape([h(shear_xx), h(shear_xy), h(shear_xy), h(shear_yy)], [2, 2])
+      end associate
+   end function shear_of
+
+   !> Transverse shear moduli by a point's cracks, and its slip, into its history
+   pure subroutine set_shear(group, p, slip)
+      class(shell_points), intent(inout) :: group
+      integer, intent(in) :: p
+      real(wp), intent(in) :: slip(2)
+      real(wp) :: a(2, 2)
+      a = across(group, p)
+      group%history(slip_x:shear_xy, p) = [slip, a(1, 1), a(2, 2), a(1, 2)]
+   end subroutine set_shear
+
+   !> As of plane points; the transverse shear follows the cracks: across each, its stress falls with the modulus, and
+   !> stays where the modulus grows
    pure subroutine update(group, u, lost)
       class(shell_points), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: lost
-      integer :: p
+      real(wp) :: local(most_entries), v(6, most_corners), column(most_entries), a(2, 2), g(2), n(2), slip(2), before, after
+      integer :: e, k, l, p, i
       call update_plane(group, u, lost)
       if (.not. group%section%bends) return
       call show_plane(group, u)
-      do p = 1, group%points
-         call set_transverse(group, p)
+      do e = 1, group%elements
+         call group%gather(e, u, local)
+         call to_element(group, e, local, v)
+         call respond_across(group, e, local, .true., column, before)
+         do p = (e - 1) * group%per + 1, e * group%per
+            call place_of(group, p, k, l)
+            g = shearing(group, e, k, v)
+            a = shear_of(group, p)
+            slip = group%history(slip_x:slip_y, p)
+            call set_transverse(group, p)
+            n = [1.0_wp, 0.0_wp]
+            if (group%cracked(p) /= 0) n = group%turn(:, p)
+            do i = 1, 2
+               associate (modulus => group%transverse(i, p), was => dot_product(n, matmul(a, n)))
+                  if (modulus > was) slip = slip + (dot_product(n, g - slip) - dot_product(n, matmul(a, g - &
+                     group%history(slip_x:slip_y, p))) / modulus) * n
+               end associate
+               n = [-n(2), n(1)]
+            end do
+            call set_shear(group, p, slip)
+         end do
+         call respond_across(group, e, local, .true., column, after)
+         lost = lost + max(0.0_wp, before - after)
       end do
    end subroutine update
 

@@ -10,7 +10,7 @@ module sla_plane_history
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: plane_history, respond_plane, update_plane, show_plane
+   public :: plane_history, begin_plane, respond_plane, update_plane, show_plane
 
    type, abstract, extends(plane_points) :: plane_history
    contains
@@ -54,14 +54,23 @@ contains
       if (law%crushes) law%compression = group%teeth%law(group%crush_table(e))
    end function law_of
 
-   !> Histories by the softer of both directions
+   !> See history_group
    subroutine begin(group, u, status)
       class(plane_history), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       integer(c_int), intent(out) :: status
+      call begin_plane(group, u, 2, status)
+   end subroutine begin
+
+   !> Histories by the softer of both directions
+   subroutine begin_plane(group, u, rows, status)
+      class(plane_history), intent(inout) :: group
+      real(wp), intent(in) :: u(0:)
+      integer, intent(in) :: rows              !! of a point, the first two of which are those of its law
+      integer(c_int), intent(out) :: status
       type(coaxial_law) :: law
       integer :: e, p
-      call group%new_histories(2, status)
+      call group%new_histories(rows, status)
       if (status /= status_ok .or. size(u) == 0) return
       do p = 1, group%points
          e = (p - 1) / group%per + 1
@@ -75,7 +84,7 @@ contains
       end do
       call group%keep()
       group%rate(:, :) = 0.0_wp
-   end subroutine begin
+   end subroutine begin_plane
 
    pure subroutine respond_plane(group, e, local, how, f, k, energy)
       class(plane_history), intent(in) :: group
@@ -94,7 +103,7 @@ contains
       energy = 0.0_wp
       call group%strains(e, local, eps)
       do p = (e - 1) * group%per + 1, e * group%per
-         call coaxial_response(law_of(group, e, p), eps(:, p - (e - 1) * group%per), group%history(:, p), how, state)
+         call coaxial_response(law_of(group, e, p), eps(:, p - (e - 1) * group%per), group%history(1:2, p), how, state)
          call group%nodal(e, p, [1.0_wp, 0.0_wp, 0.0_wp], b(:, 1))
          call group%nodal(e, p, [0.0_wp, 1.0_wp, 0.0_wp], b(:, 2))
          call group%nodal(e, p, [0.0_wp, 0.0_wp, 1.0_wp], b(:, 3))
@@ -147,11 +156,13 @@ contains
          call group%strains(e, local, eps)
          do p = (e - 1) * group%per + 1, e * group%per
             law = law_of(group, e, p)
-            call coaxial_response(law, eps(:, p - (e - 1) * group%per), group%history(:, p), by_secant, state)
-            if (present(ratio)) state%history = group%history(:, p) + ratio * (group%history(:, p) - group%before_loop(:, p))
-            gain = law%lost_energy(state%history) - law%lost_energy(group%history(:, p))
-            lost = lost + group%weight(p) * (gain(1) * (1.0_wp + state%shared) + gain(2))
-            group%history(:, p) = state%history
+            call coaxial_response(law, eps(:, p - (e - 1) * group%per), group%history(1:2, p), by_secant, state)
+            associate (history => group%history(1:2, p), before => group%before_loop(1:2, p))
+               if (present(ratio)) state%history = history + ratio * (history - before)
+               gain = law%lost_energy(state%history) - law%lost_energy(history)
+               lost = lost + group%weight(p) * (gain(1) * (1.0_wp + state%shared) + gain(2))
+               history = state%history
+            end associate
             if (law%cracks .and. group%cracked(p) == 0 .and. state%history(1) > law%tension%peak) then
               call fix_band(group, e, p, law, state%normal)
             end if
@@ -173,7 +184,7 @@ contains
       call set_band(group, e, p)
       new = law_of(group, e, p)
       if (abs(new%tension%range - law%tension%range) <= 0.0_wp) return
-      modulus = law%moduli(group%history(:, p))
+      modulus = law%moduli(group%history(1:2, p))
       group%history(1, p) = new%tension%strain_at(modulus(1))
    end subroutine fix_band
 
@@ -189,8 +200,8 @@ contains
          call group%strains(e, local, eps)
          do p = (e - 1) * group%per + 1, e * group%per
             law = law_of(group, e, p)
-            call coaxial_response(law, eps(:, p - (e - 1) * group%per), group%history(:, p), by_frozen, state)
-            modulus = law%moduli(group%history(:, p))
+            call coaxial_response(law, eps(:, p - (e - 1) * group%per), group%history(1:2, p), by_frozen, state)
+            modulus = law%moduli(group%history(1:2, p))
             if (law%cracks) group%tooth(:, p) = group%teeth%tooth_of(group%table_of(e, p, 1), modulus(1))
             if (law%crushes) group%crush(:, p) = group%teeth%tooth_of(group%crush_table(e), modulus(2))
             if (group%cracked(p) == 0) then

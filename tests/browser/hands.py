@@ -76,3 +76,24 @@ def draw_line(page: Any, at: Callable[[Any, float, float], tuple[float, float]],
     page.mouse.move(*at(page, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])))
     page.mouse.move(*at(page, *b))
     page.mouse.up()
+
+
+#: Buttons, fields and handles that lie outside of the window, of their scrolled box, or under something else
+BEYOND = """() => {
+    const seen = e => e.getClientRects().length && !e.closest("[hidden]") && getComputedStyle(e).visibility !== "hidden";
+    const scrolls = e => { for (let p = e.parentElement; p; p = p.parentElement) { const s = getComputedStyle(p); if (/auto|scroll/.test(s.overflowX + s.overflowY)) return true; } return false; };
+    const out = [];
+    for (const e of document.querySelectorAll("button, select, input, textarea, .knob .hit, a")) {
+        if (!seen(e) || e.type === "file") continue;
+        const r = e.getBoundingClientRect();
+        const within = r.left >= -1 && r.top >= -1 && r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1;
+        if (!within && !scrolls(e)) out.push((e.getAttribute("aria-label") || e.textContent || e.parentElement.dataset.handle || e.outerHTML).slice(0, 60) + ` ${[r.left, r.top, r.right, r.bottom].map(Math.round)}`);
+    }
+    return out;
+}"""
+OVERFLOW = "[document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]"
+
+
+def fits(page: Any) -> None:
+    assert page.evaluate(OVERFLOW) == [0, 0]
+    assert page.evaluate(BEYOND) == []

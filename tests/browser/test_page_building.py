@@ -343,7 +343,7 @@ def test_what_is_needed_is_sized_and_put_in(page: Any) -> None:
     own = extrados.run({**bare, "analysis": [asked]})["strengthen"]
     rows = {one.name: one for one in own.interventions}
     thickness = next(one for one in rows.values() if one.key == "structure.thickness")
-    assert thickness.meets_target and f"structure.thickness = {thickness.required_size:.3g}" in told
+    assert thickness.meets_target and f"thickness {thickness.required_size:.3g}" in told
     page.locator("[data-intervention] button").last.scroll_into_view_if_needed()
     SHOTS.mkdir(parents=True, exist_ok=True)
     page.screenshot(path=SHOTS / "what-is-needed.png")

@@ -6,27 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hands import ROCKING, open_text, settled, until
+from hands import ROCKING, fits, open_text, settled, until
 from served import SHOTS, Served
 
 #: Width, height, and whether it is held by fingers
 SCREENS = [(390, 844, True), (820, 1180, True), (1366, 768, False), (2560, 1440, False)]
 BY_SIZE = pytest.mark.parametrize("screen", SCREENS, indirect=True, ids=lambda s: f"{s[0]}x{s[1]}")
-
-#: Buttons, fields and handles that lie outside of the window, of their scrolled box, or under something else
-BEYOND = """() => {
-    const seen = e => e.getClientRects().length && !e.closest("[hidden]") && getComputedStyle(e).visibility !== "hidden";
-    const scrolls = e => { for (let p = e.parentElement; p; p = p.parentElement) { const s = getComputedStyle(p); if (/auto|scroll/.test(s.overflowX + s.overflowY)) return true; } return false; };
-    const out = [];
-    for (const e of document.querySelectorAll("button, select, input, textarea, .knob .hit, a")) {
-        if (!seen(e) || e.type === "file") continue;
-        const r = e.getBoundingClientRect();
-        const within = r.left >= -1 && r.top >= -1 && r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1;
-        if (!within && !scrolls(e)) out.push((e.getAttribute("aria-label") || e.textContent || e.parentElement.dataset.handle || e.outerHTML).slice(0, 60) + ` ${[r.left, r.top, r.right, r.bottom].map(Math.round)}`);
-    }
-    return out;
-}"""
-OVERFLOW = "[document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]"
 
 
 @pytest.fixture
@@ -44,11 +29,6 @@ def screen(browser: Any, served: Served, request: pytest.FixtureRequest) -> Iter
     yield page
     context.close()
     assert not troubles
-
-
-def fits(page: Any) -> None:
-    assert page.evaluate(OVERFLOW) == [0, 0]
-    assert page.evaluate(BEYOND) == []
 
 
 def serious(page: Any) -> None:
@@ -107,8 +87,8 @@ def test_nothing_overflows_and_all_is_reachable(screen: Any) -> None:
 def test_handles_never_cover_each_other(screen: Any, preset: str) -> None:
     page = screen
     page.evaluate("preset => window.extrados.open({ preset })", preset)
+    until(page, "preset => window.extrados.source.preset === preset", arg=preset)
     settled(page)
-    until(page, "window.extrados.source.preset !== undefined")
     fingers = page.evaluate("matchMedia('(pointer: coarse)').matches")
     boxes = page.evaluate(
         "[...document.querySelectorAll('.stage .knob .hit')].map(e => { const r = e.getBoundingClientRect(); return [r.left + r.width / 2, r.top + r.height / 2, r.width]; })"

@@ -121,7 +121,7 @@ def a_viscous_damper_in_statics(size: tuple[float, float], exponent: int, share:
     free, held = (ask(deck, "dem", **SLOW) for deck in (bare, {**bare, "dampers": [damper]}))
     ok(free)
     must((held.capacity == free.capacity).all(), f"{held.capacity} with the damper, {free.capacity} without it")
-    must(any("no force in statics" in text for text in held.warnings), f"does not say it: {held.warnings}")
+    must("no force in statics" in held.warnings, f"does not say it: {held.warnings}")
     near("limit analysis", held.capacity, ask(bare, "tilt").capacity, 2.0 * within)
     must(ask({**bare, "dampers": [damper]}, "tilt").status == "refused", "limit analysis takes a damper")
 
@@ -264,19 +264,19 @@ SOLE = {
 }
 
 
-@relation(
-    "pushover",
-    decks("building", friction=number(0.2, 0.6), material=MASONRY).map(
-        lambda d: changed(d, structure={"beds": [{"name": "sole"}]}, joints=MORTAR)
-    ),
-    0.02,
-    share=0.2,
-    examples=(SOLE,),
-)
+def on_a_sole(deck: Deck) -> Deck:
+    """A house of one storey on a weak sole: those of two take half a second of a processor for each of their events."""
+    made = changed(deck, structure={"beds": [{"name": "sole"}], "storeys": deck["structure"]["storeys"][:1]}, joints=MORTAR)
+    if "floors" in made["structure"]:
+        made["structure"]["floors"] = made["structure"]["floors"][:1]
+    return made
+
+
+@relation("pushover", decks("building", friction=number(0.2, 0.6), material=MASONRY).map(on_a_sole), 0.02, share=0.3, examples=(SOLE,))
 def no_more_than_coulomb(deck: Deck, within: float) -> None:
     """On a weak sole the building slides: its capacity stays below friction times the weight and cohesion times the area. A model that
     carries more says that this is an upper bound."""
-    answer = ask(deck, "pushover", direction=0.0, mesh={"size": 1.0, "layers": 3}, events=20000)
+    answer = ask(deck, "pushover", direction=0.0, mesh={"size": 1.0, "layers": 3}, events=2000)
     ok(answer)
     r = answer.results
     area = sum(math.dist(w["start"], w["end"]) * w["thickness"] for w in deck["structure"]["walls"])

@@ -96,6 +96,25 @@ def solids_hold_what_their_parts_do(deck: Deck, within: float) -> None:
         near("inertia", stones.inertia[k], inertia, 4.0 * within, np.trace(inertia))
 
 
+@relation("tilt", st.tuples(barrels(), number(0.2, 8.0), number(0.5, 30.0), number(0.2, 20.0)), 1e-5, share=0.5)
+def strength_of_barrels(deck: Deck, crush: float, cohesion: float, tension: float, within: float) -> None:
+    """Along its span a barrel that crushes bears what its crushing section bears; mortar that lasts makes it bear more, crushing less."""
+    crushing = {"compressive_strength": 1e6 * crush}
+    square, section = changed(deck, structure={"skew": 0.0}), changed(deck, structure={"skew": 0.0, "stones_across": 1})
+    keys: Deck = {"direction": 0.0, "rose": 4, "starts": 1, "face_law": False}
+    plane, space = ask(changed(section, material=crushing), "tilt"), ask(changed(square, material=crushing), "tilt", **keys)
+    same("crushing", plane, space)
+    ok(plane, space)
+    near("crushing", plane.capacity, space.capacity, within, 1e-2)
+    glued = changed(square, joints={"cohesion": 1e3 * cohesion, "tension": 1e3 * tension})
+    mortar, both = (ask(one, "tilt", mortar="ductile", **keys) for one in (glued, changed(glued, material=crushing)))
+    ok(mortar, both)
+    at_most("crushing", space.capacity, both.capacity, within, 1e-2)
+    at_most("mortar that crushes", both.capacity, mortar.capacity, within, 1e-2)
+    dry = ask(square, "tilt", **keys)
+    near("without mortar", mortar.results.collapse_acceleration_dry_g, dry.capacity[0], within, 1e-2)
+
+
 @relation("tilt", barrels(), 1e-5, share=0.5)
 def barrels_and_their_sections(deck: Deck, within: float) -> None:
     """Along its span a barrel of any bond bears what its section bears; a skew one no more, for its joints bear sidewards too."""

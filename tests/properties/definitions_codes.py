@@ -12,6 +12,10 @@ from relations import GRAVITY, ok, relation
 UNIT = 2000.0 * GRAVITY
 
 
+#: Height of a storey where their number is not given [m]
+STOREY = 3.0
+
+
 @st.composite
 def bodies_of_codes(draw: st.DrawFn) -> tuple[Deck, Deck]:
     """A deck and a table of a local mechanism of one body, with anything that loads or holds it."""
@@ -173,7 +177,7 @@ def bodies_of_codes_by_hand(deck: Deck, table: Deck, within: float) -> None:
     felt, first, a_z = (None if raised else ag), 0.0, 0.0
     if raised and peak is not None:
         first = table.get("building_period") or 0.05 * top**0.75
-        n = table.get("storeys", 1)
+        n = table.get("storeys", max(1, math.ceil(top / STOREY - 1e-9)))
         a_z = code_spectrum(peak, first, 0.05) * raised / top * 3.0 * n / (2.0 * n + 1.0) * math.sqrt(1.0 + 4e-4 * 25.0)
         felt = max(a_z, ag)
         near("a_Z", r.floor_acceleration_g, a_z / GRAVITY, within)

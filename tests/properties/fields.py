@@ -514,12 +514,16 @@ def compare_named(told: str, one: Answer, other: Answer, within: float, skip: tu
             )
 
 
+#: Strategies that take a column of a template as one rigid body
+AS_ONE = ("rocking", "failure-domain", "fragility")
 SAME_BLOCKS = ("tilt", "rocking", "failure-domain", "fragility", "local-mechanism", "dem")
 
 
 def a_template_is_its_blocks(question: tuple, within: float) -> None:
     """A building of a template and the same drawn block by block have the same numbers, however each is made to rock."""
     deck, kind, table = question
+    if kind in AS_ONE and deck["structure"]["kind"] == "column" and deck["structure"]["drums"] == 2:
+        reject()  # of a template one rigid body, which its answer states; two drawn blocks rock on each other
     plain = drawn(deck)
     one, other = ask(deck, kind, **table), ask(plain, kind, **table)
     ok(one, other)
@@ -529,7 +533,8 @@ def a_template_is_its_blocks(question: tuple, within: float) -> None:
     if kind == "local-mechanism" and one.results.multiplier > 0.999 * deck["joints"]["friction"]:
         reject()  # which blocks slide is open
     same(kind, one, other)
-    compare_named(kind, one, other, within, ("required_friction", "natural_time"))
+    # the random states without dilatancy from which a search starts follow the order of the joints: their scatter is none of the building
+    compare_named(kind, one, other, within, ("required_friction", "natural_time", "spread_g"))
 
 
 for _kind in SAME_BLOCKS:

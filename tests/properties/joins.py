@@ -120,7 +120,9 @@ def elements_in_a_mirror(deck: Deck, motion: Deck, rigid: bool, lean: float, wit
     ok(one, other)
     if one.results.peak_displacement_m < 2e-3:
         reject()  # what is left of it is rounding
-    compare_named("mirrored", one, other, within, ("residual", "astray", "step", "growth", "spring", "loss", "elastic"))
+    stuck = one.results.peak_slip_m < 0.01 * one.results.peak_displacement_m  # strain of joints that do not slide, and what is left of it
+    skip = ("residual", "astray", "step", "growth", "spring", "loss", "elastic", *(["slip"] if stuck else []))
+    compare_named("mirrored", one, other, within, skip)
     for name, rotation in one.results.peak_rotation_rad.items():
         near(f"rotation of {name}", rotation, -other.results.peak_rotation_rad[name], within, 1e-3)
 

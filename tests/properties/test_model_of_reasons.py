@@ -6,16 +6,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from extrados.analyses.assess import facts as stating
-from extrados.analyses.assess import reasons_of_buildings, reasons_of_motion, reasons_of_statics
+from extrados.analyses.assess import reasons_of_buildings, reasons_of_motion, reasons_of_statics, strategies
 from extrados.analyses.assess.asking import scaled_margin
 from extrados.analyses.assess.facts import Facts
 from extrados.decks.reader import make_deck
 from extrados.results.assess import StrategyVerdict
 from extrados.results.codes import LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
+from extrados.results.frame import FramePush, FramePushover
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Array, Result
 from extrados.results.rocking import Assessment, PrimaryImpulse, Rocking, RuleOutcome
+from extrados.results.shell import Flanges, PushCurve, Pushover
 from extrados.results.statistics import OverLevels
 
 ENDS = st.sampled_from(["no-hinging", "recovery", "collapse"])
@@ -424,3 +426,68 @@ def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(rows:
     ends = [(level, down and not slides) for level, down, slides in rows if down or slides]
     below = [level for level, _, _ in rows if not ends or level < ends[0][0]]
     assert (low, high) == (max(below, default=None), ends[0][0] if ends and ends[0][1] else None)
+
+
+#: Base shear [kN] of a push of the frame, its direction [deg], pattern and eccentricity
+PUSHED = st.tuples(
+    st.integers(20, 60), st.sampled_from([0.0, 90.0]), st.sampled_from(["uniform", "uniform", "modal"]), st.sampled_from([0.0, 0.0, 0.05])
+)
+#: Greatest load [kN] of a push of the shells in one sense, None without one, and whether it has passed its peak
+SENSES = st.lists(st.tuples(st.none() | st.integers(20, 60), st.booleans()), min_size=1, max_size=2)
+
+
+@QUICK
+@given(
+    st.tuples(rows(), rows(), rows()),
+    st.lists(PUSHED, min_size=1, max_size=6),
+    st.dictionaries(st.sampled_from(["push-x", "push-y"]), st.tuples(SENSES, st.none() | st.sampled_from([0.1, 0.4]))),
+    st.booleans(),
+)
+def test_base_shears_of_frame_and_shells_are_compared(drawn: tuple, runs: list, shells: dict, framed: bool) -> None:
+    """Along each axis the least base shear of uniform pushes of the frame without eccentricity, and that of both senses of the shells."""
+    names = ["frame", "push-x", "push-y"]
+    made = [
+        r.model_copy(update={"strategy": n, "label": (s := strategies.of(n)).label, "axis": s.axis})
+        for r, n in zip(drawn, names, strict=True)
+    ]
+    results: dict[str, Result] = {}
+    if framed:
+        pushes = [
+            FramePush.model_construct(direction_deg=way, pattern=pattern, eccentricity=off, peak_base_shear_N=1e3 * load)
+            for load, way, pattern, off in runs
+        ]
+        results["frame"] = Result("frame-pushover", results=FramePushover.model_construct(runs=pushes))
+    for name, (senses, share) in shells.items():
+        first, *second = (
+            {"greatest_load_N": None if load is None else 1e3 * load, "peak_load_N": 1e3 * (load or 0.0) if passed else None}
+            for load, passed in senses
+        )
+        flanges = None if share is None else Flanges.model_construct(share=share)
+        minus = PushCurve.model_construct(**second[0]) if second else None
+        results[name] = Result("pushover", results=Pushover.model_construct(**first, minus=minus, flanges=flanges, walls=["south"]))
+    facts = Facts(PLAN.building, CONTEXT.motion, CONTEXT.motion.peak / 9.80665, {r.strategy: r for r in made}, results, 1.2)
+    pairs = facts.pairs()
+    numbers, explained, without_peak = {}, [], []
+    for axis, way in (("x", 0.0), ("y", 90.0)):
+        senses, share = shells.get(f"push-{axis}", ([], None))
+        of_frame = [load for load, w, pattern, off in runs if framed and (w, pattern, off) == (way, "uniform", 0.0)]
+        of_shells = [load for load, _ in senses if load is not None]
+        if not of_frame or not of_shells:
+            continue
+        frame, shell = min(of_frame), min(of_shells)
+        if max(frame, shell) > 1.15 * min(frame, shell):
+            numbers |= {f"frame_{axis}_N": 1e3 * frame, f"shells_{axis}_N": 1e3 * shell}
+            numbers |= {} if share is None else {f"across_share_{axis}": share}
+            explained.append({"frame", f"push-{axis}"})
+            without_peak.append(not all(passed for _, passed in senses))
+    found = reasons_of_buildings.frame_and_shells(facts, pairs)
+    assert (found is not None) == bool(numbers)
+    if found is None:
+        return
+    assert found.numbers == numbers and [set(p) for p in found.explains] == explained
+    assert found.text.count("without having passed their peak") == sum(without_peak)
+    assert all(tuple(p) in pairs or tuple(p) == tuple(sorted(p)) for p in found.explains)
+    for axis in ("x", "y"):
+        if f"frame_{axis}_N" in numbers:
+            one, other = numbers[f"frame_{axis}_N"], numbers[f"shells_{axis}_N"]
+            assert f"Along {axis} the frame carries {one / 1e3:.3g} kN, and the shells carry {other / 1e3:.3g} kN" in found.text

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from asking import Answer, Deck, ask, at_most, must, near, same
-from buildings import changed, decks, number
+from buildings import changed, decks, drawn, number
 from definitions_codes import code_spectrum
 from definitions_keys import EFFECTS
 from fields import dimension, leaning, numbers, questions
@@ -239,7 +239,7 @@ def moved_model(text: str, shift: list[float], turn: int, skew: float, noise: fl
 )
 def models_anywhere(deck: Deck, shift: tuple, turn: int, skew: float, within: float) -> None:
     """A model of COMPAS at any place, across x or y, is the same section; a block that is no prism is refused by its name."""
-    one = ask(deck, "tilt")
+    one = ask(drawn(deck), "tilt")  # an export has chords in place of arcs
     text = extrados.export({**deck, "analysis": [{"kind": "tilt"}]}, "compas")
     with tempfile.TemporaryDirectory() as name:
         there = {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}}
@@ -433,6 +433,24 @@ def places_of_a_train(deck: Deck, count: int, both: bool, apart: float, within: 
     near("one place", np.asarray(alone.result.arrays["capacity"].data)[0], a["capacity"][k], within)
     least = int(np.nanargmin(a["capacity"]))
     near("worst place", a["capacity"][least], np.asarray(a["capacity"])[np.abs(a["place"] - answer.results.worst_place_m).argmin()], within)
+
+
+@relation(
+    "moving-load", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(0.2, 3.0), number(2.0, 9.0), st.booleans()), 1e-5
+)
+def even_loads_without_axles(deck: Deck, share: float, far: float, adverse: bool, within: float) -> None:
+    """An even load has its load on the span at every place, and a second one far behind crosses as it does."""
+    tilted = ask(deck, "tilt")
+    ok(tilted)
+    x = np.asarray(tilted.result.arrays["outline"].data)[:, 0]
+    stretch, behind = share * float(np.ptp(x)), (share + far) * float(np.ptp(x))
+    one, other = ({"load": 2e4, "start": start, "stop": start + stretch} for start in (0.0, behind))
+    alone, both = (ask(deck, "moving-load", count=5, axles=[], adverse=adverse, uniform=loads) for loads in ([one], [one, other]))
+    ok(alone, both)
+    place = np.asarray(alone.result.arrays["place"].data)
+    must(bool(((place > x.min()) & (place - stretch < x.max())).all()), f"a place without load: {place}")
+    near("factor", alone.results.adequacy_factor, both.results.adequacy_factor, within)
+    at_most("factor", alone.results.adequacy_factor, 1e6, within)
 
 
 @relation("failure-domain", st.tuples(number(1.0, 6.0), st.sampled_from(["step", "sine"])), 2e-3, share=0.3)

@@ -405,9 +405,11 @@ def test_trains_of_railways() -> None:
     train = train_of(options(train="LM71", alpha=1.21), 5.0)
     assert np.diff(train.axles) == pytest.approx([1.6] * 3) and train.forces == pytest.approx([1.21 * 250e3] * 4)
     assert train.even.tolist() == [[-FOR_EVER, -0.8, 1.21 * 80e3], [5.6, FOR_EVER, 1.21 * 80e3]]
+    assert train.marks == pytest.approx([0.0, 1.6, 3.2, 4.8, 5.6])
     train = train_of(options(train="SW/2"), 5.0)
     assert not len(train.axles) and train.even.tolist() == [[0.0, 25.0, 150e3], [32.0, 57.0, 150e3]]
-    assert train.length == 57.0
+    assert train.marks.tolist() == [0.0, 25.0, 32.0, 57.0]
+    assert [train.within(0.0, 6.0, place) for place in (0.0, 3.0, 28.5, 32.5)] == [0.0, 150e3 * 3.0, 150e3 * 2.5, 150e3 * 0.5]
 
 
 def test_a_train_of_the_deck_is_the_one_of_the_code() -> None:
@@ -475,6 +477,24 @@ def test_even_loads_alone_stand_where_they_are_adverse() -> None:
 
     half = factor(adverse=False, uniform=[{"load": 2e4, "start": 0.0, "stop": 10.0}])
     assert factor(uniform=[{"load": 2e4}]) <= half * (1.0 + 1e-9)
+
+
+def test_even_loads_alone_cross_a_bridge() -> None:
+    """Without axles the places depend on the span, not on the train, and each has a load on it: 12.9, as beside an axle of 1 N."""
+    fill = {"cover": 0.5, "density": 1900, "friction_angle": 32, "passive": 0.5}
+    keys = {"depth": 4.0, "spans": [{"span": 6.0, "rise": 1.2, "thickness": 0.45}], "fill": fill, "material": {"density": 2300}}
+    keys["joints"] = {"friction": 0.6}
+    short, far = ({"load": "100 kN/m", "start": start, "stop": start + 3.0} for start in (0.0, 40.0))
+    alone = run(moving(axles=[], uniform=[{"load": "100 kN/m"}]), **keys)
+    beside = run(moving([1.0], axle_loads=["1 N"], uniform=[{"load": "100 kN/m"}]), **keys)
+    assert alone["adequacy_factor"] == pytest.approx(12.91, abs=0.01) == beside["adequacy_factor"]
+    assert len(alone.arrays["place"].data) == 1 and "with uniform loads on x =" in alone.answer and "axle" not in alone.answer
+    one, two = (run(moving(axles=[], uniform=even, adverse=False), **keys) for even in ([short], [short, far]))
+    assert two["adequacy_factor"] == pytest.approx(one["adequacy_factor"], rel=1e-9) and one["adequacy_factor"] < 100.0
+    assert len(two.arrays["place"].data) == 2 * len(one.arrays["place"].data) == 18
+    assert f"At {two['places_without_limit']} of 18 positions" in two.answer
+    refused = run(moving([-10.0], axles=[], uniform=[short]), **keys)
+    assert refused.status == "refused" and "do not act on the bridge" in refused.reason
 
 
 def test_partial_factors() -> None:
@@ -603,7 +623,7 @@ def test_a_bare_ring_is_no_model_of_a_bridge(train: str) -> None:
     found = ring(train=train)
     assert found.verdict.ratio > 1.0 and found.verdict.outcome == "open"
     (violated,) = found.verdict.violated
-    assert f"{train} acts on the blocks of the arch directly" in violated and violated in found.verdict.statement
+    assert f"{train} acts directly on the blocks" in violated and violated in found.verdict.statement
     assert any(violated in w and "Add fill to the structure" in w for w in found.warnings)
 
 
@@ -620,7 +640,7 @@ def test_any_load_on_a_bare_ring_leaves_the_verdict_open(load: dict[str, Any]) -
     found = ring(**load)
     assert found.verdict.ratio > 1.0 and found.verdict.outcome == "open"
     (violated,) = found.verdict.violated
-    assert "on the blocks of the arch directly: fill does not spread the load" in violated
+    assert "directly on the blocks: fill does not spread the load" in violated
     assert sum(violated in w for w in found.warnings) == 1
 
 

@@ -268,7 +268,11 @@ WRONG = {
     ),
     "ties in space": ("each point of a tie requires [x, y, z]", ARCH + TIE.replace("3.0]", "3.0] # here") + TILT + "direction = 10\n"),
     "loads in space": ("acts at a point", ARCH + TILT + "direction = 10\n[[analysis.load]] # here\nx = 0.0\nforce = 1e3\n"),
-    "crushing in space": ("tilt of solids", ARCH + '[material]\ncompressive_strength = "5 MPa" # here\n' + TILT + "direction = 10\n"),
+    "crushing in space": (
+        "thrust of solids",
+        ARCH + '[material]\ncompressive_strength = "5 MPa" # here\n[[analysis]]\nkind = "thrust"\ndirection = 10\n',
+    ),
+    "mortar of a section": ("only for blocks in space", ARCH + "[joints]\ncohesion = 1e4\n" + TILT + 'mortar = "ductile" # here\n'),
     "floors of an arch": ("has no floors", ARCH + PUSH + '[[analysis.variants]]\nname = "stiff"\nfloors = 2.0 # here\n'),
     "mortar of rigid contacts": ("have no mortar", ARCH + PULSE + "[joints]\ncohesion = 1e5 # here\n" + DEM + 'solver = "nonsmooth"\n'),
     "springs under rigid contacts": (

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 
 import extrados
 from extrados.analyses.dem.impact_rules import ContactValues
@@ -64,6 +65,24 @@ def test_energies_of_a_run_in_space_are_drawn(tmp_path) -> None:
     deck.write_text(f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.02\n')
     drawn = extrados.run(deck).plot("dem")
     assert "The error of the balance is" in drawn.captions["dem-energy"]
+
+
+def test_one_contact_and_its_damper_are_drawn(tmp_path) -> None:
+    """The map of the contacts has a row; the damper is a line from the block, which carries its end, to its place on the ground."""
+    deck = tmp_path / "deck.toml"
+    block = '[structure]\nkind = "block"\nwidth = 1.0\nheight = 4.0\ndepth = 0.8\n'
+    damper = '[[dampers]]\nname = "d"\nstart = [0.5, 0.4, 3.5]\nground = [2.0, 0.4, 3.5]\ndamping = "1 kN*s/m"\n'
+    deck.write_text(f'{block}{PULSE}{damper}[[analysis]]\nkind = "dem"\nsolver = "nonsmooth"\ndirection = 0.0\nend_time = 0.3\n')
+    run = extrados.run(deck)
+    assert "Forces of ties and dampers (tension positive): d reaches" in run.results[0].answer
+    drawn, pose = run.plot("dem"), run.results[0].arrays["pose"].data
+    assert drawn["dem-contacts"].axes[0].get_ylim() == (-0.5, 0.5)
+    assert len(drawn["dem-forces"].axes) == 1  # nothing slides
+    lines = [one for ax in drawn["dem-snapshots"].axes for one in ax.collections if isinstance(one, LineCollection)]
+    first, last = (np.array(lines[k].get_segments()) for k in (0, 5))
+    assert first.shape == (1, 2, 2) and last[0, 1] == pytest.approx(first[0, 1])
+    moved = pose[-1, 0, 0] - pose[0, 0, 0] + 1.5 * (pose[-1, 0, 4] - pose[0, 0, 4])  # of the end, 1.5 m above the middle, along x
+    assert abs(moved) > 1e-3 and np.linalg.norm(last[0, 0] - first[0, 0]) == pytest.approx(abs(moved) * 0.877, rel=0.15)
 
 
 def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:

@@ -343,7 +343,7 @@ def test_a_viscous_damper_takes_no_part_in_a_tilt_test(solver: str, damping: str
     assert found["collapse_acceleration_g"] == pytest.approx(0.25, rel=5e-3)
     assert found["collapse_acceleration_opposite_g"] == pytest.approx(0.25, rel=5e-3)
     assert any("dem does not use this key: a viscous damper has no force in statics" in text for text in found.warnings)
-    assert found["ties"] is None
+    assert "ties" not in found.results
 
 
 def test_a_viscous_damper_has_no_force_in_a_quasi_static_run() -> None:
@@ -352,6 +352,16 @@ def test_a_viscous_damper_has_no_force_in_a_quasi_static_run() -> None:
     found = extrados.run(deck).results[0]
     assert [text for text in found.warnings if "dem does not use this key: a viscous damper has no force in statics" in text]
     assert [row.name for row in found["ties"]] == ["damper 2"]
+
+
+def test_a_viscous_damper_acts_in_a_domain() -> None:
+    asked = {"kind": "dem-domain", "amplitudes": ["0.7 g"], "durations": [0.2, 0.8], "accuracy": 0.1}
+    free, held = ({"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "dampers": d, "analysis": asked} for d in ([], [VISCOUS]))
+    found = [extrados.run(deck).results[0] for deck in (free, held)]
+    assert [run.status for run in found] == ["ok", "ok"]
+    assert not any("damper" in text for text in found[1].warnings)
+    shortest = [float(run["shortest_durations_s"][0]) for run in found]
+    assert shortest[1] > 1.5 * shortest[0]
 
 
 def test_dampers_in_space_need_three_coordinates() -> None:

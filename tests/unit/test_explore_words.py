@@ -3,8 +3,13 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from extrados import kinds
+from extrados.decks.explain import starter
+from extrados.explore.session import Session
 
 STATIC = Path(__file__).resolve().parents[2] / "python" / "extrados" / "explore" / "static"
 CATALOGUES = sorted((STATIC / "words").glob("*.json"))
@@ -33,13 +38,36 @@ def _end(source: str, at: int) -> int:
     return at
 
 
+def of_the_program() -> list[str]:
+    """Texts of the program that the page translates, in the order in which they are tried."""
+    listed = (STATIC / "said.js").read_text("utf-8").partition("const TEXTS = [")[2].partition("\n];")[0]
+    return [json.loads(line.strip().rstrip(",")) for line in listed.strip().splitlines()]
+
+
 def marked() -> set[str]:
-    return {text for path in STATIC.glob("*.js") for text in texts(path.read_text("utf-8"))}
+    return {text for path in STATIC.glob("*.js") for text in texts(path.read_text("utf-8"))} | set(of_the_program())
 
 
 def test_texts_are_found_with_their_values() -> None:
     assert texts('a = tr`At ${f(x, { y: `${z}` })} m ${w}.`; tr("`b`"); attr`no`') == ["`b`", "At {0} m {1}."]
     assert {path.stem for path in CATALOGUES} == {"it", "es", "fr", "de"} and len(marked()) > 350
+    assert len(of_the_program()) == len(set(of_the_program())) > 100
+
+
+def test_labels_of_handles_and_words_of_results_are_on_the_list(tmp_path: Path) -> None:
+    """Of every starter and of a section of three aisles: labels, measures, places of hinges, outcomes of the map."""
+    session, seen = Session(tmp_path), set()
+    list(session.answer({"do": "hello"}))
+    decks: list[dict[str, Any]] = [{"text": starter(kind), "name": "deck.toml"} for kind in kinds.STRUCTURES]
+    for source in (*decks, {"preset": "vault/vezelay-like"}, {"preset": "bridge/viaduct"}):
+        for reply in session.answer({"do": "open", **source}):
+            seen |= {handle["label"] for handle in reply.words.get("handles", [])}
+            scene = reply.words.get("scene", {})
+            seen |= {row["where"] for way in ("plus", "minus") for row in scene.get(f"{way}_hinges", [])}
+            seen |= {name.removesuffix("_m").replace("_", " ") for name in scene.get("measures", {})}
+    session.close()
+    patterns = [re.compile("(.+?)".join(map(re.escape, re.split(r"{\d}", text)))) for text in of_the_program()]
+    assert len(seen) > 60 and sorted(text for text in seen if not any(p.fullmatch(text) for p in patterns)) == []
 
 
 @pytest.mark.parametrize("path", CATALOGUES, ids=lambda path: path.stem)

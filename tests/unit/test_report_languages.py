@@ -13,7 +13,7 @@ from extrados.decks.words import LANGUAGES
 from extrados.model.properties import Joints, Material, Supports
 from extrados.model.structures.bridge import Abutment, Backing, Fill, Pier, Span, Spandrels, Surfacing
 from extrados.results.validity import validity_of
-from extrados.results.verdict import CHECKED
+from extrados.results.verdict import CHECKED, SHARES
 from extrados.schema.code import Code
 from extrados.show import language
 from extrados.show.building import DIMENSIONS, PARTS
@@ -50,6 +50,7 @@ def fixed() -> Iterator[str]:
         *(label for label, _ in GROUPS),
     )
     yield from (*CHECKED.values(), *(text for text in COLUMNS if "*" not in text))
+    yield from SHARES
     yield from (f"The capacity is {one} bound." for one in ("an upper", "a lower"))
     for table in (Material, Joints, Supports, Code, Span, Pier, Abutment, Backing, Fill, Surfacing, Spandrels):
         yield from (key.replace("_", " ") for key in table.model_fields)

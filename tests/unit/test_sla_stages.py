@@ -181,6 +181,14 @@ def test_a_stage_that_a_limit_ends_before_its_target_ends_the_run(limit: dict, w
     assert any(f"before its target ({why})" in text and "not run: push" in text for text in result.warnings)
 
 
+def test_the_event_of_the_greatest_load_is_one_of_those_calculated() -> None:
+    """The events that a budget leaves are no limit of the deck."""
+    push = {"constant": [{"kind": "spread", "edge": "top", "fy": -1e4}], "reference": [{"kind": "spread", "edge": "top", "fx": 1e3}]}
+    structure = {"kind": "panel", "width": 1.0, "height": 1.0, "thickness": 0.2}
+    result = run_deck({**wall([PRESS]), "structure": structure, "analysis": {"kind": "sla", "mesh": {"size": 0.25}, "events": 12, **push}})
+    assert f"(event {result.results['greatest_load_event']} of the 12 calculated)" in result.answer
+
+
 def test_the_budget_ends_constant_loads_too() -> None:
     """Constant loads that crack the wall take more events than the budget has time for: the answer is open, and says why."""
     loads = {"constant": [{"kind": "spread", "edge": "top", "fx": 6.5e3}], "constant_damage": True}

@@ -136,6 +136,11 @@ def test_dowels_carry_their_shear() -> None:
         solids = building.solids()
         found[dowels] = pushed(SolidLimit(solids, building.friction(solids))).gamma
         weight = solids.mass[1] * GRAVITY
+        if dowels == 500.0:  # the pyramids of dowels that give way are bounded by their strength
+            limit = SolidLimit(solids, building.friction(solids))
+            low, high = limit.pyramids(0.0, 24)
+            most = 0.2 + 500.0 / weight
+            assert low == pytest.approx(most, abs=1e-7) and high == pytest.approx(most / np.cos(np.pi / 24), abs=1e-7)
     assert found[None] == pytest.approx(0.2, abs=1e-7)
     assert found[500.0] == pytest.approx(0.2 + 500.0 / weight, abs=1e-7)
     assert found["unbroken"] == pytest.approx(1.0, abs=1e-7)  # over the corner of its base
@@ -243,8 +248,6 @@ def test_tilt_reports_refuses_and_draws(tmp_path) -> None:
         assert (tmp_path / "out" / name).stat().st_size > 100
     dome = {"kind": "dome", "radius": 5, "thickness": 0.5, "rings": 5, "lunes": 8}
     assert "cannot include fracture" in run(dome, fracture=True).reason
-    strong = make_deck({"structure": dome, "material": {"compressive_strength": 1e6}, "analysis": {"kind": "tilt"}})
-    assert "compressive_strength" in run_analyses(Context(strong, threads=1))[0].reason
 
 
 @pytest.mark.parametrize(("rings", "lunes"), [(8, 8), (12, 12)])

@@ -154,6 +154,8 @@ def test_the_thrust_on_the_ground_of_one_block_is_its_push() -> None:
     ground = next(s for s in found.sections if s.name == "ground")
     weight = 1.0 * 3.0 * 0.5 * 2000.0 * GRAVITY
     assert max(abs(ground.least_N), abs(ground.greatest_N)) == pytest.approx(0.1 * weight, rel=1e-6)
+    assert "(30 deg in plan) from 2.942 kN to 2.942 kN" in run(block, kind="thrust", direction=30.0, gamma=0.1).answer
+    assert "from 0 kN to 0 kN, 0 kN in the most central state" in run(block, kind="thrust", direction=30.0).answer  # no rounding
     assert run(PRISM, kind="thrust", gamma=0.1).status == "ok"  # a round column, along +x by default
     refused = run(block, kind="thrust", direction=30.0, section=[{"name": "a", "joints": ["ground"]}])
     assert refused.status == "refused" and "give toward" in refused.reason
@@ -184,6 +186,7 @@ def test_a_sweep_of_an_extruded_arch_is_that_of_its_section() -> None:
     plane, space = run(ARCH, **keys).results, run(ARCH, direction=0.0, **keys).results
     assert space.collapse_accelerations_g == pytest.approx(plane.collapse_accelerations_g, abs=1e-7)
     assert [g.status for g in space.gaps] == [g.status for g in plane.gaps]
+    assert "locate = true locates them" in run(ARCH, direction=0.0, **keys).answer
 
 
 def test_a_sweep_over_the_direction_of_a_prism(tmp_path: Path) -> None:
@@ -267,6 +270,7 @@ def test_imperfections_of_a_bonded_corner(tmp_path: Path) -> None:
     assert r.low_collapse_acceleration_g < r.given_collapse_acceleration_g < r.high_collapse_acceleration_g
     assert r.high_collapse_acceleration_g - r.low_collapse_acceleration_g < 0.03 * r.given_collapse_acceleration_g
     assert r.upper_bounds == 20 and "upper bound" in found.answer
+    assert list(found.tables["imperfections"].columns) == ["survey", "along", "opposite"]
 
 
 def test_a_survey_of_files_of_solids(tmp_path: Path) -> None:
@@ -292,6 +296,7 @@ def test_thrust_of_solids_is_drawn(tmp_path: Path) -> None:
     made = compute(Context(deck, threads=1))
     made.write(tmp_path / "out")
     assert {p.name for p in (tmp_path / "out" / "figures").glob("*.png")} == {"thrust-forces.png", "thrust-sections.png"}
+    assert f"outward, sum over {made.results[0].results.sections[-1].contacts} contacts)" in made.results[0].answer
     words, _ = shown(Run.read(tmp_path / "out"), "thrust")
     assert words["body"]["sort"] == "space"
     assert [row[0] for row in words["tables"][0]["rows"]] == ["x = 0 m", "y = 0 m", "ground"]

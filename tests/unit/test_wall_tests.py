@@ -2,6 +2,7 @@
 
 import math
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,10 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
 import wall_tests as tool
+
+from extrados.analyses.context import Context
+from extrados.decks.reader import make_deck
+from extrados.views.mesh.options import MeshOptions
 
 HEAD = (
     "# a source\nn,reference,name,units,height_m,length_m,thickness_m,unit_length_mm,unit_height_mm,masonry_compressive_MPa,"
@@ -102,6 +107,37 @@ def test_a_wall_of_many_units_has_units_twice_as_large(tmp_path, monkeypatch) ->
         tool.by_units(walls(tmp_path, row)[0])
     sizes = [(deck["structure"]["unit_length"], deck["structure"]["unit_height"]) for deck in decks]
     assert sizes == [pytest.approx((0.5, 0.125)), pytest.approx((0.25, 0.0625))]
+
+
+@pytest.mark.parametrize(
+    ("height", "unit", "unfilled"), [(2.5, 248, True), (2.0, 250, True), (1.6, 190, False), (2.0, 55, False), (2.5, 238, False)]
+)
+def test_head_joints_of_blocks_in_thin_beds_are_unfilled(tmp_path, height: float, unit: float, unfilled: bool) -> None:
+    """Courses of 250 mm of units of 248 mm; of 200 mm of 190 mm; of 250 mm of 238 mm; bricks."""
+    (wall,) = walls(tmp_path, f"1,x,A,block,{height},1,0.2,250,{unit},5,,,0.3,0.6,0.5,0.6,F,40,40")
+    types = tool.units_deck(wall)["joints"].get("types")
+    assert types == ([{"joints": ["heads"], **tool.UNFILLED}] if unfilled else None)
+
+
+def test_walls_of_units_have_a_bed_at_the_foot(tmp_path) -> None:
+    """Held at both sides, the lowest bed could not open: a warning says so."""
+    (wall,) = walls(tmp_path, "1,x,A,brick,1,1,0.2,500,500,5,,,0.3,0.6,0.5,0.6,F,40,40")
+    deck = tool.units_deck(wall)
+    held = deck | {"supports": {"held": [{"edge": "bottom"}]}}
+    meshes = [Context(make_deck(one)).building.mesh(MeshOptions(**deck["analysis"][0]["mesh"])) for one in (deck, held)]
+    assert [any("both sides of joints at the ground" in text for text in mesh.warnings) for mesh in meshes] == [False, True]
+    assert len(meshes[0].ground) and meshes[1].ground is None
+
+
+def test_walls_of_one_deck_are_run_once(tmp_path, monkeypatch) -> None:
+    """Their names and measured peaks differ, and each has the prediction of the one run."""
+    row = "brick,2,1,0.25,250,62.5,5,,,0.3,0.6,0.5,0.6"
+    three = walls(tmp_path, f"1,x,A,{row},F,40,40", f"2,x,B,{row},S,50,50", f"3,x,C,{row.replace('0.5,0.6', '0.5,0.7')},S,50,50")
+    ran: list[str] = []
+    monkeypatch.setitem(tool.METHODS, "units", lambda wall: ran.append(wall.name) or {"units": tool.Predicted(wall.pressure)})
+    monkeypatch.setattr(tool, "ProcessPoolExecutor", ThreadPoolExecutor)
+    assert [by["units"].strength for by in tool.predict_all(three, ["units"], 1)] == [0.6e6, 0.6e6, 0.7e6]
+    assert len(ran) == 2
 
 
 def test_a_residual_strength_is_not_that_of_a_wall(tmp_path, monkeypatch) -> None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from extrados.model.dimensions import with_article
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.chains import arch_of
 
@@ -32,7 +33,7 @@ def _along(assembly: Assembly, name: str, joints: list[int], k: int) -> str:
     first, last = assembly.middle[[joints[0], joints[-1]], 0].tolist()
     span = last - first
     share = (float(assembly.middle[joints[k], 0]) - first) / span
-    name = name if name[-1].isdigit() else f"the {name}"
+    name = with_article(name)
     if k == 0 or k == len(joints) - 1:
         return f"{'left' if (k == 0) == (span > 0.0) else 'right'} springing of {name}"
     if abs(share - 0.5) <= CROWN:

@@ -41,8 +41,7 @@ class SolidStates:
         self.total = float(limit.weight.sum())
         assembly = limit.assembly
         self._frames = np.stack([assembly.normal, *assembly.tangents], axis=1)
-        self._share = np.concatenate([np.empty(0), *(_shares(polygon) for polygon in assembly.polygon)])
-        self.middle = self._by_contact(self._share[:, None] * assembly.corner)
+        self.middle = assembly.middle
 
     def extreme(self, toward: np.ndarray) -> SolidState | None:
         """The state in which sum(force * toward) over all contacts is least; toward (nj, 3) gives the forces on their first blocks
@@ -108,7 +107,7 @@ class SolidStates:
         narrow = SolidLimit(replace(one, polygon=polygon), self.limit.friction, self.limit.strands, self.limit.resting)
         joint = one.corner_joint
         press = np.zeros(self.limit.matrix.shape[1])
-        at_corner = np.einsum("vkx,vx->vk", self._frames[joint], self._share[:, None] * pressure[joint])
+        at_corner = np.einsum("vkx,vx->vk", self._frames[joint], one.share[:, None] * pressure[joint])
         press[: 3 * len(joint)] = at_corner.ravel()
         found = narrow.most(self.load, self.limit.matrix @ press)
         if isinstance(found, Falls):
@@ -158,15 +157,3 @@ class SolidStates:
         """Sums over the corners of each contact of values (nv, 3)."""
         joint, count = self.limit.assembly.corner_joint, len(self.limit.assembly.a)
         return np.stack([np.bincount(joint, values[:, k], count) for k in range(3)], axis=1)
-
-
-def _shares(polygon: np.ndarray) -> np.ndarray:
-    """Positive weights (k) of the corners of a convex polygon that have its centre of area as their mean."""
-    count = len(polygon)
-    mean = polygon.mean(axis=0)
-    arm = polygon - mean
-    area = np.linalg.norm(np.cross(arm, np.roll(arm, -1, axis=0)), axis=1)
-    area /= area.sum()
-    # each triangle of the mean and a side shares its area equally among its corners; that of the mean goes to all
-    shares: np.ndarray = (area + np.roll(area, 1)) / 3.0 + 1.0 / (3.0 * count)
-    return shares

@@ -40,8 +40,8 @@ POWERLESS = 1e-7  # of the power of all weights falling: less is rounding
 class Programme:
     """What one push of a structure gave.
 
-    gamma: the multiplier borne [g]; upper: the bound of the motion's virtual work [g]. force (nv, 3): compression and both
-    shears at the corners, key_force (nk, 2): shears of the dowels [N]; tension (nt): of the strands [N]; motion (nb, 6): velocity of the centroids and spin,
+    gamma: the multiplier borne [g]; upper: the bound of the motion's virtual work [g]. force (nv, 3): compression (tension of mortar
+    negative) and both shears at the corners, key_force (nk, 2): shears of the dowels [N]; tension (nt): of the strands [N]; motion (nb, 6): velocity of the centroids and spin,
     with a power of the push of one. equilibrium: greatest force or moment (over the size) left over at a block, over the
     total weight; cone: greatest excess of shear over friction or of tension, over the same; overlap: greatest rate of
     overlap (or of sliding without the dilatancy that goes with it) over the fastest rate of a contact.
@@ -104,7 +104,7 @@ def solve_conic(matrix: sparse.csr_array, cost: np.ndarray, right: np.ndarray, c
 class SolidLimit:
     """The programmes of solid blocks with a coefficient of friction: one for all contacts, one each, or None, which
     excludes sliding. strands: ties, chains and hoops. resting (nb, 6): loads that do not sway, forces [N] and moments about
-    the centroids [N m]."""
+    the centroids [N m]. tension (nj): of the mortar of the contacts [Pa]; compressions count from there (limit.mortar)."""
 
     def __init__(
         self,
@@ -112,10 +112,12 @@ class SolidLimit:
         friction: float | np.ndarray | None,
         strands: Sequence[Strand] = (),
         resting: np.ndarray | None = None,
+        tension: np.ndarray | None = None,
     ):
         self.assembly = assembly
         self.friction = friction
         self.strands = tuple(strands)
+        self.tension = np.zeros(len(assembly.a)) if tension is None else tension
         self.resting = np.zeros((len(assembly.mass), 6)) if resting is None else resting
         joints = len(assembly.a)
         mu = np.full(joints, np.inf if friction is None else friction, dtype=float)
@@ -348,9 +350,17 @@ class SolidLimit:
 
     @property
     def at_rest(self) -> np.ndarray:
-        """Forces and moments (6 nb), over the scale, of the weights and the loads that do not sway."""
+        """Forces and moments (6 nb), over the scale, of the weights, the loads that do not sway and the tension of mortar."""
         unit = self.scale * np.array([1.0, 1.0, 1.0, *[self.assembly.size] * 3])
-        return self.loads(np.array([0.0, 0.0, -1.0])) + (self.resting / unit).ravel()
+        found: np.ndarray = self.loads(np.array([0.0, 0.0, -1.0])) + (self.resting / unit).ravel()
+        if self.tension.any():
+            found -= self.matrix[:, 0 : 3 * len(self.mu) : 3] @ (self._held() / self.scale)
+        return found
+
+    def _held(self) -> np.ndarray:
+        """Tension of the mortar at the corners (nv) [N], from which their compressions count."""
+        held: np.ndarray = (self.tension * self.assembly.area)[self.assembly.corner_joint] * self.assembly.share
+        return held
 
     def _pushed(self, dead: np.ndarray, live: np.ndarray, method: str) -> Programme | Falls:
         solution, lines = self._solved(dead, live, method)
@@ -363,20 +373,33 @@ class SolidLimit:
         power = float(live @ x)
         if not np.isfinite(x).all() or power <= 0.0:
             raise NoAnswer(f"the conic solver found no solution: {status}")
-        motion = x / power
         z = np.array(solution.z)
         gamma = -float(z[0])
-        forces, tension = self.forces_of(z, lines)
+        found = self._measured(dead, live, x / power, gamma, *self.forces_of(z, lines))
+        if max(found.equilibrium, found.cone, found.overlap) > LOOSE or found.gap > LOOSE * max(1.0, abs(gamma)):
+            raise NoAnswer(
+                f"the conic solver stopped without a solution ({status}): the unbalanced forces are {found.equilibrium:.1e} of "
+                f"the weight, and the bounds differ by {found.gap:.1e} g"
+            )
+        return found
+
+    def _measured(
+        self, dead: np.ndarray, live: np.ndarray, motion: np.ndarray, gamma: float, forces: np.ndarray, tension: np.ndarray
+    ) -> Programme:
+        """A solution with its bounds and what it violates: a motion with a power of the push of one, forces and tensions of strands
+        over the scale."""
         corners = len(self.mu)
         force, keys = forces[: 3 * corners].reshape(-1, 3), forces[3 * corners :].reshape(-1, 2)
         rest = self.matrix @ forces + self.pulls @ tension + gamma * live + dead
         overlap, spent = self._hindered(motion)
         # the scale is a stone's weight times the root of their number: over the weight of all it is one over that root
         part = 1.0 / np.sqrt(len(self.weight))
-        found = Programme(
+        stressed = force * self.scale
+        stressed[:, 0] -= self._held()
+        return Programme(
             gamma,
             float(-dead @ motion) + spent,
-            force * self.scale,
+            stressed,
             keys * self.scale,
             tension * self.scale,
             self._rates(motion),
@@ -384,12 +407,6 @@ class SolidLimit:
             self.excess(forces, tension) * part,
             overlap,
         )
-        if max(found.equilibrium, found.cone, found.overlap) > LOOSE or found.gap > LOOSE * max(1.0, abs(gamma)):
-            raise NoAnswer(
-                f"the conic solver stopped without a solution ({status}): the unbalanced forces are {found.equilibrium:.1e} of "
-                f"the weight, and the bounds differ by {found.gap:.1e} g"
-            )
-        return found
 
     def _solved(
         self, dead: np.ndarray, live: np.ndarray | None, method: str, sized: Sequence[int] = ()
@@ -505,16 +522,12 @@ class SolidLimit:
         at = rate[: 3 * corners].reshape(-1, 3)
         keyed = np.hypot(*rate[3 * corners :].reshape(-1, 2).T)
         slip = np.hypot(at[:, 1], at[:, 2])
-        with np.errstate(invalid="ignore"):
-            needed = np.where(np.isfinite(self.mu), self.mu * slip, 0.0)
-        stuck = np.where(np.isfinite(self.mu), 0.0, slip)
         fastest = max(float(np.abs(at).max(initial=0.0)), float(np.abs(motion).max()))
-        wrong = max(float((needed - at[:, 0]).max(initial=0.0)), float(stuck.max(initial=0.0)))
-        spent = 0.0
+        wrong, spent = self._denied(at, slip)
         if self.assembly.keys is not None:
             strong = ~np.isfinite(self.assembly.keys.strength)
             wrong = max(wrong, float(keyed[strong].max(initial=0.0)))
-            spent = float((self.assembly.keys.strength[~strong] / self.scale * keyed[~strong]).sum())
+            spent += float((self.assembly.keys.strength[~strong] / self.scale * keyed[~strong]).sum())
         strand, sense, most = self._limits
         if len(strand):
             longer = np.maximum(-sense * (self.pulls.T @ motion)[strand], 0.0)
@@ -522,6 +535,10 @@ class SolidLimit:
             wrong = max(wrong, float(longer[~yields].max(initial=0.0)))
             spent += float(most[yields] @ longer[yields])
         return wrong / fastest, spent
+
+    def _denied(self, at: np.ndarray, slip: np.ndarray) -> tuple[float, float]:
+        """Greatest rate (nv, 3) of a corner that its contact does not allow, and the power over the scale that contacts take of them."""
+        return denied(at, slip, self.mu), 0.0
 
     def forces_of(self, multipliers: np.ndarray, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Forces by the columns of the matrix and tensions of the strands, over the scale, of the multipliers of a programme."""
@@ -579,11 +596,14 @@ class SolidLimit:
         columns += [normal[:, rigid], first[:, rigid], second[:, rigid]]
         low += [np.zeros(len(rigid)), *[np.full(len(rigid), -np.inf)] * 2]
         high += [np.full(len(rigid), np.inf)] * 3
+        weak = np.empty(0)
+        first_weak = sum(part.shape[1] for part in columns)
         if self.assembly.keys is not None:
             strength = self.assembly.keys.strength / self.scale
             keyed = self.matrix[:, 3 * corners :]
-            for angle in angles if np.isfinite(strength).any() else []:
-                give = np.flatnonzero(np.isfinite(strength))
+            give = np.flatnonzero(np.isfinite(strength))
+            weak = wider * strength[give]
+            for angle in angles:
                 columns.append(np.cos(angle) * keyed[:, 2 * give] + np.sin(angle) * keyed[:, 2 * give + 1])
                 low.append(np.zeros(len(give)))
                 high.append(np.full(len(give), np.inf))
@@ -594,8 +614,26 @@ class SolidLimit:
         columns.append(self.pulls)
         for bounds, own in zip((low, high), self.tension_bounds, strict=True):
             bounds.append(own)
-        matrix = sparse.hstack([*columns, sparse.csc_array(live[:, None])]).tocsc()
-        return _most(matrix, -dead, np.concatenate([*low, [-np.inf]]), np.concatenate([*high, [np.inf]]))
+        matrix = sparse.hstack([*columns, sparse.csc_array(live[:, None])])
+        # the edges of the pyramid of a dowel that gives way add up to its strength at most
+        count = len(weak)
+        edges = sparse.csr_array(
+            (np.ones(sides * count), (np.tile(np.arange(count), sides), first_weak + np.arange(sides * count))),
+            shape=(count, matrix.shape[1]),
+        )
+        spare = sparse.vstack([sparse.csr_array((len(dead), count)), sparse.eye_array(count)])
+        matrix = sparse.hstack([spare, sparse.vstack([matrix, edges])]).tocsc()
+        low = [np.zeros(count), *low, np.array([-np.inf])]
+        high = [np.full(count, np.inf), *high, np.array([np.inf])]
+        return _most(matrix, np.append(-dead, weak), np.concatenate(low), np.concatenate(high))
+
+
+def denied(at: np.ndarray, slip: np.ndarray, mu: np.ndarray) -> float:
+    """Greatest rate of overlap, or of sliding without its dilatancy, of corners with rates (n, 3), slips and frictions (n)."""
+    with np.errstate(invalid="ignore"):
+        needed = np.where(np.isfinite(mu), mu * slip, 0.0)
+    stuck = np.where(np.isfinite(mu), 0.0, slip)
+    return max(float((needed - at[:, 0]).max(initial=0.0)), float(stuck.max(initial=0.0)))
 
 
 def _waited(*calls: Callable[[], Found], told: Callable[[], None] = lambda: None) -> list[Found]:

@@ -26,7 +26,7 @@ class Dimension:
 
 
 def dimensions(assembly: Assembly) -> list[Dimension]:
-    """Clear span, rise and thickness of every arch, feet of what stands beside them, and the height of the whole."""
+    """Clear span, rise and thickness of every arch, widths of piers and buttresses, height; of a bridge also its height to the road."""
     vertices = np.concatenate(assembly.outlines)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     found: list[Dimension] = []
@@ -36,7 +36,7 @@ def dimensions(assembly: Assembly) -> list[Dimension]:
             turned, whole = carried_on(assembly, joints)
             spans[name] = turned, arch_of(turned, whole)
     for name, (turned, arch) in spans.items():
-        found += _arch(turned, "" if len(spans) == 1 else f" of {_with_article(name)}", arch)
+        found += _arch(turned, "" if len(spans) == 1 else f" of {with_article(name)}", arch)
     arches = bool(found)
     for block in assembly.buttresses:
         found += [
@@ -50,13 +50,16 @@ def dimensions(assembly: Assembly) -> list[Dimension]:
         name = "width at the base" if right - left < 0.98 * (high[0] - low[0]) else "width"
         found.append(Dimension(name, (left, float(low[1])), (right, float(low[1])), "below"))
     springing = min((d.start[1] for d in found if d.aside == "along"), default=float(high[1]))
-    if float(low[1]) < springing - 0.02 * float(high[1] - low[1]):
-        x = float(low[0])
-        found.append(Dimension("height", (x, float(low[1])), (x, float(high[1])), "left"))
+    (x, foot), top, earth = low.tolist(), float(high[1]), assembly.earth
+    if foot < springing - 0.02 * (top - foot):
+        found.append(Dimension("height" if earth is None else "height of the masonry", (x, foot), (x, top), "left"))
+    if earth is not None:
+        found.append(Dimension("total height", (x, foot), (x, max(top, earth.road)), "left"))
     return found
 
 
-def _with_article(name: str) -> str:
+def with_article(name: str) -> str:
+    """A name in a sentence: chain 3, the arch."""
     return name if name[-1].isdigit() else f"the {name}"
 
 

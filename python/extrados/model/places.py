@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, model_validator
 
-from extrados.schema.quantities import parse
+from extrados.schema.quantities import Unit, parse
 from extrados.schema.table import Table, key
 
 
@@ -23,7 +23,7 @@ def _range(value: Any) -> Any:
     return out
 
 
-class _OneOrTwo:
+class _OneOrTwo(Unit):
     """The JSON Schema of a range: what a deck may hold, not what is made of it."""
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
@@ -31,7 +31,7 @@ class _OneOrTwo:
         return {"anyOf": [length, {"type": "array", "items": length, "minItems": 2, "maxItems": 2}], "unit": "m"}
 
 
-Range = Annotated[list[float], BeforeValidator(_range), _OneOrTwo()]
+Range = Annotated[list[float], BeforeValidator(_range), _OneOrTwo("m")]
 
 
 class Placed(Table):

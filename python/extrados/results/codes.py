@@ -193,10 +193,11 @@ class CodeChecks(Checked):
 
 
 class WallMechanism(ResultModel):
-    """A wall of a building on a plan above the foot of one of its storeys."""
+    """A wall of a building on a plan above the foot of one of its storeys, or its gable."""
 
     wall: str = fact("its name")
-    storey: int = fact("number, from 1, of the storey at whose foot the wall rotates")
+    gable: bool = fact("whether the part is the gable above the highest storey of the wall")
+    storey: int = fact("number, from 1, of the storey at whose foot the wall rotates; of a gable, one more than the highest")
     foot_m: float = fact("height of the foot of this storey above the ground", "m")
     multiplier: float = fact("alpha_0")
     activation_acceleration_g: float = fact("a_0*", "g")

@@ -24,6 +24,7 @@ class FrameModes(KindResults):
     weight_N: float = fact("weight of walls and floors", "N")
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
+    walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
 
     def judged(self, demand: Demand) -> Verdict:
         """Modes are neither a demand nor a capacity."""
@@ -72,6 +73,7 @@ class FramePush(ResultModel):
     pattern: str = fact("of the forces")
     eccentricity: float = fact("ratio of the accidental eccentricity to the length of the plan across the direction")
     stop: str = fact("why it ended")
+    lost_at: str = maybe("where the frame moves most at the end, if no equilibrium was found")
     control_displacement_m: list[float] = fact("mean displacement, in the sense of the load, of the masses on the control level", "m")
     base_shear_N: list[float] = fact("base shear along the sense", "N")
     peak_base_shear_N: float = fact("greatest base shear", "N")

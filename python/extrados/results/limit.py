@@ -83,6 +83,8 @@ class Fracture(ResultModel):
 
 #: What results say of a capacity in whose mechanism pressed joints slide
 DILATANT = "upper bound (dilatant friction)"
+#: And where mortar is not lost
+DUCTILE = "upper bound (ductile mortar)"
 
 
 #: g: bounds that differ less are equal
@@ -293,6 +295,13 @@ def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -
     return found.model_copy(update={"statement": f"{found.statement} Joints slide: {DILATANT}.{why}"})
 
 
+def judge_ductile(capacity: float, dry: float, demand: Demand) -> Verdict:
+    """An upper bound by mortar that lasts until collapse [g], beside the capacity of dry joints [g], against the peak of the motion."""
+    found = judge_acceleration(capacity, demand, "upper")
+    more = f"The joints keep cohesion and tension until collapse: {DUCTILE}. Without mortar the collapse acceleration is {dry:.3g} g."
+    return found.model_copy(update={"statement": f"{found.statement} {more}"})
+
+
 def judge_design(design: float, least: float | None, most: float, demand: Demand) -> Verdict:
     """The least of the load paths [g], between the least state found (None: none was sought) and the upper bound, against the
     peak of the motion."""
@@ -398,8 +407,9 @@ class Thrust(KindResults):
             return judge("The most central thrust line was not found.", None, None)
         if self.geometric_safety_factor is None:
             text = "a thrust line passes within 1 % of the joint length from the middles of all joints: no horizontal demand."
-            return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0)
-        return judge(f"At {self.gamma_g:g} g a thrust line exists within the central {100.0 * part:.3g} % of the joints.", part, 1.0)
+            return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0, "of the joint")
+        text = f"a thrust line exists within the central {100.0 * part:.3g} % of the joints."
+        return judge(f"At {self.gamma_g:g} g {text}", part, 1.0, "of the joint")
 
 
 #: Beside a verdict on a load whose partial factors are all 1
@@ -412,9 +422,13 @@ class MovingLoad(KindResults):
     chain: str | None = fact("arch that the load crosses; null if the load crosses the whole top")
     collapse_load_N: float = fact("least collapse load over all positions; for a train, the total load on the structure at collapse", "N")
     collapse_load_kN_per_m: float = fact("least collapse load per metre of depth", "kN/m")
-    worst_place_m: float = fact("x of the first axle at the governing position (least collapse load)", "m")
+    worst_place_m: float = fact(
+        "x of the first axle at the governing position (least collapse load); for a train without axles, x of the point from which "
+        "its uniform loads are measured",
+        "m",
+    )
     worst_place_over_span: float = fact(
-        "ratio of the distance between the first axle and the left springing, at the governing position, to the span"
+        "ratio of the distance between this point and the left springing, at the governing position, to the span"
     )
     worst_way: Literal["+x", "-x"] = fact("direction of travel of the train at the governing position")
     hinges: list[NamedHinge] = fact("hinges of the collapse mechanism at the governing position")
@@ -468,6 +482,7 @@ class MovingLoad(KindResults):
                 f"The adequacy factor is {self.adequacy_factor:.3g} on the {factored}train at the most dangerous position.{judged}",
                 1.0,
                 self.adequacy_factor,
+                "times the train",
                 bound=bound,
                 violated=violated,
             )

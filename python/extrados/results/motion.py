@@ -156,4 +156,4 @@ class ShakeTable(KindResults):
             return judge("The deck gives no motion that the table could play.")
         most = max(max(u.stroke, u.flow, u.force) for u in self.use_of_limits)
         text = "fits the table" if self.fits else "does not fit the table"
-        return judge(f"The motion {text}: it uses {most:.3g} of the governing limit.", most, 1.0, "", "not-applicable")
+        return judge(f"The motion {text}: it uses {most:.3g} of the governing limit.", most, 1.0, "of the limit", "not-applicable")

@@ -226,7 +226,7 @@ class Rocking(KindResults):
             "open": "The run ended before the structure came to rest",
         }[outcome]
         broken = [] if self.conditions is None else self.conditions.violated
-        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome, violated=[*broken, *self.violated])
+        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "of the critical rotation", outcome, violated=[*broken, *self.violated])
 
 
 class ModeCurve(ResultModel):

@@ -3,7 +3,7 @@
 from math import inf
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.limit import LoadPath, TieForce, judge_design, judge_dilatant
+from extrados.results.limit import LoadPath, TieForce, judge_design, judge_dilatant, judge_ductile
 from extrados.results.limit import Thrust as PlaneThrust
 from extrados.results.limit import Tilt as SectionTilt
 from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
@@ -137,6 +137,12 @@ class SolidTilt(KindResults):
     face_law_spread_g: float = maybe("greatest range of the last iterations of the face law (a fixed-point iteration)", "g")
     face_law_reason: str = maybe("reason why the face law gives no value")
     ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
+    crushing_contacts: int = maybe("contacts that crush in the mechanism; null without a compressive strength")
+    collapse_acceleration_dry_g: float = maybe(
+        'collapse acceleration along the direction without mortar, for mortar = "ductile"; 0 if the blocks then cannot stand', "g"
+    )
+    collapse_acceleration_dry_opposite_g: float = maybe("collapse acceleration in the opposite direction without mortar", "g")
+    least_acceleration_dry_g: float = maybe("least collapse acceleration without mortar in all directions that were searched", "g")
     block_sizes: list[BlockSize] = maybe("upper bounds for blocks of half the length in each direction, and for the other bond")
     pyramids: Pyramids = maybe("bounds of the collapse acceleration by another method and another solver")
 
@@ -144,6 +150,8 @@ class SolidTilt(KindResults):
         """The least capacity of all directions sought against the peak ground acceleration of the motion [g]; where contacts slide
         the least design value."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.least_acceleration_g)
+        if self.least_acceleration_dry_g is not None:
+            return judge_ductile(least, self.least_acceleration_dry_g, demand)
         if not self.dilating_contacts:
             return judge_acceleration(least, demand)
         rows = self.non_dilatant or []
@@ -157,12 +165,12 @@ class SolidTilt(KindResults):
 
 
 class SectionThrust(ResultModel):
-    """Horizontal thrust of a section of blocks in space."""
+    """Horizontal thrust of a section of blocks in space: the sum over its contacts."""
 
     name: str = fact("its name")
-    direction: str = fact("direction of the thrust: in plan, or outward from the middle of the structure")
+    direction: str = fact("direction of the thrust of each contact: in plan, or outward from the middle of the structure")
     contacts: int = fact("contacts of the section")
-    least_N: float | None = fact("least thrust; null if the thrust has no least value", "N")
+    least_N: float | None = fact("least thrust, summed over the contacts; null if the thrust has no least value", "N")
     central_N: float | None = fact("thrust of the most central state; null without one", "N")
     greatest_N: float | None = fact("greatest thrust; null if the thrust has no greatest value, as between rigid supports", "N")
 

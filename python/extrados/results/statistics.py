@@ -148,7 +148,7 @@ class Ensemble(Annual):
             told = ", ".join(f'"{rule}" {100.0 * share:.3g} %' for rule, share in by_rule.items())
             if min(by_rule.values()) < max(by_rule.values()):
                 violated.append(f"The impact rule decides: {told}.")
-        return judge(text, self.collapse_probability, None, "probability", outcome, violated=violated)
+        return judge(text, self.collapse_probability, None, "of all runs", outcome, violated=violated)
 
 
 class RuleShares(ResultModel):
@@ -333,7 +333,7 @@ class OverDurations(KindResults):
         text = f"{100.0 * least:.3g} % of the motions of {short:g} s"
         if len(known) > 1:
             text += f" and {100.0 * most:.3g} % of the motions of {long:g} s"
-        return judge(f"{text} cause collapse.", None, None, "probability", outcome, violated=self.conditions.violated)
+        return judge(f"{text} cause collapse.", None, None, "of all runs", outcome, violated=self.conditions.violated)
 
 
 Fragility = Ensemble | OverLevels | OverDurations

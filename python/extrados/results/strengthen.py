@@ -167,4 +167,4 @@ def size_told(one: Intervention) -> str:
         depth = getattr(one, "depth_m", None)
         per = "" if depth is None else f" for the depth of {depth:.3g} m ({size / 1e3 / depth:.3g} kN/m)"
         return f"{size / 1e3:.3g} kN{per} {one.place}"
-    return f"{one.key} = {engineering(size, one.unit)}"
+    return f"{one.key.rpartition('.')[2].replace('_', ' ')} {engineering(size, one.unit)}"

@@ -33,13 +33,13 @@ Thrust = Validity(
 )
 Sweep = Validity(
     "Limit analysis gives the capacity at each value of one key; all other keys keep their values.",
-    "Between two calculated values the capacity is not known. The limits of tilt apply to each value.",
+    "Between two calculated values the capacity is not known. The limits of limit analysis apply to each value.",
 )
 Survey = Validity(
     "Limit analysis gives the capacity of each section of the table by itself.",
     (
         "Sections do not support one another: arching along the building and transverse walls are not considered. The "
-        "limits of tilt apply to each section."
+        "limits of limit analysis apply to each section."
     ),
 )
 Imperfections = Validity(
@@ -49,7 +49,7 @@ Imperfections = Validity(
     ),
     (
         "The band includes only the deviation of the survey. It does not include errors common to all points, hidden "
-        "voids or the scatter of materials. The limits of tilt apply to each geometry."
+        "voids or the scatter of materials. The limits of limit analysis apply to each geometry."
     ),
 )
 MovingSupports = Validity(
@@ -75,11 +75,11 @@ MovingLoad = Validity(
 Rocking = Validity(
     (
         "The structure moves as a single rigid-body mechanism, which limit analysis gives, without sliding. Impacts lose "
-        "energy by the rule of [joints] restitution."
+        "energy by the impact rule of the deck."
     ),
     (
         "Hinges remain at the same joints; blocks do not slide, bounce or crush. Sliding and hinges at other joints are "
-        "checked during the motion. If a check fails, the run continues with rigid contacts from that state (hand_over). "
+        "checked during the motion. If a check fails, the run continues with rigid contacts from that state. "
         "If the impact rules give different outcomes, or if the response is chaotic, one run is only one sample: use "
         "fragility."
     ),
@@ -139,7 +139,7 @@ HarmonicMap = Validity(
 CodeChecks = Validity(
     "The analysis applies simplified rules of codes, with their own reductions of demand and capacity.",
     (
-        "Each rule is valid within the scope of its clause. Clauses marked `verify clause` were not read in the "
+        "Each rule is valid within the scope of its clause. Clauses marked 'verify clause' were not read in the "
         "standard: compare them with its text before use."
     ),
 )
@@ -148,7 +148,7 @@ LocalMechanism = Validity(
     (
         "The result holds for the stated mechanism; another mechanism may be weaker. The connections to transverse walls "
         "and floors are those given in the deck. A rule outside its scope does not apply, and the row of this rule says "
-        "so. Clauses marked `verify clause` were not read in the standard."
+        "so. Clauses marked 'verify clause' were not read in the standard."
     ),
 )
 MotionStudy = Validity(
@@ -188,15 +188,15 @@ Dem = Validity(
     ),
 )
 DemDomain = Validity(
-    ("A single pulse acts on blocks that move independently, as in dem. At each amplitude, increasing durations are tried."),
+    ("A single pulse acts on blocks that move independently, as in discrete elements. At each amplitude, increasing durations are tried."),
     (
         "The curve is the shortest of the tried durations that cause collapse. Safe regions beyond the curve are not "
-        "reliable, and a duration between two tried ones may cause collapse. The limits of dem apply."
+        "reliable, and a duration between two tried ones may cause collapse. The limits of discrete elements apply."
     ),
 )
 DemParameters = Validity(
     "Empirical rules give joint stiffness, impact frequency and damping. No motion is run.",
-    "The values are starting values for dem, not properties of the building: vary them, and compare the outcomes.",
+    "The values are starting values for discrete elements, not properties of the building: vary them, and compare the outcomes.",
 )
 Strengthen = Validity(
     (
@@ -235,7 +235,7 @@ FramePushover = Validity(
         "load. All nodes of a wall on one level have the same displacement along the wall."
     ),
     (
-        "Out-of-plane failure of walls is not considered: use local-mechanism for it. Spandrels carry no normal force but "
+        "The frame has no out-of-plane failure of walls: with a code each wall is checked for it separately. Spandrels carry no normal force but "
         "that of ties and ring beams. A corner lifts the weight on the effective width of its flange. "
         "Strengths and drift limits are those of codes, and tested walls differ from them by about 20 %. With irregular "
         "openings the division into piers is uncertain."
@@ -243,14 +243,14 @@ FramePushover = Validity(
 )
 FrameHistory = Validity(
     (
-        "The frame of frame-pushover moves under one horizontal component. Sections unload elastically towards the "
+        "The frame of the pushover moves under one horizontal component. Sections unload elastically towards the "
         "origin, and their crushing remains. Sliding is plastic. Damping follows the stiffness of the last step."
     ),
     "Vertical motion, out-of-plane failure of walls and impacts when open joints close are not considered.",
 )
 FrameFragility = Validity(
     (
-        "The frame of frame-history, or of frame-pushover with N2, is calculated for many motions. Uncertain values are "
+        "The frame of the response history, or of the pushover with N2, is calculated for many motions. Uncertain values are "
         "lognormal and apply to the whole building. Limit states follow from the strengths and drift limits of the piers."
     ),
     (

@@ -7,10 +7,6 @@ from extrados.results.fields import ResultModel, fact
 
 Outcome = Literal["stands", "collapses", "cannot-stand", "open", "not-applicable"]
 Bound = Literal["exact", "upper", "lower"]
-#: Outcomes by which a strategy decides
-DECIDED: tuple[Outcome, ...] = ("stands", "collapses", "cannot-stand")
-
-
 #: Outcomes in words, the gravest first
 OUTCOMES: dict[Outcome, str] = {
     "cannot-stand": "cannot stand",
@@ -47,6 +43,10 @@ class Verdict(ResultModel):
     )
     violated: list[str] = fact("violated assumptions of the analysis that were checked; the outcome is then open")
     statement: str = fact("the verdict in one or two sentences")
+
+
+#: Units in words: of demands and capacities that are shares or multiples
+SHARES = ("of the joint", "of the critical rotation", "of the limit", "of all runs", "times the train")
 
 
 class Demand(Protocol):

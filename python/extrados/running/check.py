@@ -156,15 +156,16 @@ def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
 
     walls = []
     for number, wall in enumerate(mesh.walls):
-        part = next(p for p in mesh.parts if p.wall == number)
-        corner = wall.unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        own = [p for p in mesh.parts if p.wall == number]
+        corner = np.concatenate([_as_quads(wall.unfolded(mesh.xyz[p.connect.ravel()]).reshape(*p.connect.shape, 2)) for p in own])
+        thick, linear = (np.concatenate([getattr(p, name) for p in own]) for name in ("thickness", "linear"))
         end = wall.origin + wall.length * wall.along
         joints = [
             (joint.name, wall.unfolded(mesh.xyz[joint.connect[:, :2].ravel()]).reshape(-1, 2, 2))
             for joint in mesh.joints
             if joint.wall == wall.name
         ]
-        walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear, joints))
+        walls.append(Elevation(wall.name, wall.origin, end, np.unique(thick).tolist(), corner, linear, joints))
     with _putting(folder, "plan") as (scratch, names):
         if walls:
             draw_plan(scratch, "plan", walls, mesh.levels)
@@ -173,6 +174,11 @@ def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
             feet = np.concatenate([mesh.xyz[foot.nodes] for foot in mesh.feet])
             draw_shells(scratch, "plan", parts, feet)
     return names["plan.png"]
+
+
+def _as_quads(corner: np.ndarray) -> np.ndarray:
+    """Corners (elements, 4, 2) of quadrilaterals, or of triangles with the last one twice."""
+    return corner if corner.shape[1] == 4 else np.concatenate([corner, corner[:, -1:]], axis=1)
 
 
 def write_solids(solids: "SolidAssembly", folder: Path) -> Path:

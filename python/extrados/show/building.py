@@ -1,5 +1,6 @@
 """The drawing of the building to scale: section, cross-section and elevation, or plan and elevations of the walls."""
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,8 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
     if earth is not None:
         high[1] = max(high[1], earth["road"])
     levels = _levels([row for row in rows if row["aside"] == "below"])
-    section = View(words("Section"), low, high, 2.2 * LINE, LINE * (1.0 + max(levels, default=0)))
+    beside_it = sum(row["aside"] == "left" for row in rows)
+    section = View(words("Section"), low, high, LINE * (1.2 + max(beside_it, 1)), LINE * (1.0 + max(levels, default=0)))
     cut = drawing["crown_m"] if drawing["crown_m"] is not None else 0.5 * float(low[0] + high[0])
     pieces = _cut(outlines, cut + 1e-4)
     upright = np.array([[0.0, low[1]], [depth, high[1]]])
@@ -65,7 +67,7 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
         sheet.dimension(foot[0], foot[1], words.number(depth), -LINE)
         sheet.finish(words, _titled(deck), blocks)
         saved = style.save(fig, folder, NAME)
-    told = "; ".join(f"{name_of(words, row['name'])} {words.number(row['length_m'])} m" for row in rows)
+    told = "; ".join(f"{name_of(words, row['name'])}: {words.number(row['length_m'])} m" for row in rows)
     told = f" {told[:1].upper()}{told[1:]}." if told else ""
     views = words(
         "The building: section, cross-section and elevation at scale 1:{scale} on A4."
@@ -160,6 +162,8 @@ DIMENSIONS = (
     "width at the base",
     "width",
     "height",
+    "height of the masonry",
+    "total height",
     "thickness",
     "width of the left buttress",
     "width of the right buttress",
@@ -209,14 +213,14 @@ def _levels(rows: list[dict[str, Any]]) -> list[int]:
 
 def _dimensions(sheet: Sheet, view: View, rows: list[dict[str, Any]], levels: list[int], words: Language) -> None:
     bottom = sheet.to_paper(view, [view.low])[0]
-    free = iter(levels)
+    free, upright = iter(levels), itertools.count(1.4)
     for row in rows:
         a, b = sheet.to_paper(view, [row["start"], row["end"]])
         text = words.number(row["length_m"])
         if row["aside"] == "below":
             sheet.dimension(np.array([a[0], bottom[1]]), np.array([b[0], bottom[1]]), text, -LINE * next(free))
         elif row["aside"] == "left":
-            sheet.dimension(np.array([bottom[0], a[1]]), np.array([bottom[0], b[1]]), text, -1.4 * LINE)
+            sheet.dimension(np.array([bottom[0], a[1]]), np.array([bottom[0], b[1]]), text, -next(upright) * LINE)
         elif row["aside"] == "right":  # a thickness: its number beside it
             middle = np.array([max(a[0], b[0]) + 5.0, max(a[1], b[1]) + 2.5])
             sheet.ax.plot(*np.array([a, b]).T, color=INK, linewidth=1.0, zorder=6)
@@ -240,22 +244,27 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
     """The walls of a building on its plan, with names, lengths and thicknesses, and the heights of its storeys."""
     walls = structure["walls"]
     ends = np.array([[wall["start"], wall["end"]] for wall in walls], dtype=float)
-    low, high = ends.min(axis=(0, 1)), ends.max(axis=(0, 1))
-    plan = View(words("Plan"), low, high, 3.0 * LINE, 3.0 * LINE)
+    # outer faces; the names of the walls are written outside of them
+    outside = 0.5 * max(wall.get("thickness") or max(wall["thicknesses"]) for wall in walls)
+    low, high = ends.min(axis=(0, 1)) - outside, ends.max(axis=(0, 1)) + outside
+    plan = View(words("Plan"), low, high, 2.0 * LINE, 2.0 * LINE, LINE)
     storeys = np.concatenate([[0.0], np.cumsum(structure["storeys"])])
     with style.canvas() as fig:
         sheet = Sheet(fig, [plan])
         middle = 0.5 * (low + high)
         for wall, (start, end) in zip(walls, ends, strict=True):
-            thick = wall.get("thickness") or max(wall["thicknesses"])
+            thicknesses = wall.get("thicknesses") or [wall["thickness"]]
+            thick = max(thicknesses)
             along = (end - start) / np.linalg.norm(end - start)
             across = np.array([-along[1], along[0]])
-            half = 0.5 * thick * across
-            sheet.stone(plan, [start + half, end + half, end - half, start - half], False)
+            for each in sorted(set(thicknesses), reverse=True):
+                half = 0.5 * each * across
+                sheet.stone(plan, [start + half, end + half, end - half, start - half], each < thick)
             out = across if across @ (0.5 * (start + end) - middle) >= 0.0 else -across
             place = sheet.to_paper(plan, [0.5 * (start + end) + out * 0.5 * thick])[0] + 3.5 * out
             turn = np.degrees(np.arctan2(along[1], along[0]))
-            told = f"{wall['name']}: {words.number(float(np.linalg.norm(end - start)))} m, {words.quantity(thick, 'm')}"
+            of_storeys = " / ".join(words.number(t) for t in dict.fromkeys(thicknesses))
+            told = f"{wall['name']}: {words.number(float(np.linalg.norm(end - start)))} m, {of_storeys} m"
             sheet.ax.text(
                 *style.pair(place),
                 told,
@@ -271,7 +280,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
         saved = style.save(fig, folder, NAME)
     *first, last = [words.number(h) for h in structure["storeys"]]
     heights = f"{words('Storeys, from the ground up')}: {', '.join([*first, last])} m" if first else f"{words('Storey')}: {last} m"
-    told = words("for each wall the length of its middle plane and its greatest thickness")
+    told = words("for each wall the length of its middle plane and its thicknesses, that of the lowest storey first")
     found = [(saved, f"{words('Plan of the building')}: {told}. {heights}.")]
     faces = elevation.wall_views(walls, storeys, words)
     with style.canvas() as fig:

@@ -489,7 +489,7 @@ class Shown:
         self.send("place", "capacity")
         self._draw(
             "Collapse load",
-            _axis("place", "position of the first axle", "m"),
+            _axis("place", "position of the first axle" if len(self.arrays["axle"]) else "position of the train", "m"),
             _axis("", "load", "kN"),
             [_series("capacity", "capacity", factor=1e-3)],
         )

@@ -22,6 +22,7 @@ from extrados.results.dem import (
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, solid_dem, style
+from extrados.show.dem_forces import draw_forces
 from extrados.show.stones import Stones, moved, outlines
 
 SHOWN = 6
@@ -161,7 +162,7 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         return [*figures, *_ties(run, name, folder)]
     figures = [_snapshots(run, name, folder)]
     if "rotation" in run.arrays[name]:
-        figures += [_histories(run, name, folder), _energies(run, name, folder)]
+        figures += [_histories(run, name, folder), _energies(run, name, folder), draw_forces(run, name, folder)]
         if run.array(name, "hinge").shape[1] > 1:
             figures.append(_hinge_map(run, name, folder))
         figures += _ties(run, name, folder)
@@ -258,7 +259,7 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Forces of the ties over time, of those with the greatest; nothing without any."""
+    """Forces of ties and dampers over time, of those with the greatest; nothing without any."""
     if "tie_force" not in run.arrays[name]:
         return []
     time, force, rows = run.array(name, "time"), run.array(name, "tie_force"), run[name].get("ties") or []
@@ -272,7 +273,7 @@ def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(0.0, time[-1] or 1.0)
         style.legend_above(ax)
         saved = style.save(fig, folder, f"{name}-ties")
-    return [(saved, "Forces of the ties" + (f", the {SHOWN} ties with the greatest forces." if len(rows) > SHOWN else "."))]
+    return [(saved, "Forces of ties and dampers" + (f", the {SHOWN} with the greatest forces." if len(rows) > SHOWN else "."))]
 
 
 def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:

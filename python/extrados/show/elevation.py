@@ -85,7 +85,8 @@ def wall_views(walls: Sequence[dict[str, Any]], storeys: np.ndarray, words: Lang
         first, last = wall.get("storeys") or (1, len(storeys) - 1)
         length = float(np.linalg.norm(np.subtract(wall["end"], wall["start"])))
         name = words("Elevation of {wall}", wall=wall["name"])
-        found.append(View(name, np.array([0.0, storeys[first - 1]]), np.array([length, storeys[last]]), 2.0 * LINE, 1.5 * LINE))
+        high = storeys[last] + ((wall.get("gable") or {}).get("rise") or 0.0)
+        found.append(View(name, np.array([0.0, storeys[first - 1]]), np.array([length, high]), 2.0 * LINE, 1.5 * LINE))
     return found
 
 
@@ -95,8 +96,15 @@ def draw_wall(sheet: Sheet, view: View, wall: dict[str, Any], storeys: np.ndarra
         {"x": hole["x"], "y": [storeys[hole["storey"] - 1] + z for z in hole["z"]], "lintel": hole.get("lintel")}
         for hole in wall.get("openings", [])
     ]
-    draw_face(sheet, view, openings, words)
-    ends = [level for level in storeys.tolist() if view.low[1] - 1e-9 <= level <= view.high[1] + 1e-9]
+    gable, top = wall.get("gable"), float(storeys[(wall.get("storeys") or (1, len(storeys) - 1))[1]])
+    draw_face(sheet, view, openings, words, top)
+    ends = [level for level in storeys.tolist() if view.low[1] - 1e-9 <= level <= top + 1e-9]
+    if gable:
+        length, ridge = float(view.high[0]), gable.get("ridge")
+        corners = [[0.0, top], [length, top], [0.5 * length if ridge is None else ridge, top + gable["rise"]]]
+        sheet.fill(view, corners, style.STONE, edgecolor=style.EDGE, linewidth=0.6, zorder=1)
+        eaves, peak = sheet.to_paper(view, [[0.0, top], [0.0, top + gable["rise"]]])
+        sheet.dimension(eaves, peak, words.number(float(gable["rise"])), -LINE)
     for k, level in enumerate(ends):
         here = sheet.to_paper(view, [[0.0, level], [view.high[0], level]])
         sheet.ax.plot(*here.T, color="black", linewidth=1.6 if k == 0 else 0.5, linestyle="-" if k == 0 else (0, (6, 3)), zorder=3)
@@ -107,9 +115,11 @@ def draw_wall(sheet: Sheet, view: View, wall: dict[str, Any], storeys: np.ndarra
     sheet.dimension(low, np.array([high[0], low[1]]), words.number(float(view.high[0])), -LINE)
 
 
-def draw_face(sheet: Sheet, view: View, openings: Sequence[dict[str, Any]], words: Language) -> None:
-    """A rectangular wall with openings, x and y [m] from and to, and the beams over them; width and height in each opening."""
+def draw_face(sheet: Sheet, view: View, openings: Sequence[dict[str, Any]], words: Language, top: float | None = None) -> None:
+    """A rectangular wall, up to `top` [m] or the whole view, with openings, x and y [m] from and to, and the beams over them; width
+    and height in each opening."""
     (left, low), (right, high) = view.low, view.high
+    high = high if top is None else top
     sheet.fill(view, [[left, low], [right, low], [right, high], [left, high]], style.STONE, edgecolor=style.EDGE, linewidth=0.6, zorder=1)
     for hole in openings:
         (a, b), (c, d) = hole["x"], hole["y"]

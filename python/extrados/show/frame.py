@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Rectangle
 
-from extrados.results.frame import FrameFragility, FrameModes, FramePushover, Modes
+from extrados.results.frame import FrameFragility, FrameMode, FrameModes, FramePushover, Modes
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.verification import draw_verification
@@ -20,6 +21,10 @@ WORDS = ("elastic", "cracked", "flexural strength", "shear strength", "drift lim
 LARGEST_DRIFT = 5.0
 #: Storeys whose plans are drawn, at most
 MOST_PLANS = 3
+#: Modes that are drawn, at most, and the colours of their levels
+MOST_MODES, LEVELS = 3, matplotlib.colormaps["viridis"]
+#: Ground of words on the plan
+BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.75}
 #: Colours of the patterns
 PATTERNS = {"uniform": style.THRUST, "static": style.HINGE, "modal": style.SAFE}
 
@@ -63,8 +68,8 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             f"at a loss of 20 % of the base shear or when all piers of a wall in one storey reach their drift limits.",
         )
     )
-    for angle in angles:
-        number = min((k for k, row in enumerate(r.runs, 1) if row.direction_deg == angle), key=lambda k: r.runs[k - 1].peak_base_shear_N)
+    weakest = [min((row.peak_base_shear_N, k) for k, row in enumerate(r.runs, 1) if row.direction_deg == angle) for angle in angles]
+    for (_, number), angle in sorted(zip(weakest, angles, strict=True)):
         row = r.runs[number - 1]
         state = run.array(name, f"state_{number}")
         told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"
@@ -95,7 +100,7 @@ def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             for x0, y0, z0, x1, y1, z1 in run.array(name, "rod"):
                 if int(np.abs(tops - 0.5 * (z0 + z1)).argmin()) + 1 == storey:
                     ax.plot([x0, x1], [y0, y1], color=style.THRUST, linewidth=1.2)
-            for level, kind, x, y, dx, dy in run.array(name, "floor"):
+            for level, kind, x, y, dx, dy, roof, pitch in run.array(name, "floor"):
                 if int(level) != storey:
                     continue
                 if dx or dy:
@@ -104,7 +109,11 @@ def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                         "", (x + way[0], y + way[1]), (x - way[0], y - way[1]), arrowprops={"arrowstyle": "<->", "color": style.EDGE}
                     )
                 word = ("load", "membrane", "rigid", "joists")[int(kind)]
-                ax.annotate(word, (x, y), (6, 0), textcoords="offset points", va="center", fontsize=7, color=style.EDGE)
+                word += f"\n{('', 'rafters', 'trusses', 'purlins')[int(roof)]}, {pitch:.3g}°" if roof else ""
+                look = {"va": "center", "fontsize": 7, "color": style.EDGE, "bbox": BEHIND, "zorder": 6}
+                ax.annotate(
+                    word, (x, y), (6 if dx or dy else 0, 0), textcoords="offset points", ha="left" if dx or dy else "center", **look
+                )
             ax.set_aspect("equal")
             ax.margins(0.12)  # room for the names of walls
             ax.autoscale_view()
@@ -136,18 +145,32 @@ def _on_plan(line: np.ndarray, a: float, b: float, thickness: float) -> np.ndarr
 
 def _plan_wall(ax: Axes, run: Stored, name: str, w: int, storey: int, label: str) -> None:
     line, thickness = run.array(name, "wall_line")[w], float(run.array(name, "wall_thickness")[w, storey - 1])
-    part, of, kind, at = (run.array(name, f"element_{word}") for word in ("part", "wall", "pier", "storey"))
+    part, of, kind, at = (run.array(name, f"element_{word}") for word in ("part", "wall", "kind", "storey"))
     length = float(run.array(name, "wall_length")[w])
     ax.add_patch(Polygon(_on_plan(line, 0.0, length, thickness), facecolor="white", edgecolor=style.EDGE, linewidth=0.5))
     for a, b, _, _ in part[(of == w) & (kind == 1) & (at == storey)]:
         ax.add_patch(Polygon(_on_plan(line, a, b, thickness), facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.8))
-    middle, way = 0.5 * (line[:2] + line[2:]), (line[2:] - line[:2]) / length
+    _wall_name(ax, run.array(name, "wall_line"), w, 0.5 * thickness + 0.22, label)
+
+
+def _wall_name(ax: Axes, lines: np.ndarray, w: int, aside: float, label: str) -> None:
+    """The name of a wall beside it on the plan, at a distance [m] from its axis, away from walls that cross it."""
+    line = lines[w]
+    length = float(np.hypot(*(line[2:] - line[:2])))
+    way = (line[2:] - line[:2]) / length
     across = np.array([-way[1], way[0]])
-    outward = -1.0 if across @ (middle - run.array(name, "wall_line").reshape(-1, 2).mean(axis=0)) < 0.0 else 1.0
-    x, y = middle + outward * (0.5 * thickness + 0.22) * across
+    outward = -1.0 if across @ (0.5 * (line[:2] + line[2:]) - lines.reshape(-1, 2).mean(axis=0)) < 0.0 else 1.0
+    others = np.delete(lines, w, axis=0)
+    for share in (0.5, 0.3, 0.7, 0.2, 0.8):
+        place = line[:2] + share * length * way + outward * aside * across
+        gaps = np.clip(np.einsum("kd,kd->k", place - others[:, :2], others[:, 2:] - others[:, :2]), 0.0, None)
+        gaps = np.minimum(gaps / (np.square(others[:, 2:] - others[:, :2]).sum(axis=1)), 1.0)
+        away = np.hypot(*(others[:, :2] + gaps[:, None] * (others[:, 2:] - others[:, :2]) - place).T)
+        if not len(others) or away.min() > 0.1 * length:
+            break
     angle = float(np.degrees(np.arctan2(way[1], way[0])))
     turn = angle - 180.0 if angle > 90.0 else angle + 180.0 if angle <= -90.0 else angle
-    ax.text(x, y, label, ha="center", va="center", fontsize=7, rotation=turn)
+    ax.text(*style.pair(place), label, ha="center", va="center", fontsize=7, rotation=turn, bbox=BEHIND, zorder=6)
 
 
 def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, told: str) -> tuple[str, str]:
@@ -158,17 +181,23 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
     first = np.concatenate([[0.0], np.cumsum(length + gap)[:-1]])
     total = float(first[-1] + length[-1])
     wide = float(np.clip(0.55 * total, 5.0, 11.0))
-    with style.figure(wide, wide * float(height.max()) / total + 1.5) as (fig, (ax,)):
+    with style.figure(wide, wide * float(height.max() + run.array(name, "gable")[:, 2].max(initial=0.0)) / total + 1.5) as (fig, (ax,)):
         for w in range(len(length)):
             ax.add_patch(Rectangle((first[w], 0.0), length[w], height[w], facecolor="#b9b2a3", edgecolor=style.EDGE, linewidth=0.6))
         for (a, b, low, high), w, value in zip(part, of.astype(int), state.astype(int), strict=True):
             ax.add_patch(Rectangle((first[w] + a, low), b - a, high - low, facecolor=COLOURS[value], edgecolor=style.EDGE, linewidth=0.4))
         for w, a, b, low, high in holes:
             ax.add_patch(Rectangle((first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6))
+        tops = height.astype(float)
+        for number, s, rise in run.array(name, "gable"):
+            w = int(number)
+            tops[w] += rise
+            outline = [(first[w], height[w]), (first[w] + length[w], height[w]), (first[w] + s, height[w] + rise)]
+            ax.add_patch(Polygon(outline, facecolor="#b9b2a3", edgecolor=style.EDGE, linewidth=0.6))
         for w, label in enumerate(run.results_of(name, FramePushover).walls):
-            ax.text(first[w] + 0.5 * length[w], 1.01 * height[w], label, ha="center", va="bottom", fontsize=8)
+            ax.text(first[w] + 0.5 * length[w], tops[w] + 0.01 * height[w], label, ha="center", va="bottom", fontsize=8)
         ax.set_xlim(-0.3, total + 0.3)
-        ax.set_ylim(0.0, float(height.max()) * 1.1)
+        ax.set_ylim(0.0, float(tops.max()) * 1.1)
         ax.set_aspect("equal")
         ax.grid(False)
         ax.set_xlabel("distance along the walls, side by side [m]")
@@ -182,36 +211,72 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
 
 
 def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Displacements of the masses on the plan, or of blocks in their section, in the first modes."""
-    blocks = isinstance(run[name], Modes)
-    r = run.results_of(name, Modes) if blocks else run.results_of(name, FrameModes)
+    """Displaced walls on the plan, or displacements of blocks in their section, in the first modes."""
+    return _block_modes(run, name, folder) if isinstance(run[name], Modes) else _wall_modes(run, name, folder)
+
+
+def _of_mode(k: int, mode: FrameMode) -> str:
+    """Title of a mode: period, frequency and participating masses."""
+    shares = ", ".join(f"$M_{{{axis}}}$ {100.0 * ratio:.1f} %" for axis, ratio in (("x", mode.mass_ratio_x), ("y", mode.mass_ratio_y)))
+    return f"mode {k + 1}: T {mode.period_s:.3g} s, f {mode.frequency_Hz:.3g} Hz\n{shares}"
+
+
+def _wall_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    modes = run.results_of(name, FrameModes).modes[:MOST_MODES]
+    line, thickness = (run.array(name, word) for word in ("wall_line", "wall_thickness"))
+    labels = run.results_of(name, FrameModes).walls
+    place, of, shape = (run.array(name, f"trace_{word}") for word in ("place", "of", "shape"))
+    low, high = line.reshape(-1, 2).min(axis=0), line.reshape(-1, 2).max(axis=0)
+    scale, room = 0.12 * float((high - low).max()), 0.22 * float((high - low).max())
+    levels = range(1, thickness.shape[1] + 1)
+    wide, tall = high - low + 2.0 * room
+    with style.figure(3.3 * len(modes), 3.1 * tall / wide + 1.2, 1, len(modes), sharey=True) as (fig, axes):
+        for k, (ax, mode) in enumerate(zip(axes, modes, strict=True)):
+            for w, thick in enumerate(thickness.max(axis=1)):
+                length = float(np.hypot(*(line[w, 2:] - line[w, :2])))
+                ax.add_patch(Polygon(_on_plan(line[w], 0.0, length, thick), facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.4))
+                _wall_name(ax, line, w, 0.5 * thick + 0.035 * wide, labels[w])
+                for level in levels:
+                    own = (of == (w, level)).all(axis=1)
+                    colour = LEVELS(0.15 + 0.7 * (level - 1) / max(len(levels) - 1, 1))
+                    ax.plot(*(place[own] + scale * shape[k, own]).T, color=colour, linewidth=1.3, zorder=3)
+            ax.set_xlim(low[0] - room, high[0] + room)
+            ax.set_ylim(low[1] - room, high[1] + room)
+            ax.set_aspect("equal")
+            ax.grid(False)
+            ax.set_xlabel("x [m]")
+            ax.set_title(_of_mode(k, mode), fontsize=8)
+        axes[0].set_ylabel("y [m]")
+        shades = [LEVELS(0.15 + 0.7 * (level - 1) / max(len(levels) - 1, 1)) for level in levels]
+        handles: list[Artist] = [Patch(facecolor=style.STONE, edgecolor=style.EDGE, label="walls at rest")]
+        handles += [Line2D([], [], color=shade, label=f"top of storey {level}") for level, shade in zip(levels, shades, strict=True)]
+        fig.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+        saved = style.save(fig, folder, f"{name}-modes")
+    return [
+        (
+            saved,
+            "Displaced walls in the first modes on the plan, not to scale. M: participating mass over the mass of all levels above the ground.",
+        )
+    ]
+
+
+def _block_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    modes = run.results_of(name, Modes).modes[:MOST_MODES]
     place, shape = run.array(name, "place"), run.array(name, "shape")
-    count = min(3, len(r.modes))
     scale = 0.15 * float(np.ptp(place[:, :2], axis=0).max())
-    with style.figure(2.6 * count, 3.0, 1, count) as (fig, axes):
-        for k, ax in enumerate(axes):
+    with style.figure(2.6 * len(modes), 3.0, 1, len(modes)) as (fig, axes):
+        for k, (ax, mode) in enumerate(zip(axes, modes, strict=True)):
             ax.plot(place[:, 0], place[:, 1], ".", color=style.STONE, markersize=3)
-            ax.quiver(
-                place[:, 0],
-                place[:, 1],
-                scale * shape[k, :, 0],
-                scale * shape[k, :, 1],
-                place[:, -1],
-                angles="xy",
-                scale_units="xy",
-                scale=1.0,
-                width=0.006,
-                cmap="viridis",
-            )
+            moved = scale * shape[k]
+            ax.quiver(*place[:, :2].T, *moved.T, angles="xy", scale_units="xy", scale=1.0, width=0.006, color=style.HINGE)
             ax.set_aspect("equal")
             for set_limit, axis in ((ax.set_xlim, 0), (ax.set_ylim, 1)):
-                ends = np.concatenate([place[:, axis], place[:, axis] + scale * shape[k, :, axis]])
+                ends = np.concatenate([place[:, axis], place[:, axis] + moved[:, axis]])
                 set_limit(ends.min() - 0.3 * scale, ends.max() + 0.3 * scale)
             ax.set_xlabel("x [m]")
-            ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
+            ax.set_title(_of_mode(k, mode), fontsize=8)
         saved = style.save(fig, folder, f"{name}-modes")
-    where = "on the plan" if place.shape[1] == 3 else "of the blocks in their section"
-    return [(saved, f"Displacements in the first modes, {where}. The colour shows the height above the ground.")]
+    return [(saved, "Displacements of the blocks in their section in the first modes. M: participating mass over the whole mass.")]
 
 
 def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

@@ -9,6 +9,8 @@ import re
 from functools import cache
 from pathlib import Path
 
+from extrados.schema.constants import GRAVITY
+
 FOLDER = Path(__file__).parent / "languages"
 #: Languages by their codes, each in its own words
 NAMES = {"en": "English", "it": "italiano", "es": "español", "fr": "français", "de": "Deutsch"}
@@ -17,11 +19,14 @@ UNITS: dict[str, tuple[tuple[float, str, float], ...]] = {
     "N": ((1e-3, "kN", 0.0),),
     "N m": ((1e-3, "kN m", 0.0),),
     "N/m": ((1.0, "N/m", 0.0), (1e-3, "kN/m", 1e3)),
-    "Pa": ((1e-6, "MPa", 0.0),),
+    "Pa": ((1e-3, "kPa", 0.0), (1e-6, "MPa", 1e4)),
     "Pa/m": ((1e-9, "N/mm³", 0.0),),
     "m": ((1e3, "mm", 0.0), (1.0, "m", 1.0)),
     "kg": ((1.0, "kg", 0.0), (1e-3, "t", 1e3)),
+    "m/s^2": ((1.0 / GRAVITY, "g", 0.0),),
 }
+#: Digits of an exponent
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Language:
@@ -51,7 +56,7 @@ class Language:
         size = math.floor(math.log10(abs(float(f"{value:.{figures - 1}e}"))))
         if not -4 <= size < 7:
             mantissa = self.number(value / 10.0**size, figures)
-            return f"{mantissa} × 10^{size}"
+            return f"{mantissa} × 10{str(size).translate(RAISED)}"
         places = max(0, figures - 1 - size)
         return self._signed(f"{round(value, figures - 1 - size):.{places}f}")
 
@@ -67,7 +72,7 @@ class Language:
     def quantity(self, value: float, unit: str, given: bool = False) -> str:
         """A value in SI as engineers write it: kN, MPa, mm, with three figures, or with those that were given."""
         factor, shown, _ = next((row for row in reversed(UNITS.get(unit, ())) if abs(value) >= row[2]), (1.0, unit, 0.0))
-        shown = re.sub(r"\^(\d)", lambda found: "⁰¹²³⁴⁵⁶⁷⁸⁹"[int(found[1])], shown)
+        shown = re.sub(r"\^(\d)", lambda found: found[1].translate(RAISED), shown)
         text = self.given(value * factor) if given else self.number(value * factor)
         return f"{text} {self(shown)}".strip()
 

@@ -16,6 +16,8 @@ from extrados.show.verification import COLUMNS, WIDTHS, rows_of
 Figures = list[tuple[str, str]]
 #: Ends of the names of figures that show a mechanism
 MECHANISMS = ("-collapse", "-mechanism")
+#: Within the names of figures that show the walls of a frame with their damage, the weakest direction first
+WALLS = "-walls-"
 #: Kinds of analysis in words
 TITLES = {
     "tilt": "Collapse acceleration by limit analysis",
@@ -97,7 +99,8 @@ def governing_figure(run: Stored, drawn: dict[str, Figures], building: Figures) 
     if isinstance(r, LocalMechanism) and r.mechanism == "building":
         names += [a["name"] for a in run.analyses if a["kind"] == "tilt"]
     every = [f for name in names for f in drawn.get(name, [])]
-    chosen = next((f for f in every if f[0].endswith(MECHANISMS)), None) or next(iter(every or building), None)
+    shows = [f for f in every if f[0].endswith(MECHANISMS)] + [f for f in every if WALLS in f[0]]
+    chosen = next(iter(shows or every or building), None)
     # The scale of the building's drawing holds at its full width.
     return None if chosen is None else Figure(f"figures/{chosen[0]}", chosen[1], 1.0 if chosen in building else 0.8)
 
@@ -250,7 +253,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
                 return words("Resolve the first assumption that does not hold.")
             return f"Resolve the first assumption that does not hold: {v['violated'][0]}"
         if isinstance(r, Assess) and r.not_done:
-            return words("Run again with a larger budget: the time limit stopped {step}.", step=r.not_done[0])
+            return words("A step has no verdict: {step}. Run again with a larger budget or a later end of the run.", step=r.not_done[0])
         return words("Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first.")
     if outcome == "stands":
         if factor is not None and factor < THIN:

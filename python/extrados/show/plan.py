@@ -16,13 +16,13 @@ MOST_BESIDE = 3
 
 @dataclass(frozen=True)
 class Elevation:
-    """A wall: ends (2) on the plan [m], thickness [m], corners (elements, 4, 2) of its elements along it and up [m], and
+    """A wall: ends (2) on the plan [m], its thicknesses [m], corners (elements, 4, 2) of its elements along it and up [m], and
     which of them stay elastic; its joints by name, with the ends (stretches, 2, 2) of their stretches [m]."""
 
     name: str
     start: np.ndarray
     end: np.ndarray
-    thickness: float
+    thickness: list[float]
     corner: np.ndarray
     linear: np.ndarray
     joints: list[tuple[str, np.ndarray]] = field(default_factory=list)
@@ -37,9 +37,10 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
         plan = fig.add_subplot(grid[:, 0])
         for wall in walls:
             along = (wall.end - wall.start) / np.linalg.norm(wall.end - wall.start)
-            side = 0.5 * wall.thickness * np.array([-along[1], along[0]])
-            outline = [wall.start + side, wall.end + side, wall.end - side, wall.start - side]
-            plan.add_collection(PolyCollection([outline], facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7))
+            for thick in sorted(wall.thickness, reverse=True):  # the thinner storeys are outlined within the thickest
+                side = 0.5 * thick * np.array([-along[1], along[0]])
+                outline = [wall.start + side, wall.end + side, wall.end - side, wall.start - side]
+                plan.add_collection(PolyCollection([outline], facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7))
             plan.annotate(
                 "",
                 wall.start + 0.62 * (wall.end - wall.start),
@@ -82,7 +83,8 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
             ax.autoscale_view()
             ax.set_aspect("equal")
             ax.grid(False)
-            ax.set_title(f"wall {wall.name}, {wall.thickness:g} m, {len(wall.corner)} elements")
+            given = " and ".join(f"{t:g}" for t in wall.thickness)
+            ax.set_title(f"wall {wall.name}, {given} m, {len(wall.corner)} elements")
             ax.set_xlabel("along it [m]")
         style.write(fig, folder, name)
     return folder / f"{name}.png"

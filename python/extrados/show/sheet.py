@@ -28,17 +28,18 @@ INCH = 25.4
 
 @dataclass(frozen=True)
 class View:
-    """A part of the sheet: its name, ends of what it shows [m], and room for dimensions to the left and below [mm]."""
+    """A part of the sheet: its name, ends of what it shows [m], and room for dimensions to the left, below and above [mm]."""
 
     name: str
     low: np.ndarray
     high: np.ndarray
     left: float = LINE
     below: float = LINE
+    above: float = 0.0
 
     def size(self, scale: int) -> np.ndarray:
         """Width and height on paper [mm] with dimensions and name."""
-        size = 1e3 / scale * (self.high - self.low) + (self.left + LINE, self.below + HEAD)
+        size = 1e3 / scale * (self.high - self.low) + (self.left + LINE, self.below + HEAD + self.above)
         return np.maximum(size, (LETTER * max(map(len, self.label(scale).split("\n"))), 0.0))
 
     def label(self, scale: int) -> str:

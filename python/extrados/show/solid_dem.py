@@ -5,13 +5,17 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, Normalize, to_rgb
 from matplotlib.figure import Figure
 
 from extrados.results.dem import SolidDemRun, SolidDemTilt
+from extrados.results.solid_files import rotations
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, scene, style
+from extrados.show.dem_forces import draw_forces
+from extrados.show.limit.section import TIE
 from extrados.show.solids import FILM_PIXELS, VIEW, faces_of
 
 SHOWN = 6
@@ -29,7 +33,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Everything that a run or a tilt test of solids has to show."""
     found = [_snapshots(run, name, folder)]
     if "shift" in run.arrays[name]:
-        found += [_histories(run, name, folder), _contacts(run, name, folder), _forces(run, name, folder)]
+        found += [_histories(run, name, folder), _contacts(run, name, folder), draw_forces(run, name, folder)]
         _film(run, name, folder)
     return found
 
@@ -41,9 +45,14 @@ class _Stage:
         self.run, self.name, self.pixels = run, name, pixels
         self.pose, self.time = run.array(name, "pose"), run.array(name, "time")
         self.still = faces_of(run, name)
+        get = run.arrays[name]
+        self.tie_block: np.ndarray = get["tie_block"].numbers if "tie_block" in get else np.empty((0, 2), int)
+        self.tie_point: np.ndarray = get["tie_point"].numbers if "tie_point" in get else np.empty((0, 2, 3))
         size = float(np.ptp(self.still.vertices, axis=0).max())
         low, high = self.still.vertices.min(axis=0) - 0.5 * size, self.still.vertices.max(axis=0) + 0.5 * size
-        ends = np.concatenate([self.still.vertices, *(faces_of(run, name, self.pose[k]).vertices for k in picks)])
+        ends = np.concatenate(
+            [self.still.vertices, self.tie_point.reshape(-1, 3), *(faces_of(run, name, self.pose[k]).vertices for k in picks)]
+        )
         self.frame = scene.frame_of(np.clip(ends, low, high), VIEW)  # what flies farther leaves the picture
         far = np.linalg.norm(self.pose[:, :, :3] - self.pose[0, :, :3], axis=2)
         self.share = far / max(float(far[picks].max()), 1e-12) if far.max() > 1e-4 * size else 0.0 * far
@@ -60,8 +69,18 @@ class _Stage:
         colours = np.broadcast_to(colours, (self.pose.shape[1], 3))
         return scene.picture(faces_of(self.run, self.name, self.pose[k]), VIEW, self.frame, colours, self.pixels)
 
+    def segments(self, k: int) -> np.ndarray:
+        """Segments (n, 2, 2) of ties and dampers in the picture at output k; their ends in the ground stay."""
+        on = np.maximum(self.tie_block, 0)
+        arm = self.tie_point - self.run.array(self.name, "solid_centroid")[on]
+        turned = np.einsum("neij,nej->nei", rotations(self.pose[k, on.ravel(), 3:]).reshape(*on.shape, 3, 3), arm)
+        moved = self.tie_point - arm + self.pose[k, on, :3] + turned
+        ends: np.ndarray = np.where(self.tie_block[..., None] < 0, self.tie_point, moved) @ VIEW.axes[:2].T
+        return ends
+
     def show(self, ax: Axes, k: int, push: float | None) -> None:
         scene.show(ax, self.image(k), self.frame)
+        ax.add_collection(LineCollection(list(self.segments(k)), colors=TIE, linewidths=1.6, zorder=3), autolim=False)
         scene.ground(ax, self.still.vertices, VIEW)
         scene.compass(ax, VIEW, push)
 
@@ -123,32 +142,16 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     )
 
 
-def _forces(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    """Reactions of the ground over time, and the energy lost by friction in the pairs that lost most."""
-    r, time, reaction = _stored(run, name), run.array(name, "time"), run.array(name, "reaction")
-    assert isinstance(r, SolidDemRun)
-    worked = [row for row in r.joint_work if row.friction_J > 0.0][:SHOWN]
-    lost, names = run.array(name, "pair_friction_work"), run.array(name, "pair_name").astype(str).tolist()
-    with style.figure(8.0, 6.0, rows=2, sharex=True) as (fig, (above, below)):
-        for k, axis in enumerate("xyz"):
-            above.plot(time, reaction[:, k] / 1e3, label=axis)
-        above.set_ylabel("reaction of the ground [kN]")
-        above.legend(loc="upper right", ncols=3, fontsize=8)
-        for row in worked:
-            below.plot(time, lost[:, names.index(row.name)], label=row.name)
-        below.set_ylabel("lost by friction [J]")
-        if worked:
-            below.legend(loc="upper left", fontsize=7)
-        below.set_xlabel("time [s]")
-        below.set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
-        saved = style.save(fig, folder, f"{name}-forces")
-    return saved, "Force of the ground on the blocks, and the energy that pairs of blocks lost by friction: those that lost most."
-
-
 def _contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     states = {"closed": "#f4f1ea", "open at\nsome corners": style.THRUST, "apart": style.HINGE}
     time, state = run.array(name, "time"), run.array(name, "state")
     return draw_states(time, state, states, 0, "contact", folder, f"{name}-contacts"), "State of the contacts over time."
+
+
+def between(at: np.ndarray) -> np.ndarray:
+    """Borders of cells about ascending places: halfway between them, the outermost as far beyond; half a unit about a single place."""
+    half = 0.5 * np.diff(at) if len(at) > 1 else np.array([0.5])
+    return np.concatenate([at[:1] - half[:1], at[:-1] + half, at[-1:] + half[-1:]])
 
 
 def draw_states(time: np.ndarray, state: np.ndarray, states: dict[str, str], first: int, what: str, folder: Path, target: str) -> str:
@@ -157,10 +160,12 @@ def draw_states(time: np.ndarray, state: np.ndarray, states: dict[str, str], fir
     with style.figure(8.0, min(7.0, 1.6 + 0.18 * state.shape[1])) as (fig, (ax,)):
         norm = BoundaryNorm([first - 0.5, *(numbers + 0.5)], len(states))
         colours, joints = ListedColormap(list(states.values())), np.arange(state.shape[1])
-        mesh = ax.pcolormesh(time, joints, state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True)
+        mesh = ax.pcolormesh(between(time), between(joints), state.T, cmap=colours, norm=norm, rasterized=True)
         bar = fig.colorbar(mesh, ax=ax, ticks=numbers)
         bar.ax.set_yticklabels(list(states))
         style.numbers(ax.yaxis)
+        if len(joints) == 1:
+            ax.set_yticks(joints)
         ax.set_xlabel("time [s]")
         ax.set_ylabel(what)
         ax.grid(False)
@@ -180,12 +185,13 @@ def _film(run: Stored, name: str, folder: Path) -> None:
         stage.show(ax, int(frames[0]), None)
         if stage.share.any():
             legend(fig, [ax], stage.farthest)
-        (drawn,) = ax.images
+        (drawn,), (lines,) = ax.images, (one for one in ax.collections if isinstance(one, LineCollection))
         title = ax.set_title(f"{time[frames[0]]:.2f} s")
 
         def show(k: int) -> None:
             drawn.set_data(stage.image(int(frames[k])))
+            lines.set_segments(list(stage.segments(int(frames[k]))))
             title.set_text(f"{time[frames[k]]:.2f} s")
 
         path = folder / "figures" / f"{name}.{kind}"
-        film.write(fig, path, kind, rate, np.arange(len(frames)), show, [drawn, title])
+        film.write(fig, path, kind, rate, np.arange(len(frames)), show, [drawn, lines, title])

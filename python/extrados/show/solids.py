@@ -19,6 +19,7 @@ from extrados.show.limit.section import TIE
 
 VIEW = scene.View()
 LONGEST, FAINT = 0.16, 0.01  # length of the greatest force, of the picture; the least that is drawn, of the greatest
+NARROW = 1e-6  # of the greatest thrust: a range of thrusts that is rounding
 FILM, FILM_PIXELS = 4.0, 600  # seconds that a mechanism takes at speed 1, pixels of the longer side of its pictures
 SPEED = LinearSegmentedColormap.from_list("speed", [style.STONE, "#f2c28b", "#c8553d"])
 
@@ -180,7 +181,7 @@ def _draw_ranges(folder: Path, name: str, r: SolidThrust) -> tuple[str, str]:
     """Least, central and greatest thrust of the sections; an arrow where there is no greatest."""
     with style.figure(7.0, 1.4 + 0.4 * len(r.sections)) as (fig, (ax,)):
         known = [v for one in r.sections for v in (one.least_N, one.central_N, one.greatest_N) if v is not None]
-        reach = 1.15 * max((abs(v) for v in known), default=1.0)
+        reach = 1.15 * max([*map(abs, known), 0.01 * r.weight_N])
         for k, one in enumerate(r.sections):
             low, high = (-reach if one.least_N is None else one.least_N), (reach if one.greatest_N is None else one.greatest_N)
             ax.plot([low / 1e3, high / 1e3], [k, k], color=style.STONE, linewidth=9.0, solid_capstyle="butt")
@@ -190,6 +191,9 @@ def _draw_ranges(folder: Path, name: str, r: SolidThrust) -> tuple[str, str]:
                 ax.plot(one.central_N / 1e3, k, "o", color="#444444", markersize=5)
         ax.set_yticks(range(len(r.sections)), [f"{one.name} ({one.direction})" for one in r.sections])
         ax.set_ylim(len(r.sections) - 0.5, -0.5)
+        low, high = ax.get_xlim()
+        if 1e3 * (high - low) < NARROW * reach:  # thrusts that differ by rounding alone
+            ax.set_xlim(0.5 * (low + high) - 0.5 * reach / 1e3, 0.5 * (low + high) + 0.5 * reach / 1e3)
         ax.set_xlabel("thrust [kN]")
         ax.set_title(f"Least, most central (dot) and greatest thrust at {r.gamma_g:g} g")
         return style.save(fig, folder, f"{name}-sections"), (

@@ -13,6 +13,7 @@ HOUSNER = "Housner, G. W. (1963). The behavior of inverted pendulum structures d
 CUNDALL = "Cundall, P. A. (1971). A computer model for simulating progressive, large-scale movements in blocky rock systems. Symposium of the International Society for Rock Mechanics, Nancy."
 MOREAU = "Moreau, J. J. (1988). Unilateral contact and dry friction in finite freedom dynamics. In Nonsmooth Mechanics and Applications, 1-82. Springer, Vienna."
 ROTS = "Rots, J. G. (2001). Sequentially linear continuum model for concrete fracture. In Fracture Mechanics of Concrete Structures, 831-839. Balkema."
+FAJFAR = "Fajfar, P. (2000). A nonlinear analysis method for performance-based seismic design. Earthquake Spectra 16, 573-592."
 #: Publications of each kind of analysis
 METHODS = {
     "tilt": (HEYMAN, LIVESLEY),
@@ -33,6 +34,8 @@ METHODS = {
     "dem-domain": (CUNDALL,),
     "sla": (ROTS,),
     "pushover": (ROTS,),
+    "frame-pushover": (FAJFAR,),
+    "frame-fragility": (FAJFAR,),
 }
 #: Publications that a key of the deck names by author and year
 NAMED = {"Gilbert and Melbourne 1994": GILBERT, "Housner 1963": HOUSNER, "Moreau 1988": MOREAU}
@@ -47,6 +50,12 @@ VEHICLES = {
 }
 #: A value that is none of a publication
 UNCERTAIN = re.compile(r"from memory|derived here")
+
+
+def clause_of(source: str) -> str:
+    """The clause of a rule without its formula; a clause that was not read stays marked."""
+    clause, _, formula = source.partition(": ")
+    return f"{clause} (verify clause)" if "verify clause" in formula else clause
 
 
 def references(kinds: Iterable[str], sources: Iterable[str], trains: Sequence[str]) -> list[str]:
@@ -68,5 +77,5 @@ def references(kinds: Iterable[str], sources: Iterable[str], trains: Sequence[st
                 found.append(NAMED.get(part) or f"{part.rstrip('.')}.")
     if places:
         found = [one for one in found if not one.startswith(THESIS)]
-        found.append(f"{THESIS}: {', '.join(dict.fromkeys(places))}.")
+        found.append(f"{THESIS}: {'; '.join(dict.fromkeys(places))}.")
     return list(dict.fromkeys(found))

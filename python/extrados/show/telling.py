@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from extrados.results.assess import Assess
+from extrados.results.assumptions import LABELS
 from extrados.results.codes import Checked
 from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
@@ -20,7 +21,7 @@ from extrados.show.building import heading, name_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 from extrados.show.language import Language
 from extrados.show.opening import governing_figure, opening, title_of
-from extrados.show.sources import references
+from extrados.show.sources import clause_of, references
 from extrados.show.template import ENTRIES, Template
 
 Figures = list[tuple[str, str]]
@@ -132,16 +133,17 @@ def _foreign(words: Language) -> str:
 
 def _code_of(run: Stored) -> str:
     """The code of the report, where an analysis applies one."""
-    return next((r.code for a in run.analyses if isinstance(r := run[a["name"]], Checked) and r.code), "")
+    applied = (getattr(r, "verification", r) for r in (run[a["name"]] for a in run.analyses))
+    return next((code for r in applied if (code := getattr(r, "code", ""))), "")
 
 
 def kind_of(deck: dict[str, Any]) -> str:
     """The kind of structure in words, "" of a deck without one."""
     structure = deck["resolved"].get("structure") or {}
     kind = str(structure.get("kind", "")).replace("-", " ")
-    if kind == "blocks" and structure.get("fill"):
-        return "bridge"
-    return "assembly of blocks" if kind == "blocks" else kind
+    if kind == "blocks":
+        return "bridge" if structure.get("fill") else "assembly of blocks"
+    return kind
 
 
 def _flowing(text: str) -> str:
@@ -154,7 +156,7 @@ def _heads(words: Language, *heads: str) -> tuple[str, ...]:
 
 
 def _verdicts(run: Stored, words: Language) -> list[Block]:
-    found: list[Block] = [Heading(words("Answer"))]
+    found: list[Block] = [Heading(words("Conclusion"))]
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             found += _assessed(run, a["name"], words)
@@ -195,7 +197,9 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
     if r.reasons:
         found.append(Heading(words("Why they differ"), 2))
         labels = {v.strategy: v.label for v in r.verdicts}
-        pairs = [(one.rule, one.text, "; ".join(f"{labels[a]} and {labels[b]}" for a, b in one.explains)) for one in r.reasons]
+        pairs = [
+            (one.rule.replace("-", " "), one.text, "; ".join(f"{labels[a]} and {labels[b]}" for a, b in one.explains)) for one in r.reasons
+        ]
         found.append(Table(_heads(words, "rule", "reason, with the numbers for it", "explains"), pairs, (1.2, 4.6, 2.4)))
     if r.unexplained:
         labels = {v.strategy: v.label for v in r.verdicts}
@@ -204,7 +208,16 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
     found += _sensitive(r, words)
     if r.probes:
         found.append(Heading(words("Further runs"), 2))
-        probed = [(p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes]
+        labels = {v.strategy: v.label for v in r.verdicts}
+        probed = [
+            (
+                labels.get(p.strategy, p.strategy),
+                p.changed,
+                words(outcome_words(p.outcome, check=False)),
+                "" if p.value is None else words.number(p.value),
+            )
+            for p in r.probes
+        ]
         found.append(
             Table(("analysis", "change with respect to the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2))
         )
@@ -334,7 +347,8 @@ def label_of(words: Language, table: str, key: str) -> str:
         name, _, number = part.partition(" ")
         parts.append(f"{words(name.replace('_', ' '))} {number}".strip())
     before = f"{' '.join(parts)}: " if parts else ""
-    return f"{before}{words(key.replace('_', ' '))}"
+    label = LABELS.get(key) if words.code == "en" else None
+    return f"{before}{label or words(key.replace('_', ' '))}"
 
 
 def _properties(rows: list[dict[str, Any]], words: Language) -> Table:
@@ -381,7 +395,9 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language)
         (run.results_of(b["name"], Assess).parts.get(a["name"], "") for b in run.analyses if b["kind"] == "assess" and b["results"]), ""
     ).partition(": ")[2]
     foreign = _foreign(words)
-    keys = {p["key"] for p in run.summary["deck"].get("properties", [])}
+    deck = run.summary["deck"]
+    keys = {p["key"] for p in deck.get("properties", [])}
+    folder = f"{Path(deck['path']).parent}/"
     found: list[Block] = [Heading(title_of(words, a["name"], a["kind"]))]
     if how:
         found.append(Words(f"{words('Settings')}: {how}."))
@@ -389,7 +405,7 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language)
         found.append(Words(f"{a['status']}: {a['reason']}", "bad", foreign))
     if a["answer"] and a["kind"] != "assess":
         found.append(Words(_engineering(a["answer"]), "answer", foreign))
-    found += [Words(f"{words('Warning')}: {_without_keys(w, keys)}", "warn", foreign) for w in a["warnings"]]
+    found += [Words(f"{words('Warning')}: {_without_keys(w.replace(folder, ''), keys)}", "warn", foreign) for w in a["warnings"]]
     found += [Figure(f"figures/{name}", caption) for name, caption in figures]
     found += _stresses(run, a, words)
     found += [table for kind, name, table in _own_tables(run, words) if name == a["name"]]
@@ -564,7 +580,9 @@ def _bibliography(run: Stored, deck: dict[str, Any], words: Language) -> list[Bl
     sources = [p["source"] for p in deck.get("properties", []) if p["source"] and (p["table"] == "motion" or _counts(p, used))]
     for a in run.analyses:
         checks = getattr(run[a["name"]], "checks", None)
-        sources += [c.source for c in checks.values() if c.source] if isinstance(checks, dict) else []
+        sources += [clause_of(c.source) for c in checks.values() if c.source] if isinstance(checks, dict) else []
+        if (verified := getattr(run[a["name"]], "verification", None)) is not None:
+            sources += sorted({f"{verified.code}: {c.clause.replace('; ', ', ')}" for c in verified.checks})
     trains = [keys["train"] for keys in deck["resolved"].get("analysis", []) if isinstance(keys.get("train"), str)]
     found = references([a["kind"] for a in run.analyses], sources, trains)
     return [Heading(words("Bibliography")), *(Words(one) for one in found)] if found else []

@@ -15,6 +15,8 @@ LARGEST = 1_500_000
 TALLEST = 1.1
 #: Marks after which a long key, path or list may break: between letters or names of files, not within a number
 BREAKS = re.compile(r"(?<=[A-Za-z]{2})[_.](?=[A-Za-z]{3})|(?<=[A-Za-z])/(?=\w)")
+#: The space before a unit
+UNIT = re.compile(r"(?<=\d) (?=(?:%|k?N|kN/m|[kM]Pa|m?m|k?g|s)(?![\w]))")
 COLOURS = {
     "stands": "#3b7a57",
     "holds": "#3b7a57",
@@ -67,9 +69,14 @@ def text_of(value: str) -> str:
     return f'"{escaped}"'
 
 
+def _kept(value: str) -> str:
+    """Text whose lines do not part a number from its unit, or the sign of a direction from its axis."""
+    return re.sub(r"(?<![\w-])-(?=[xyz]\b)", "−", UNIT.sub("\u00a0", value))
+
+
 def _words(value: str) -> str:
     """Text that may break after the marks of long keys and paths; numbers are left whole."""
-    return f"text({text_of(BREAKS.sub(lambda found: found[0] + chr(0x200B), value))})"
+    return f"text({text_of(BREAKS.sub(lambda found: found[0] + chr(0x200B), _kept(value)))})"
 
 
 def markup(document: Document, folder: Path) -> str:
@@ -127,7 +134,7 @@ def _set(blocks: list[Block], folder: Path, words: Language) -> list[str]:
 
 
 def _paragraph(block: Words) -> str:
-    body = ", linebreak(), ".join(f"text({text_of(line)})" for line in block.text.split("\n"))
+    body = ", linebreak(), ".join(f"text({text_of(_kept(line))})" for line in block.text.split("\n"))
     body = f"(({body},).join())"
     if block.lang:
         body = f"text(lang: {text_of(block.lang)}, {body})"

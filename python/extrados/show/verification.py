@@ -13,7 +13,7 @@ from extrados.show import style
 
 #: Columns of the rows of a verification
 COLUMNS = ("push", "limit state", "demand", "capacity", "q*", "factor", "PGA demand, capacity", "verdict")
-WIDTHS = (0.6, 0.9, 1.0, 1.0, 0.9, 0.8, 1.8, 0.8)
+WIDTHS = (1.7, 0.7, 0.9, 0.9, 0.9, 0.7, 1.5, 0.7)
 
 
 def rows_of(found: Verification, most: int = 8) -> list[tuple[str, ...]]:
@@ -27,7 +27,7 @@ def rows_of(found: Verification, most: int = 8) -> list[tuple[str, ...]]:
             _millimetres(c.capacity_m),
             ""
             if c.strength_ratio is None
-            else f"{c.strength_ratio:.3g}" + ("" if c.greatest_strength_ratio is None else f" <= {c.greatest_strength_ratio:g}"),
+            else f"{c.strength_ratio:.3g}" + ("" if c.greatest_strength_ratio is None else f" ≤ {c.greatest_strength_ratio:g}"),
             "" if c.factor is None else f"{c.factor:.3g}",
             "" if c.capacity_pga_g is None else f"{c.demand_pga_g:.3g} g, {c.capacity_pga_g:.3g} g",
             c.verdict,

@@ -101,10 +101,10 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
         )
     ]
     met = [one for one in r.interventions if one.meets_target]
-    for one in met:
-        then = f"; afterwards {one.next_mechanism}" if one.next_mechanism else ""
+    for number, one in enumerate(met, start=1):
+        then = f", afterwards {one.next_mechanism}" if one.next_mechanism else ""
         moves = f" (under the hazard, the strengthened building {rocking[one.name]})" if one.name in rocking else ""
-        said.append(f"{one.name}, {size_told(one)}{then}{moves}.")
+        said.append(f"({number}) {one.name}, {size_told(one)}{then}{moves}{';' if number < len(met) else '.'}")
     if not met:
         said.append("none: no tie and no thickness of those considered is sufficient.")
     return " ".join(said)

@@ -219,7 +219,7 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
     else:
         count, collapsed = r.count, r.collapsed
     if not count:
-        return None, acceptable, "probability", "open", "No motion could be run.", low, high
+        return None, acceptable, "of all runs", "open", "No motion could be run.", low, high
     share = collapsed / count
     least, most = wilson(collapsed, count)
     outcome = "stands" if share <= acceptable else "collapses" if share > 0.5 else "open"
@@ -227,7 +227,7 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
         f"{collapsed} of {count} runs collapse: {100 * share:.3g} %, with an interval of {100 * float(least):.3g} to "
         f"{100 * float(most):.3g} %; {100 * acceptable:g} % are acceptable."
     )
-    return share, acceptable, "probability", outcome, text, low, high
+    return share, acceptable, "of all runs", outcome, text, low, high
 
 
 def scaled_margin(r: OverLevels) -> tuple[float | None, float | None]:

@@ -14,10 +14,7 @@ def _cells(row: StrategyVerdict) -> tuple[str, ...]:
     def number(value: float | None) -> str:
         return "" if value is None else f"{value:.3g}"
 
-    unit = {"probability": "of all"}.get(row.unit, row.unit)
-    if not unit and row.axis == "displacement":
-        unit = "of the critical rotation"
-    return row.label, row.verdict_words, number(row.demand), number(row.capacity), unit, row.margin_told()
+    return row.label, row.verdict_words, number(row.demand), number(row.capacity), row.unit, row.margin_told()
 
 
 def table_of(rows: list[StrategyVerdict]) -> str:

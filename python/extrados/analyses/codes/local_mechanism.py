@@ -171,9 +171,8 @@ def _of_plan(context: Context) -> list[_Turning]:
     assert isinstance(plan, Plan)
     found = []
     for part in wall_parts(context.building):
-        above = "" if part.storey == 1 else f" above the foot of storey {part.storey}"
         place = (part.foot, float(plan.levels[-1]) if part.foot > 0.0 else None)
-        found.append(_body(part.body, f"wall {part.wall}{above}", place, part))
+        found.append(_body(part.body, part.words, place, part))
     return found
 
 
@@ -184,6 +183,7 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
     walls = [
         out.WallMechanism(
             wall=t.part.wall,
+            gable=t.part.gable,
             storey=t.part.storey,
             foot_m=t.part.foot,
             multiplier=r.multiplier,

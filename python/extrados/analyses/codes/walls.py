@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.analyses.codes.kinematics import NoMechanism, Overturning, Weight
+from extrados.analyses.codes.kinematics import NoMechanism, Overturning, Push, Weight
 from extrados.analyses.codes.mechanisms import set_back
 from extrados.analyses.context import Refused
-from extrados.model.errors import BadGeometry
+from extrados.model.errors import BadGeometry, blaming
+from extrados.model.geometry.polygons import signed_area
 from extrados.model.properties import Material
 from extrados.model.structures.plan import MEETS, Plan, PlanWall
 from extrados.schema.constants import GRAVITY
@@ -17,28 +18,53 @@ from extrados.views.building import Building
 
 @dataclass(frozen=True)
 class WallPart:
-    """A wall above the foot of a storey (from 1), which stands `foot` [m] above the ground, as a body about its edge there."""
+    """A wall above the foot of a storey (from 1), which stands `foot` [m] above the ground, as a body about its edge there; or
+    its gable alone, above its highest storey."""
 
     wall: str
     storey: int
     foot: float
     body: Overturning
+    gable: bool = False
+
+    @property
+    def words(self) -> str:
+        """Name in results."""
+        if self.gable:
+            return f"gable of wall {self.wall}"
+        return f"wall {self.wall}" if self.storey == 1 else f"wall {self.wall} above the foot of storey {self.storey}"
+
+
+@dataclass
+class _Actions:
+    """Of each wall and storey: load [N] on its top, the part of it that rests on the gable, thrust (2) [N] there; and whether a floor
+    or a prop restrains the top, and a rigid roof the gable."""
+
+    loads: dict[tuple[str, int], float]
+    on_gable: dict[str, float]
+    thrusts: dict[tuple[str, int], np.ndarray]
+    held: dict[str, set[int]]
+    held_gables: set[str]
 
 
 def wall_parts(building: Building) -> list[WallPart]:
     """Every wall above the foot of each storey above which nothing holds it.
 
     Simple overturning: walls across, flexible floors, joists and rods hold no wall; rigid floors and props do. Floors load the
-    walls that carry them, by their length, on the middle plane. NoMechanism where every wall is held.
+    walls that carry them, by their length, on the middle plane; purlins load a gable at half its rise. Rafters push on their walls.
+    Every gable is also a part of its own, unless a rigid roof restrains it. NoMechanism where every wall is held.
     """
     plan = building.structure
     assert isinstance(plan, Plan)
-    loads, held = _floors(plan)
+    actions = _floors(plan)
     parts = []
     for wall in plan.walls:
         first, last = plan.reach(wall)
-        free = max((k + 1 for k in held[wall.name] if first <= k <= last), default=first)
-        parts += [_part(building, plan, wall, storey, loads) for storey in range(free, last + 1)]
+        free = max((k + 1 for k in actions.held[wall.name] if first <= k <= last), default=first)
+        own = list(range(free, last + 1))
+        if wall.gable is not None and wall.name not in actions.held_gables:
+            own.append(last + 1)
+        parts += [_part(building, plan, wall, storey, actions) for storey in own]
     if not parts:
         raise NoMechanism(
             "Rigid floors or props restrain the top of every wall, so no wall overturns out of its plane as one body. The "
@@ -47,30 +73,31 @@ def wall_parts(building: Building) -> list[WallPart]:
     return parts
 
 
-def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int]]]:
-    """Load [N] that each wall bears on top of each storey, and the storeys on top of which each wall is held."""
-    loads: dict[tuple[str, int], float] = defaultdict(float)
-    held: dict[str, set[int]] = defaultdict(set)
+def _floors(plan: Plan) -> _Actions:
+    """What floors and props do to each wall; BadGeometry if a floor names a wall that is not adjacent to it."""
+    found = _Actions(defaultdict(float), defaultdict(float), defaultdict(lambda: np.zeros(2)), defaultdict(set), set())
     for k, floor in enumerate(plan.floors):
-        ring = plan.around(floor)
-        corner = np.array([np.asarray(plan.walls[w].start) + s * plan.walls[w].direction for w, s, _ in ring])
-        x, y = corner.T
-        area = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
-        lengths = {plan.walls[w].name: abs(end - start) for w, start, end in ring}
-        bearing = {name: lengths[name] for name in floor.bears_on if name in lengths} if floor.bears_on else lengths
-        if floor.load > 0.0 and not bearing:
-            raise BadGeometry(
-                f"floor on storey {floor.storey}: none of the walls that carry its load is adjacent to it",
-                ("structure", "floors", k, "bears_on"),
-            )
-        for name, length in bearing.items():
-            loads[name, floor.storey] += floor.load * area * length / sum(bearing.values())
+        with blaming("floors", k):
+            ring = plan.around(floor)
+            bearing = plan.bearing(floor, ring)
+        area = abs(signed_area(plan.outline(ring)))
+        total = sum(abs(b - a) for _, a, b in bearing)
+        for w, a, b in bearing:
+            wall = plan.walls[w]
+            share = floor.weight * area * abs(b - a) / total
+            found.loads[wall.name, floor.storey] += share
+            if floor.roof == "purlins" and wall.gable is not None and floor.storey == plan.reach(wall)[1]:
+                found.on_gable[wall.name] += share
+        for w, _, _, force in plan.thrusts(floor, ring):
+            found.thrusts[plan.walls[w].name, floor.storey] += force
         if floor.kind == "rigid":
-            for name in lengths:
-                held[name].add(floor.storey)
+            for w, _, _ in ring:
+                found.held[plan.walls[w].name].add(floor.storey)
+                if floor.roof is not None and floor.storey == plan.reach(plan.walls[w])[1]:
+                    found.held_gables.add(plan.walls[w].name)
     for prop in plan.props:
-        held[prop.wall].add(prop.storey)
-    return loads, held
+        found.held[prop.wall].add(prop.storey)
+    return found
 
 
 def _material(building: Building, plan: Plan, wall: PlanWall, storey: int) -> Material:
@@ -81,34 +108,52 @@ def _material(building: Building, plan: Plan, wall: PlanWall, storey: int) -> Ma
     return building.material if name is None else building.materials[name]
 
 
-def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: dict[tuple[str, int], float]) -> WallPart:
-    first, last = plan.reach(wall)
-    materials = {k: _material(building, plan, wall, k) for k in range(storey, last + 1)}
-    thickness = [plan.thickness_of(wall, k) for k in range(first, last + 1)]
-    foot, arm = float(plan.levels[storey - 1]), 0.5 * thickness[storey - first]
-    sole = plan.strips(wall, storey)[0][0]
+def _masonry(building: Building, plan: Plan, wall: PlanWall, storey: int) -> list[tuple[float, float]]:
+    """Masses [kg] of a wall above the foot of a storey, and the heights [m] of their centres above it; the gable is the last."""
+    last = plan.reach(wall)[1]
+    foot = float(plan.levels[storey - 1])
+    found = []
+    for k in range(storey, last + 1):
+        unit = _material(building, plan, wall, k).density * plan.thickness_of(wall, k)
+        floor = float(plan.levels[k - 1]) - foot
+        found += [(unit * length * (high - low), floor + 0.5 * (low + high)) for length, low, high in plan.strips(wall, k)]
+    if wall.gable is not None:
+        unit = _material(building, plan, wall, last).density * plan.thickness_of(wall, last)
+        found.append((0.5 * unit * wall.length * wall.gable.rise, float(plan.levels[last]) - foot + wall.gable.rise / 3.0))
+    return found
+
+
+def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, actions: _Actions) -> WallPart:
+    """The part of a wall above the foot of a storey; of the storey above its highest, its gable."""
+    last = plan.reach(wall)[1]
+    base = min(storey, last)
+    foot, arm = float(plan.levels[storey - 1]), 0.5 * plan.thickness_of(wall, base)
+    sole = plan.strips(wall, storey)[0][0] if storey <= last else wall.length
     if not sole > MEETS:
         number = plan.walls.index(wall)
         raise Refused(
             f"wall '{wall.name}' has no masonry at the foot of storey {storey}: openings occupy its whole length",
             ("structure", "walls", number, "openings"),
         )
-    mass = moment = 0.0  # kg, and about the foot kg m
-    for k in range(storey, last + 1):
-        floor = float(plan.levels[k - 1]) - foot
-        for length, low, high in plan.strips(wall, k):
-            part = materials[k].density * thickness[k - first] * length * (high - low)
-            mass += part
-            moment += part * (floor + 0.5 * (low + high))
+    parts = _masonry(building, plan, wall, storey)
+    mass, moment = sum(m for m, _ in parts), sum(m * z for m, z in parts)
     if not mass > 0.0:
         raise Refused("the moving part has no weight: give a density above zero", ("material", "density"))
     weights = [Weight(GRAVITY * mass, arm, moment / mass)]
+    on_gable, rise = actions.on_gable.get(wall.name, 0.0), 0.0 if wall.gable is None else wall.gable.rise
+    if on_gable > 0.0:
+        weights.append(Weight(on_gable, arm, float(plan.levels[last]) - foot + 0.5 * rise))
+    pushes = []
+    normal = np.array([-wall.direction[1], wall.direction[0]])
     for k in range(storey, last + 1):
         top = float(plan.levels[k]) - foot
-        if loads.get((wall.name, k), 0.0) > 0.0:
-            weights.append(Weight(loads[wall.name, k], arm, top))
+        load = actions.loads.get((wall.name, k), 0.0) - (on_gable if k == last else 0.0)
+        if load > 1e-9 * on_gable:
+            weights.append(Weight(load, arm, top))
         weights += [Weight(p.force, arm, top, sways=False) for p in plan.prestress if p.wall == wall.name and (p.level or last) == k]
-    strength = materials[storey].compressive_strength
+        thrust = abs(float(actions.thrusts.get((wall.name, k), np.zeros(2)) @ normal))
+        pushes += [Push(thrust, top)] if thrust > 0.0 else []
+    strength = _material(building, plan, wall, base).compressive_strength
     if strength is not None:
         weights = set_back(weights, strength, sole, 2.0 * arm)
-    return WallPart(wall.name, storey, foot, Overturning(tuple(weights)))
+    return WallPart(wall.name, storey, foot, Overturning(tuple(weights), tuple(pushes)), storey > last)

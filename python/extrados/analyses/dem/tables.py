@@ -225,6 +225,11 @@ class Dem(SpatialDem, Animated):
     tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
     tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
 
+    @property
+    def has_rates(self) -> bool:
+        """A tilt test finds the force at which no equilibrium is left, and a quasi-static run follows states of equilibrium."""
+        return self.test == "motion" and not self.quasi_static
+
 
 class DemDomain(SpatialDem):
     """Which pulses bring the structure down, by discrete elements, beside the four-hinge curves where they exist."""
@@ -271,11 +276,6 @@ class DemDomain(SpatialDem):
         ("further failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]"),
         max_length=20,
     )
-
-    @property
-    def has_rates(self) -> bool:
-        """A tilt test finds the force at which no equilibrium is left, and a quasi-static run follows states of equilibrium."""
-        return self.test == "motion" and not self.quasi_static
 
     @model_validator(mode="after")
     def _ascending(self) -> "DemDomain":

@@ -125,16 +125,23 @@ def tie_arrays(ties: ElementTies, tension: np.ndarray) -> dict[str, Array]:
     """Histories of the tensions as results store them; nothing without ties."""
     if ties.core is None:
         return {}
-    return {"tie_force": Array(tension, ("time", "tie"), "N", "forces of the ties, tension positive")}
+    return {"tie_force": Array(tension, ("time", "tie"), "N", "forces of ties and dampers, tension positive")}
 
 
-def section_arrays(ties: ElementTies) -> dict[str, Array]:
-    """Where the ties of a section are, as figures draw them; nothing without any."""
+def segment_arrays(ties: ElementTies, axes: int) -> dict[str, Array]:
+    """Where ties and dampers are in the plane (axes = 2) or in space (3), segment by segment, as figures draw them; nothing without any."""
     if not ties.strands:
         return {}
-    block = np.array([[blocks[0] for blocks in strand.blocks] for strand in ties.strands])
-    point = np.array([strand.point[:, :2] for strand in ties.strands])
+    ends = [(strand, k) for strand in ties.strands for k in strand.segments]
+    one, axis = ("tie", "axis") if axes == 2 else ("segment", "axis3")
     return {
-        "tie_block": Array(block, ("tie", "tie_end"), "", "numbers of the blocks at the two ends; -1 is the ground"),
-        "tie_point": Array(point, ("tie", "tie_end", "axis"), "m", "both ends as drawn"),
+        "tie_block": Array(
+            np.array([[strand.blocks[i][0] for i in k] for strand, k in ends]),
+            (one, "tie_end"),
+            "",
+            "numbers of the blocks at the two ends; -1 is the ground",
+        ),
+        "tie_point": Array(
+            np.array([strand.point[list(k), :axes] for strand, k in ends]), (one, "tie_end", axis), "m", "both ends as drawn"
+        ),
     }

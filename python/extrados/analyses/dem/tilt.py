@@ -14,7 +14,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.ties import section_arrays, tie_rows
+from extrados.analyses.dem.ties import segment_arrays, tie_rows
 from extrados.analyses.dem.trial import core_options
 from extrados.analyses.dem.words import tilt_answer
 from extrados.analyses.limit.common import geometry_arrays
@@ -92,7 +92,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
             ("0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open"),
         ),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
-        **section_arrays(model.ties),
+        **segment_arrays(model.ties, 2),
         **measures.support_arrays(model),
     }
     result.answer = tilt_answer(result.results)

@@ -41,7 +41,7 @@ def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
 
 
 def _tied(ties: list[TieRun] | None) -> str:
-    """The greatest forces of up to four ties."""
+    """The greatest forces of up to four ties and dampers."""
     if not ties:
         return ""
     ranked = sorted(ties, key=lambda tie: -abs(tie.peak_force_N))[:4]
@@ -51,7 +51,7 @@ def _tied(ties: list[TieRun] | None) -> str:
         else f"{tie.name} reaches {1e-3 * tie.peak_force_N:.4g} kN" + (" and yields" if tie.state == "yielded" else "")
         for tie in ranked
     ]
-    return f" Forces of the ties (tension positive): {', '.join(told)}{', ...' if len(ties) > 4 else ''}."
+    return f" Forces of ties and dampers (tension positive): {', '.join(told)}{', ...' if len(ties) > 4 else ''}."
 
 
 def motion_answer(r: DemRun, idle: bool) -> str:

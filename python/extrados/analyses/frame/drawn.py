@@ -8,6 +8,7 @@ from extrados.views.frame.frame import EquivalentFrame
 #: Number of a kind of element
 KINDS = {"spandrel": 0, "pier": 1, "ring beam": 2}
 FLOORS = {"none": 0, "flexible": 1, "rigid": 2, "joists": 3}
+ROOFS = {None: 0, "rafters": 1, "trusses": 2, "purlins": 3}
 
 
 def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
@@ -36,7 +37,7 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
             "",
             ("storey of a pier; for a spandrel or ring beam, the storey below"),
         ),
-        "element_pier": Array(
+        "element_kind": Array(
             np.array([KINDS[s.kind] for s in frame.strips]), ("element",), "", ", ".join(f"{n}: {word}" for word, n in KINDS.items())
         ),
         "wall_length": Array(np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls"),
@@ -50,6 +51,12 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
             "m",
             ("number of the wall, start and end along the wall, lower and upper height"),
         ),
+        "gable": Array(
+            np.array([(w, s, z) for w, wall in enumerate(plan.walls) for s, z in wall.gable_outline[1:2]]).reshape(-1, 3),
+            ("gable", "part"),
+            "m",
+            "number of the wall, distance of the ridge from its start, height of the ridge above the top of the wall",
+        ),
         "flange": Array(
             np.array(flanges).reshape(-1, 6),
             ("flange", "part"),
@@ -58,14 +65,16 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
         ),
         "rod": Array(np.array(rods).reshape(-1, 6), ("rod", "line"), "m", "x, y, z of both ends of tie rods"),
         "ring_beam": Array(np.array(beams).reshape(-1, 2), ("ring_beam", "part"), "", "wall, level"),
-        "floor": Array(np.array([_floor(frame, k) for k in range(len(plan.floors))]).reshape(-1, 6), ("floor", "part"), "m", FLOOR),
+        "floor": Array(np.array([_floor(frame, k) for k in range(len(plan.floors))]).reshape(-1, 8), ("floor", "part"), "m", FLOOR),
     }
 
 
 FLOOR = (
     "storey, kind ("
     + ", ".join(f"{n}: {word}" for word, n in FLOORS.items())
-    + ("), x and y of the middle of the floor, direction of the joists")
+    + "), x and y of the middle of the floor, direction of the joists or of the span of a roof, kind of roof ("
+    + ", ".join(f"{n}: {word or 'none'}" for word, n in ROOFS.items())
+    + "), pitch [deg]"
 )
 
 
@@ -79,7 +88,7 @@ def _thickness(frame: EquivalentFrame, w: int, storey: int) -> float:
 
 def _floor(frame: EquivalentFrame, k: int) -> tuple[float, ...]:
     plan, floor = frame.plan, frame.plan.floors[k]
-    corners = np.array([np.asarray(plan.walls[w].start) + s * plan.walls[w].direction for w, _, s in plan.around(floor)])
-    x, y = corners.mean(axis=0).tolist()
-    along = plan.wall(floor.bears_on[0]).direction if floor.kind == "joists" else np.zeros(2)
-    return (float(floor.storey), float(FLOORS[floor.kind]), x, y, float(-along[1]), float(along[0]))
+    x, y = plan.outline(plan.around(floor)).mean(axis=0).tolist()
+    along = plan.wall(floor.bears_on[0]).direction if floor.kind == "joists" or floor.roof else np.zeros(2)
+    roof = float(ROOFS[floor.roof]), floor.pitch or 0.0
+    return (float(floor.storey), float(FLOORS[floor.kind]), x, y, float(-along[1]), float(along[0]), *roof)

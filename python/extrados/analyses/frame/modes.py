@@ -6,6 +6,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.frame.drawn import drawn_arrays
 from extrados.analyses.frame.tables import FrameModes
 from extrados.core.errors import CoreError
 from extrados.core.frame import Frame, Rest
@@ -72,6 +73,25 @@ def modes_of(frame: EquivalentFrame, tangent: np.ndarray, count: int) -> list[Mo
     return found
 
 
+def _drawn(frame: EquivalentFrame, modes: list[Mode]) -> dict[str, Array]:
+    """Arrays of the figure: the walls on the plan, and the displacements of their ends and corners."""
+    moved = np.array([[one.rows @ m.shape for one in frame.traces] for m in modes])
+    moved /= np.abs(moved).max(axis=(1, 2), keepdims=True)
+    drawn = drawn_arrays(frame)
+    return {
+        **{name: drawn[name] for name in ("wall_line", "wall_thickness", "storey_height")},
+        "trace_place": Array(
+            np.array([t.place for t in frame.traces]), ("trace", "axis"), "m", "ends and corners of the walls on the plan"
+        ),
+        "trace_of": Array(
+            np.array([(t.wall, t.level) for t in frame.traces]), ("trace", "part"), "", "number of the wall from 0, and level of each place"
+        ),
+        "trace_shape": Array(
+            moved, ("mode", "trace", "direction"), "", "displacements of these places along x and y; the greatest of each mode is 1"
+        ),
+    }
+
+
 def run(context: Context, options: FrameModes) -> Result:
     """The modes of lowest frequency."""
     result = Result("frame-modes")
@@ -90,15 +110,21 @@ def run(context: Context, options: FrameModes) -> Result:
         for m in modes
     ]
     result.results = out.FrameModes(
-        modes=rows, moving_mass_kg=total, weight_N=frame.total_weight, piers=frame.piers, spandrels=frame.spandrels
+        modes=rows,
+        moving_mass_kg=total,
+        weight_N=frame.total_weight,
+        piers=frame.piers,
+        spandrels=frame.spandrels,
+        walls=[wall.name for wall in frame.plan.walls],
     )
     shapes = np.array([[one.rows @ (m.shape / np.abs(m.shape).max()) for one in frame.masses] for m in modes])
     result.arrays["place"] = Array(np.array([one.place for one in frame.masses]), ("mass", "xyz"), "m", "places of the masses")
     result.arrays["shape"] = Array(shapes, ("mode", "mass", "direction"), "", "displacements of the masses along x and y")
+    result.arrays |= _drawn(frame, modes)
     first = rows[0]
     result.answer = (
         f"First period {first['period_s']:.3g} s. The participating mass of this mode is "
-        f"{100 * first['mass_ratio_x']:.3g} % along x and {100 * first['mass_ratio_y']:.3g} % along y. The stiffness of "
+        f"{100 * first['mass_ratio_x']:.1f} % along x and {100 * first['mass_ratio_y']:.1f} % along y. The stiffness of "
         f"the masonry is {options.frame.stiffness:.3g} of its elastic value."
     )
     return result

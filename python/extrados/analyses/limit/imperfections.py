@@ -131,12 +131,9 @@ def run(context: Context, options: Imperfections) -> Result:
             ("capacity in both senses (towards +x or along the direction, then opposite); NaN if a geometry cannot stand"),
         ),
     }
-    result.tables = {
-        "imperfections": TableData(
-            {"survey": list(range(1, options.count + 1)), "to_right": gamma[:, 0], "to_left": gamma[:, 1]},
-            {"to_right": "g", "to_left": "g"},
-        )
-    }
+    senses = ("along", "opposite") if in_space(building, options) else ("to_right", "to_left")
+    columns = dict(zip(senses, gamma.T, strict=True))
+    result.tables = {"imperfections": TableData({"survey": list(range(1, options.count + 1)), **columns}, dict.fromkeys(columns, "g"))}
     result.answer = (
         f"Of {options.count} random geometries, whose points lie within {1e3 * deviation:.3g} mm of the given geometry, "
         f"90 % have a capacity of "

@@ -31,11 +31,11 @@ from extrados.limit.finite_motion import finite_motion
 from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
+from extrados.model.dimensions import with_article
 from extrados.model.errors import WHOLE
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import is_stack
 from extrados.model.geometry.earth import skyline
-from extrados.model.structure import Structure
 from extrados.results import limit as out
 from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, TableData
@@ -47,6 +47,8 @@ PATTERNS = 500  # patterns of even loads that are tried at a place
 MODEL = (
     'The ring alone does not represent a bridge. Add fill to the structure, and backing: as blocks, or with the structure of kind "bridge".'
 )
+MOST_PLACES = 20_000  # of a train
+NIL = 1e-6  # of the greatest load on the way: places with less are left away
 FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
 
 
@@ -116,8 +118,9 @@ class Places:
         every = np.ones(len(x), dtype=bool)
         if not self.adverse or not len(x):
             return [every]
-        arches = [np.sort(self.assembly.q[[joints[0], joints[-1]], 0]) for joints in self.assembly.chains.values()] or [self.span]
-        cuts = [np.linspace(*ends, parts + 1) for ends in arches for parts in ((2,) if axles else (4, 8))]
+        ends = (sorted(self.assembly.q[[joints[0], joints[-1]], 0].tolist()) for joints in self.assembly.chains.values())
+        arches = [(low, high) for low, high in ends] or [self.span]
+        cuts = [np.linspace(low, high, parts + 1) for low, high in arches for parts in ((2,) if axles else (4, 8))]
         within = [(low <= x) & (x <= high) for cut in cuts for low, high in itertools.pairwise(cut)]
         return [every, *([~every] if axles else []), *(one for one in within if one.any())]
 
@@ -273,6 +276,8 @@ def run(context: Context, options: MovingLoad) -> Result:
         capacity = factor * options.force * factors.live * factors.dynamic
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
+        if not any(train.within(low, high, place if way > 0 else low + high - place) for place, way in zip(places, ways, strict=True)):
+            raise Refused(f"places: the loads do not act on the {structure.word} at any of these positions", ("analysis", "places"))
         raise Refused(f"no load of this kind causes collapse of the {structure.word}, because such loads only compress the joints", WHOLE)
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
@@ -303,7 +308,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         **tie_rows(building, dead, state),
         duality_gap=gap,
         characteristic=factors == PartialFactors(),
-        violated=_violated(train, assembly, structure),
+        violated=_violated(train, assembly),
         **asked,
     )
     result.results = r
@@ -330,7 +335,9 @@ def run(context: Context, options: MovingLoad) -> Result:
     columns = {"place": places, **({"way": ways, "adequacy": adequacy} if train.known else {}), "collapse_load": finite}
     result.tables = {"moving_load": TableData({**columns, "mechanism": mechanisms}, {"place": "m", "collapse_load": "N"})}
     result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
-    result.answer = _words(options, r, structure)
+    filled = structure.kind == "blocks" and assembly.earth is not None
+    crossed = r.chain or ("bridge" if filled else structure.word)
+    result.answer = _words(options, r, with_article(crossed), _where(job, k, worst, r), len(places))
     return result
 
 
@@ -393,17 +400,37 @@ def _permissible(context: Context, options: MovingLoad, service: Serviceability,
 
 
 def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    """Places of the first axle [m] and which way it heads, 1 or -1."""
+    """Places of the first axle [m] and which way it heads, 1 or -1: all those at which an axle, or an end of an even load, is on the way.
+
+    Loads far apart cross one after the other. Of each group there are `count` places, and more where it is longer than the way.
+    """
+    span, marks = high - low, train.marks
     if options.places is not None:
         ahead = back = np.array(options.places, dtype=float)
+    elif not len(marks):  # loads without an end are the same everywhere
+        ahead = back = np.array([low])
     else:
-        ahead = np.linspace(low, high + train.length, options.count)
-        # A hair inside, so that the ends still lie on a stone.
-        ahead[0], ahead[-1] = ahead[0] + 1e-9 * (high - low), ahead[-1] - 1e-9 * (high - low)
+        ahead = np.concatenate(
+            [
+                _crossing(options.count, low + one[0], high + one[-1], span)
+                for one in np.split(marks, np.flatnonzero(np.diff(marks) > span) + 1)
+            ]
+        )
+        laden = np.array([train.within(low, high, place) for place in ahead])
+        ahead = ahead[laden > NIL * laden.max()]
         back = low + high - ahead
+    if len(ahead) > MOST_PLACES:
+        raise Refused(f"{len(ahead)} positions of the train exceed {MOST_PLACES}: reduce count, or give places", ("analysis", "count"))
     if not options.both_ways:
         return ahead, np.ones(len(ahead))
     return np.concatenate([ahead, back]), np.concatenate([np.ones(len(ahead)), -np.ones(len(back))])
+
+
+def _crossing(count: int, first: float, last: float, span: float) -> np.ndarray:
+    """Even places from first to last [m], a hair inside, so that an axle at the ends is still on a block."""
+    places = np.linspace(first, last, max(count, int(np.ceil(0.5 * count * (last - first) / span))))
+    places[0], places[-1] = places[0] + 1e-9 * span, places[-1] - 1e-9 * span
+    return places
 
 
 def _standing(job: Places, k: int, worst: Collapse) -> np.ndarray:
@@ -435,22 +462,27 @@ def _envelope(assembly: Assembly, line: np.ndarray, normal: np.ndarray) -> Table
     )
 
 
-def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
-    what = r.chain or structure.word
-    way = "span" if r.chain else "way"
-    place = f"x = {r.worst_place_m:.2f} m ({100 * r.worst_place_over_span:.0f} % of the {way})"
+def _where(job: Places, k: int, worst: Collapse, r: out.MovingLoad) -> str:
+    """Position of the loads at the worst place k: the first axle or, without axles, the stretches of the uniform loads."""
+    if len(job.train.axles):
+        way = "span" if r.chain else "way"
+        return f"its first axle at x = {r.worst_place_m:.2f} m ({100 * r.worst_place_over_span:.0f} % of the {way})"
+    return "uniform loads on x = " + " and ".join(f"{start:.2f} to {stop:.2f} m" for start, stop in _standing(job, k, worst))
+
+
+def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positions: int) -> str:
+    """The result in words; what: the chain or the structure that the load crosses."""
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
         factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
         text = (
-            f"The {what} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
-            f"the most dangerous place, with its first axle at {place}{heading}: {r.collapse_load_N / 1e3:.4g} kN are then on the structure."
+            f"{what[:1].upper()}{what[1:]} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
+            f"the most dangerous place, with {where}{heading}: {r.collapse_load_N / 1e3:.4g} kN are then on the structure."
         )
     else:
-        text = (
-            f"The least collapse load of the {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with its first axle "
-            f"at {place}."
-        )
+        text = f"The least collapse load of {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with {where}."
+    if r.places_without_limit:
+        text += f" At {r.places_without_limit} of {positions} positions no multiple of the load causes collapse."
     if options.force is not None:
         text += f" The safety factor of the given load of {options.force / 1e3:.4g} kN is {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
@@ -467,7 +499,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
     return text + spoken_ties(r.ties)
 
 
-def _violated(train: Train, assembly: Assembly, structure: Structure) -> list[str]:
+def _violated(train: Train, assembly: Assembly) -> list[str]:
     """What a load that crosses a bridge supposes of the structure, where it has none: earth that spreads the load."""
     if assembly.earth is not None:
         return []
@@ -475,7 +507,7 @@ def _violated(train: Train, assembly: Assembly, structure: Structure) -> list[st
     load = f"The {train.name}" if train.name in ("load", "train") else train.name
     return [
         (
-            f"{load} acts on the blocks of the {structure.word} directly{weight}: fill does not spread the load, and neither "
-            f"passive pressure nor backing restrains the {structure.word}."
+            f"{load} acts directly on the blocks{weight}: fill does not spread the load, and neither "
+            "passive pressure nor backing restrains the blocks."
         )
     ]

@@ -29,6 +29,8 @@ def needs(context: Context, options: BuildingAnalysis) -> Iterator[Need]:
             return  # solids have no chains and trains
     except BadGeometry:
         return  # told already
+    if getattr(options, "mortar", "neglected") == "ductile":
+        yield _refuse_mortar
     for k, load in enumerate(getattr(options, "load", [])):
         if load.z is not None:
             yield functools.partial(_refuse_height, k)
@@ -74,6 +76,13 @@ def _refuse_sections() -> None:
     )
 
 
+def _refuse_mortar() -> None:
+    raise Refused(
+        'mortar = "ductile" is only for blocks in space: give the key direction to analyse the blocks in space, or remove mortar',
+        ("analysis", "mortar"),
+    )
+
+
 def _placed(building: Building, load: tables.AppliedLoad, number: int) -> None:
     """Refused where a load acts on no block of the section."""
     from extrados.analyses.limit.applied import pieces
@@ -83,13 +92,21 @@ def _placed(building: Building, load: tables.AppliedLoad, number: int) -> None:
 
 def _refuse_of_sections(building: Building, options: BuildingAnalysis) -> None:
     """Refused where a deck asks of solids what is known in a plane section alone."""
+    crushes, slides = building.material.compressive_strength is not None, getattr(options, "friction_rule", "") == "non-associated"
     asked: dict[str, tuple[bool, Key]] = {
         **{name: (bool(getattr(options, name, None)), ("analysis", name)) for name in ("fracture", "buttress_alone", "chain")},
-        "crushing": (building.material.compressive_strength is not None, ("material", "compressive_strength")),
+        "crushing": (crushes and isinstance(options, tables.Thrust), ("material", "compressive_strength")),
+        "pyramids with crushing": (crushes and getattr(options, "pyramids", None) is not None, ("analysis", "pyramids")),
     }
     for what, (there, key) in asked.items():
         if there:
             raise Refused(f"{options.kind} of solids cannot include {what}: remove it, or analyse a plane section", key)
+    mortar = getattr(options, "mortar", "neglected") == "ductile"
+    if slides and (crushes or mortar):
+        raise Refused(
+            f'sliding without dilatancy of solids cannot include {"mortar" if mortar else "crushing"}: give friction_rule = "associated"',
+            ("analysis", "friction_rule"),
+        )
 
 
 def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:

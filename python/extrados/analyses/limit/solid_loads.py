@@ -7,7 +7,9 @@ import numpy as np
 
 from extrados.analyses.limit.applied import place_of
 from extrados.analyses.limit.common import SLACK
-from extrados.analyses.limit.tables import SpatialLimit
+from extrados.analyses.limit.tables import SpatialLimit, Tilt
+from extrados.limit.crushing import CrushingLimit
+from extrados.limit.mortar import mortared
 from extrados.limit.solids import SolidLimit
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results.limit import TieForce
@@ -20,9 +22,9 @@ from extrados.views.solids.strands import strand_names
 def solid_limit(
     building: Building, options: SpatialLimit, beams: np.ndarray | None = None, assembly: SolidAssembly | None = None
 ) -> SolidLimit:
-    """The programmes of a building's blocks with its ties and the loads of an analysis; loads that sway rest on the blocks
-    as fill does, and so do `beams` (n, 5): block, mass [kg] and place [m] of parts of ring beams. assembly: the blocks, by
-    default those of the building."""
+    """The programmes of a building's blocks with its ties, the strengths of its contacts and the loads of an analysis; loads that
+    sway rest on the blocks as fill does, and so do `beams` (n, 5): block, mass [kg] and place [m] of parts of ring beams.
+    assembly: the blocks, by default those of the building."""
     assembly = building.solids() if assembly is None else assembly
     fill, resting = [assembly.fill, np.empty((0, 5)) if beams is None else beams], np.zeros((len(assembly.mass), 6))
     for k, load in enumerate(options.load):
@@ -32,7 +34,25 @@ def solid_limit(
         if load.sways:
             fill.append(np.array([[block, load.force / GRAVITY, *point]]))
     loaded = replace(assembly, fill=np.concatenate(fill))
-    return SolidLimit(loaded, building.friction(assembly), building.strands(), resting)
+    friction, tension = building.friction(assembly), np.zeros(len(assembly.a))
+    if isinstance(options, Tilt) and options.mortar == "ductile":
+        loaded, tension = mortared(loaded, friction, *(building.joint_property(name, assembly) for name in ("cohesion", "tension")))
+    if (strength := building.material.compressive_strength) is not None:
+        return CrushingLimit(loaded, friction, np.full(len(tension), strength), building.strands(), resting, tension)
+    return SolidLimit(loaded, friction, building.strands(), resting, tension)
+
+
+def warn_of_mortar(building: Building, limit: SolidLimit) -> str | None:
+    """Told where contacts bear less tension than the deck gives."""
+    given = building.joint_property("tension", limit.assembly)
+    less = np.flatnonzero(limit.tension < given)
+    if not len(less):
+        return None
+    j = int(less[(given - limit.tension)[less].argmax()])
+    return (
+        f"{len(less)} contacts carry less tension than the deck gives, because Coulomb's law allows at most cohesion / friction: "
+        f"{limit.assembly.joint_names[j]} {limit.tension[j] / 1e3:.3g} kPa instead of {given[j] / 1e3:.3g} kPa"
+    )
 
 
 def strand_rows(building: Building, limit: SolidLimit, tension: np.ndarray) -> list[TieForce]:

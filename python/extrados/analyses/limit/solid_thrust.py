@@ -19,6 +19,7 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
 MOST_SAID = 4  # sections told in words
+ROUNDING = 1e-9  # of the weight
 
 
 def run(context: Context, options: Thrust) -> Result:
@@ -152,12 +153,19 @@ def _table(limit: SolidLimit, state: SolidState) -> TableData:
     )
 
 
+def _spoken(thrust: float, weight: float) -> str:
+    """A thrust [N] in words; rounding beside the weight [N] is 0."""
+    return f"{thrust / 1e3 if abs(thrust) > ROUNDING * weight else 0.0:.4g} kN"
+
+
 def _words(r: out.SolidThrust) -> str:
     told = []
     for one in r.sections[:MOST_SAID]:
-        least, most = ("unlimited" if n is None else f"{n / 1e3:.4g} kN" for n in (one.least_N, one.greatest_N))
-        central = "" if one.central_N is None else f", {one.central_N / 1e3:.4g} kN in the most central state"
-        told.append(f"at section '{one.name}' ({one.direction}) from {least} to {most}{central}")
+        least, most = ("unlimited" if n is None else _spoken(n, r.weight_N) for n in (one.least_N, one.greatest_N))
+        central = "" if one.central_N is None else f", {_spoken(one.central_N, r.weight_N)} in the most central state"
+        told.append(
+            f"at section '{one.name}' ({one.direction}{f', sum over {one.contacts} contacts' if one.contacts > 1 else ''}) from {least} to {most}{central}"
+        )
     text = f"At {r.gamma_g:g} g along {r.load_direction_deg:g} degrees the thrust is {'; '.join(told)}. " if told else ""
     if r.least_part_of_joints is not None:
         text += (

@@ -1,6 +1,7 @@
 """tilt of solids: the horizontal acceleration in any direction at which blocks in space become a mechanism."""
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 
@@ -8,9 +9,10 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.block_size import by_block_size, in_words, warning_of
 from extrados.analyses.limit.common import named_places, spoken_ties
 from extrados.analyses.limit.paths import doubt
-from extrados.analyses.limit.solid_loads import solid_limit, strand_arrays, strand_rows
+from extrados.analyses.limit.solid_loads import solid_limit, strand_arrays, strand_rows, warn_of_mortar
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.limit.tables import Tilt
+from extrados.limit.crushing import CrushingLimit
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
 from extrados.limit.face_law import FaceLaw
 from extrados.limit.solids import Falls, Programme, SolidLimit
@@ -18,7 +20,7 @@ from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results import solids as out
 from extrados.results.fields import Keys, given
-from extrados.results.limit import DILATANT
+from extrados.results.limit import DILATANT, DUCTILE
 from extrados.results.model import Array, Result
 from extrados.results.solid_files import scene_files
 from extrados.schema.constants import GRAVITY
@@ -33,6 +35,7 @@ MOST_CONTACTS = 20
 MOST_NAMED = 4
 TWISTS = 0.03  # of the capacity: a face law that takes more is told
 OPEN = 1e-6  # of the fastest: less is no opening
+NEGLECTED = ("cohesion", "tension")  # by the certificates of dry joints
 
 
 def run(context: Context, options: Tilt) -> Result:
@@ -47,8 +50,9 @@ def run(context: Context, options: Tilt) -> Result:
     asked = np.unique(np.round(np.concatenate([[first, opposite], angles]), 9))
     pushed = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
     found_at = dict(zip(asked.tolist(), pushed, strict=True))
-    there, back = (standing(found_at[round(d, 9)], assembly) for d in (first, opposite))
-    refuse_falling(there, back, first)
+    bare = () if options.mortar == "ductile" else NEGLECTED
+    there, back = (standing(found_at[round(d, 9)], assembly, bare) for d in (first, opposite))
+    refuse_falling(there, back, first, bare)
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
     capacity = np.array([np.inf if one is None else standing(one, assembly).gamma for one in rose])
     result = Result("tilt")
@@ -67,11 +71,19 @@ def run(context: Context, options: Tilt) -> Result:
                 ]
             )
             least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])
-    if options.face_law or (options.face_law is None and slides and len(assembly.a) <= MOST_BESIDE):
+    if isinstance(limit, CrushingLimit):
+        sliding["crushing_contacts"] = _crushing(assembly, there)
+        if options.face_law:
+            sliding["face_law_reason"] = "the face law neglects crushing, so the face law is not calculated"
+    elif options.face_law or (options.face_law is None and slides and len(assembly.a) <= MOST_BESIDE):
         sliding |= _by_faces(limit, [found_at[round(d, 9)] for d in (first, opposite)], (first, opposite), result)
     if options.block_size and isinstance(sound := found_at[round(first, 9)], Programme):
         sliding["block_sizes"] = sizes = by_block_size(context, options, first, sound.gamma)
         if told := warning_of(sizes):
+            result.warnings.append(told)
+    if options.mortar == "ductile":
+        sliding |= _dry(context, options, asked.tolist(), (first, opposite))
+        if told := warn_of_mortar(building, limit):
             result.warnings.append(told)
     opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
@@ -113,14 +125,31 @@ def run(context: Context, options: Tilt) -> Result:
     return result
 
 
-def refuse_falling(there: Programme, back: Programme, first: float) -> None:
+def refuse_falling(there: Programme, back: Programme, first: float, neglects: tuple[str, ...] = NEGLECTED) -> None:
     """CannotStand if the structure requires a horizontal load; first: direction [deg]."""
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
             f"the structure can stand only under a horizontal load along {first:g} degrees between {low:.4f} and {high:.4f} "
-            "g; certificate: the mechanism of the smaller load, in which the weights do positive work"
+            "g; certificate: the mechanism of the smaller load, in which the weights do positive work",
+            neglects=neglects,
         )
+
+
+def _dry(context: Context, options: Tilt, directions: list[float], ends: tuple[float, float]) -> Keys:
+    """Keys of the results without mortar: the capacities of dry joints, 0 where they cannot stand."""
+    limit = solid_limit(context.building, options.model_copy(update={"mortar": "neglected"}))
+    pushed = limit.pushes(directions, context.threads)
+    gammas = [inf if one is None else 0.0 if isinstance(one, Falls) else max(one.gamma, 0.0) for one in pushed]
+    along = dict(zip(directions, gammas, strict=True))
+    there, back = (along[round(d, 9)] for d in ends)
+    found = {"collapse_acceleration_dry_g": there, "collapse_acceleration_dry_opposite_g": back, "least_acceleration_dry_g": min(gammas)}
+    return {name: None if value == inf else value for name, value in found.items()}
+
+
+def _crushing(assembly: SolidAssembly, found: Programme) -> int:
+    """Contacts that crush in a mechanism: those of which a corner approaches."""
+    return len(np.unique(assembly.corner_joint[_corner_rates(assembly, found)[0] < -OPEN]))
 
 
 def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict[str, Array]:
@@ -133,7 +162,10 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
             assembly.normal, ("contact", "axis3"), "", ("normals of the contacts, pointing into the first of the two blocks")
         ),
         "collapse_force": Array(
-            there.force, ("contact_corner", "component"), "N", "compression and both shear forces at the corners at collapse"
+            there.force,
+            ("contact_corner", "component"),
+            "N",
+            "compression (tension of mortar negative) and both shear forces at the corners at collapse",
         ),
         "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first of the two blocks of each contact at collapse"),
         "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application of the force: centre of the compression"),
@@ -157,6 +189,8 @@ def _without_dilatancy(
     """Keys of the results on sliding without dilatancy, and the least states by direction: along the push, opposite, and further
     directions [deg]."""
     contacts = len(limit.assembly.a)
+    if isinstance(limit, CrushingLimit) or options.mortar == "ductile":
+        return {"non_associated_reason": "with crushing, or with mortar, only the upper bound is calculated"}, {}
     if options.friction_rule == "associated" and contacts > MOST_BESIDE:
         why = f'the structure has more than {MOST_BESIDE} contacts. To calculate this state, give friction_rule = "non-associated"'
         return {"non_associated_reason": why}, {}
@@ -230,13 +264,14 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
     }
 
 
-def standing(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
+def standing(found: Programme | Falls | None, assembly: SolidAssembly, neglects: tuple[str, ...] = NEGLECTED) -> Programme:
     """The programme of blocks that stand; CannotStand with the certificate, Immovable where no load causes collapse."""
     if found is None:
         raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks on all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
-        raise CannotStand(f"certificate: a mechanism, fastest at {name}, that no contact resists and in which the weights do positive work")
+        text = f"certificate: a mechanism, fastest at {name}, that no contact resists and in which the weights do positive work"
+        raise CannotStand(text, neglects=neglects)
     return found
 
 
@@ -305,6 +340,8 @@ def _resultants(assembly: SolidAssembly, found: Programme) -> tuple[np.ndarray, 
         np.stack([np.bincount(joint, values[:, k], count) for k in range(3)], axis=1)
         for values in (at_corner, pressure[:, None] * assembly.corner)
     )
+    if assembly.keys is not None:
+        np.add.at(force, assembly.keys.joint, np.einsum("vk,vkx->vx", found.key_force, frames[assembly.keys.joint, 1:]))
     return force, centre / total[:, None]
 
 
@@ -363,6 +400,10 @@ def _told(r: out.SolidTilt) -> str:
     return text
 
 
+def _or_none(gamma: float | None) -> str:
+    return "unlimited" if gamma is None else f"{gamma:.4f} g"
+
+
 def _words(word: str, r: out.SolidTilt, count: int) -> str:
     along = f"along {r.load_direction_deg:g} degrees in plan"
     text = (
@@ -381,6 +422,14 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
         )
     if r.dilating_contacts:
         text += f"Contacts slide: {DILATANT}. " + _told(r)
+    if r.crushing_contacts is not None:
+        text += f"Contacts crush at their compressive strength: {r.crushing_contacts} do in this mechanism. "
+    if r.least_acceleration_dry_g is not None:
+        text += (
+            f"The joints keep cohesion and tension until collapse: {DUCTILE}. Without mortar the collapse acceleration is "
+            f"{_or_none(r.collapse_acceleration_dry_g)} along {r.load_direction_deg:g} degrees, "
+            f"{_or_none(r.collapse_acceleration_dry_opposite_g)} in the opposite direction. "
+        )
     text += f"The lower bound (equilibrium) and the upper bound (mechanism) differ by {r.duality_gap:.1e} g."
     text += in_words(r.block_sizes) + spoken_ties(r.ties)
     if r.pyramids is not None:

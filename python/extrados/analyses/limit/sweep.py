@@ -139,7 +139,7 @@ def run(context: Context, options: Sweep) -> Result:
     _store(options, r, values, outcomes, numbers, result)
     result.arrays.update((_solid_examples if spatial else _examples)(ask, values, outcomes, numbers))
     result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
-    result.answer = _words(options, r)
+    result.answer = _words(options, r, locate or whole)
     return result
 
 
@@ -334,7 +334,7 @@ def _solid_examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], num
     return found | {"example_mechanism": Array(np.array(shown, dtype=int), ("example",), "", "numbers of the mechanisms that are drawn")}
 
 
-def _words(options: Sweep, r: out.Sweep) -> str:
+def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     unit = f" {r.unit}" if r.unit else ""
     best, most = f"{r.optimum_value:.4g}{unit}", r.optimum_collapse_acceleration_g
     level = [v for v, g in zip(r.values, r.collapse_accelerations_g, strict=True) if g is not None and abs(g - most) <= LEVEL * abs(most)]
@@ -354,6 +354,8 @@ def _words(options: Sweep, r: out.Sweep) -> str:
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
+    if not located:
+        text += " Changes of the mechanism between these values are not located: locate = true locates them."
     if locked:
         text += f" At {locked} the structure locks: beyond this value no load of this kind causes collapse."
     if r.stable_limits:

@@ -92,6 +92,13 @@ class Tilt(SpatialLimit, Animated):
         ge=4,
         le=720,
     )
+    mortar: Literal["neglected", "ductile"] = key(
+        "neglected",
+        (
+            'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints keep both until '
+            "collapse. Mortar is brittle, so this result is an upper bound; the result for dry joints is given too"
+        ),
+    )
     face_law: bool | None = key(
         None,
         (
@@ -112,6 +119,11 @@ class Tilt(SpatialLimit, Animated):
         ge=3,
         le=64,
     )
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Mortar counts where it lasts."""
+        mortar = ("joints.cohesion", "joints.tension") if self.mortar == "ductile" else ()
+        return super().rests_on(building) | dict.fromkeys(mortar)
 
 
 class Section(Table):
@@ -271,8 +283,10 @@ TrainName = Literal[
 class UniformLoad(Table):
     """A load spread evenly along a train, over all of the width that carries it."""
 
-    start: Length | None = key(None, "start of the load, as a distance behind the first axle; default: unlimited")
-    stop: Length | None = key(None, "end of the load, as a distance behind the first axle; default: unlimited")
+    start: Length | None = key(
+        None, "start of the load, as a distance behind the first axle (without axles: behind the position of the train); default: unlimited"
+    )
+    stop: Length | None = key(None, "end of the load, as a distance behind the same point; default: unlimited")
     load: LineForce = key(about="load per length of bridge", gt=0)
 
 
@@ -335,7 +349,9 @@ class MovingLoad(LimitAnalysisTable):
         ),
     )
     both_ways: bool = key(False, "whether the train also crosses towards the left, with its first axle in front")
-    count: int = key(81, "number of positions along the span", ge=3, le=2000)
+    count: int = key(
+        81, "number of positions while a load crosses the span; a train longer than the span has proportionally more", ge=3, le=2000
+    )
     places: list[Length] | None = key(None, "positions of the first axle; replaces count", min_length=1, max_length=2000)
 
     @model_validator(mode="after")

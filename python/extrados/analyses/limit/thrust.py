@@ -20,6 +20,7 @@ from extrados.analyses.needs import in_space
 from extrados.limit.answer import Answer, assess, safety_factor
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.model.dimensions import with_article
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import is_stack
 from extrados.results import limit as out
@@ -138,7 +139,7 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
             )
         else:
             text = (
-                f"At {r.gamma_g:g} g the horizontal thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre "
+                f"At {r.gamma_g:g} g the horizontal thrust of {with_article(r.chain)} lies between {least:.4g} and {most:.4g} kN per metre "
                 f"of depth, at its {'crown' if tied else 'left springing'}"
             )
             if central is not None:

@@ -31,6 +31,7 @@ from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.plane_path import collapse_along_path
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
+from extrados.model.dimensions import with_article
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results import limit as out
 from extrados.results.fields import Keys
@@ -113,7 +114,7 @@ def run(context: Context, options: Tilt) -> Result:
     if answer.least:
         first = next(iter(answer.least))
         for word, state_of in (("least", answer.least[first]), ("most", answer.most[first])):
-            about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
+            about = f"of {'least' if word == 'least' else 'greatest'} thrust of {with_article(first)}, upright"
             result.arrays.update(state_arrays(assembly, word, state_of, about))
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
             result.arrays.update(tie_arrays(building, answer.loads, {word: state_of}))

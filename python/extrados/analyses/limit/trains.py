@@ -31,11 +31,19 @@ class Train:
     known: bool
 
     @property
-    def length(self) -> float:
-        """From its front to its rear, but for even loads without an end [m]."""
-        ends = [*self.axles, *self.even[:, :2].ravel()]
-        within = [x for x in ends if abs(x) < FOR_EVER]
-        return max(within) if within else 0.0
+    def marks(self) -> np.ndarray:
+        """Axles, and ends of even loads where they have one, from the front to the rear [m]. A load without a front that ends before
+        the first axle has none: it is on all of the way then, as nearly with the first axle at its end."""
+        front = min(self.axles, default=-np.inf)
+        ends = [end for start, stop, _ in self.even for end in (start, stop) if start > -FOR_EVER or stop > front]
+        found = np.unique([*self.axles, *ends])
+        return found[np.abs(found) < FOR_EVER]
+
+    def within(self, low: float, high: float, place: float) -> float:
+        """Load between two places when the first axle, heading to +x, is at a place [m]: [N], a share where no load is given."""
+        at = place - self.axles
+        ends = np.clip(place - self.even[:, :2], low, high)
+        return float(self.forces[(low <= at) & (at <= high)].sum() + self.even[:, 2] @ (ends[:, 0] - ends[:, 1]))
 
 
 def train_of(options: MovingLoad, depth: float) -> Train:

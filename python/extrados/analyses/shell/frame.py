@@ -65,7 +65,7 @@ def _piers(
     rows = []
     first, last = plan.reach(wall)
     for storey in range(first, last + 1):
-        openings = [o for o in wall.openings if o.storey == storey]
+        openings = plan.openings_in(wall, storey)
         foot, tall = float(plan.levels[storey - 1]), plan.storeys[storey - 1]
         low, high = max((o.z[0] for o in openings), default=0.0), min((o.z[1] for o in openings), default=tall)
         if low >= high:  # no height cuts all of them: that of the tallest

@@ -59,7 +59,7 @@ def _sections(
     """Of the row of elements of a wall that their lower and upper ends say."""
     found = []
     for part, points, layers in model.places():
-        if part.wall != wall:
+        if part.wall != wall or part.kind != "Q4":  # triangles are those of a gable
             continue
         corner = model.mesh.walls[wall].unfolded(model.mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
         low, high = corner[..., 1].min(axis=1), corner[..., 1].max(axis=1)

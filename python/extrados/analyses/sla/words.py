@@ -34,7 +34,7 @@ def answer_of_wall(r: dict[str, Any], both: bool, row: str = "event") -> str:
     text = (
         f"The load {'has its peak at' if peaks else 'has reached'} {r['greatest_load_N'] / 1e3:.4g} kN with a "
         f"displacement of {r['greatest_load_displacement_m'] * 1e3:.4g} "
-        f"mm{'' if peaks else ', without having passed a peak'} ({row} {r['greatest_load_event']} of {r['events']}). The "
+        f"mm{'' if peaks else ', without having passed a peak'} ({row} {r['greatest_load_event']} of the {r['events']} calculated). The "
         f"run ended for this reason: {r['stop']}."
     )
     text += steps_in_words(r)

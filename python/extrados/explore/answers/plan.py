@@ -76,7 +76,7 @@ def _plan(desk: Desk) -> Plan | None:
 
 def _told(table: Plan) -> dict[str, Any]:
     def wall(one: PlanWall) -> dict[str, Any]:
-        openings = [{"storey": o.storey, "x": list(o.x), "z": list(o.z)} for o in one.openings]
+        openings = [{"storey": o.storey, "x": list(o.x), "z": list(o.z)} | ({"through": True} if o.through else {}) for o in one.openings]
         first, last = table.reach(one)
         return {
             "name": one.name,
@@ -108,7 +108,8 @@ def _walls(message: Message) -> list[dict[str, Any]]:
             storey = one.get("storey") if isinstance(one, dict) else None
             if isinstance(storey, bool) or not isinstance(storey, int) or not 0 < storey <= MOST_STOREYS:
                 raise BadMessage("expected a storey for each opening")
-            rows.append({"storey": storey, "x": numbers(one.get("x"), 2), "z": numbers(one.get("z"), 2)})
+            through = {"through": True} if one.get("through") is True else {}
+            rows.append({"storey": storey, "x": numbers(one.get("x"), 2), "z": numbers(one.get("z"), 2)} | through)
         found.append(
             {
                 "name": name,
@@ -179,6 +180,7 @@ def _row(wall: dict[str, Any], was: dict[str, Any] | None, raw: Any) -> Any:
 def _kept_opening(one: dict[str, Any], k: int, wall: dict[str, Any], was: dict[str, Any] | None, kept: dict[str, Any]) -> dict[str, Any]:
     """An opening with the other keys (a lintel) that it had: that of its number if the count is the same, else an equal one."""
     new = {"storey": one["storey"], "x": [round(v, 4) for v in one["x"]], "z": [round(v, 4) for v in one["z"]]}
+    new |= {"through": True} if one.get("through") else {}
     old = [] if was is None else was["openings"]
     at = k if len(old) == len(wall["openings"]) else next((i for i, other in enumerate(old) if other == one), None)
     if at is None or at >= len(old):

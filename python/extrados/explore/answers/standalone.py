@@ -26,7 +26,7 @@ from extrados.results.store import StoreError
 
 STATIC = Path(__file__).parents[1] / "static"
 #: Modules of the page in the file, each after those that it imports
-MODULES = ("words.js", "dom.js", "gestures.js", "stage.js", "transport.js", "standalone.js")
+MODULES = ("words.js", "said.js", "dom.js", "gestures.js", "stage.js", "transport.js", "standalone.js")
 #: Values of the size and of the tilt; share of the present size and of the capacity that they reach
 SIZES, TILTS, REACH_SIZE, REACH_TILT = 15, 21, 0.5, 1.15
 #: Tilt that the file reaches at least [g]

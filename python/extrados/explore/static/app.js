@@ -11,6 +11,7 @@ import { fallPanel } from "./fall.js";
 import { deckOf, fragmentOf } from "./share.js";
 import { planPanel } from "./plan.js";
 import { sheetPanel } from "./sheet.js";
+import { said } from "./said.js";
 import { sidebar } from "./sidebar.js";
 import { choose, language, LANGUAGES, tr } from "./words.js";
 
@@ -45,8 +46,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   const status = h("div", { class: "status", role: "status", "aria-live": "polite" });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
-  const undoButton = h("button", { class: "icon", title: "Undo (Ctrl+Z)", "aria-label": tr`Undo`, onclick: () => app.undo() }, "↶");
-  const redoButton = h("button", { class: "icon", title: "Redo (Ctrl+Shift+Z)", "aria-label": tr`Redo`, onclick: () => app.redo() }, "↷");
+  const undoButton = h("button", { class: "icon", title: tr`Undo (Ctrl+Z)`, "aria-label": tr`Undo`, onclick: () => app.undo() }, "↶");
+  const redoButton = h("button", { class: "icon", title: tr`Redo (Ctrl+Shift+Z)`, "aria-label": tr`Redo`, onclick: () => app.redo() }, "↷");
   const title = h("h1", { class: "title" });
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": tr`Views` }, TABS.map(([name, label], k) =>
     h("button", { role: "tab", id: `tab-${name}`, "data-tab": name, onclick: () => setTab(name), onkeydown: (e) => {
@@ -181,7 +182,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (words.decks && app.welcome) { app.welcome.decks = words.decks; if (words.runs) app.welcome.runs = words.runs; tell("folder"); }
     if (words.scene) {
       scenes += 1;
-      app.scene = words.scene; app.arrays = arrays; app.view.gamma = words.limit && words.to === "show" ? words.scene.gamma : app.view.gamma; app.handles = words.handles ?? []; app.deck = words.deck; app.anchor = words.anchor ?? [0, 0]; app.detail = null;
+      app.scene = words.scene; app.arrays = arrays; app.view.gamma = words.limit && words.to === "show" ? words.scene.gamma : app.view.gamma; app.handles = (words.handles ?? []).map((one) => ({ ...one, label: said(one.label) })); app.deck = words.deck; app.anchor = words.anchor ?? [0, 0]; app.detail = null;
       if (words.opened !== undefined) opened(words);
       app.turned();
       drawing.show(app.scene, arrays, app.handles, words.opened === true);
@@ -481,7 +482,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   const turned = () => drawing.setTheta(app.tab === "motion" ? 0 : Math.atan(app.scene?.gamma ?? 0));
   app.turned = turned;
 
-  top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": tr`Help`, title: "Help (?)", onclick: help }, "?"));
+  top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": tr`Help`, title: tr`Help (?)`, onclick: help }, "?"));
   sidebar(app, side);
   structurePanel(app, lower);
   app.sheet = Object.assign(sheetPanel(app, stageFrame, stageBox), { button: drawButton });

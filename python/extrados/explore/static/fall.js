@@ -1,5 +1,6 @@
 // The collapse of a structure that cannot stand, or is tilted beyond its capacity: shown in real time, then slower.
 import { capital, h } from "./dom.js";
+import { said } from "./said.js";
 import { tr } from "./words.js";
 
 const LAST = 1.0; // s for which the last picture stays before the replay
@@ -53,7 +54,7 @@ export function fallPanel(app, frame) {
 
   function tell() {
     const { scene } = app;
-    const told = scene.why ?? app.detail?.why ?? "";
+    const told = said(scene.why ?? app.detail?.why ?? "");
     why.title = told;
     why.replaceChildren(h("b", {}, scene.falls === "weight" ? tr`Cannot stand. ` : tr`Collapses towards ${scene.falls === "plus" ? "+x" : "−x"}. `), it.failed || capital(told.split("; certificate")[0]));
     again.disabled = slow.disabled = !it.time.length;

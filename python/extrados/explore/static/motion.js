@@ -1,6 +1,7 @@
 // Motion: the pulse or record, the rocking response over earlier ones, the map of pulses, energy, friction, and play.
 import { chart } from "./chart.js";
 import { h, number, quantity, s, set } from "./dom.js";
+import { said } from "./said.js";
 import { tr } from "./words.js";
 
 const SPEEDS = [[1, tr`real time`], [0.5, tr`half`], [0.2, tr`a fifth`], [0.05, tr`a twentieth`]];
@@ -88,7 +89,7 @@ export function motionPanel(app, lower, frame) {
       if (app.deck?.structure && app.deck?.motion?.kind === "record") app.ask({ do: "impulse", lane: "impulse" });
     }, 60);
   }
-  const blank = (title) => ({ title, x: { label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [], span: [0, 1] });
+  const blank = (title) => ({ title, x: { label: tr`time`, unit: "s" }, y: { label: tr`acceleration`, unit: "g" }, series: [], span: [0, 1] });
   function begin(kind) {
     const g = app.scene?.capacity ? Math.max(1.6 * app.scene.capacity.plus_g, 0.02) : 0.3;
     const amplitude = `${Number(g.toPrecision(2))} g`, time = Number((0.08 * Math.sqrt(app.scene?.size_m ?? 4)).toPrecision(2));
@@ -100,7 +101,7 @@ export function motionPanel(app, lower, frame) {
     it.words = told; it.arrays = it.ground = arrays;
     const open = told.violated.length > 0;
     const verdict = open ? tr`Outcome open: an assumption does not hold. ` : { "no-hinging": tr`No rocking. `, recovery: tr`Rocking, then recovery. `, collapse: tr`Collapse. ` }[told.outcome] ?? "";
-    words.replaceChildren(h("b", { class: open ? "" : told.outcome === "collapse" ? "bad" : "good" }, verdict), told.answer, ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${w}`)));
+    words.replaceChildren(h("b", { class: open ? "" : told.outcome === "collapse" ? "bad" : "good" }, verdict), said(told.answer), ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${said(w)}`)));
     it.end = told.active_s || 1;
     const end = it.end;
     set(slider, { max: end });
@@ -120,7 +121,7 @@ export function motionPanel(app, lower, frame) {
     else {
       let [low, high] = [0, 0];
       for (const v of ground.motion) { low = Math.min(low, v); high = Math.max(high, v); }
-      charts.pulse.draw({ title: tr`Ground acceleration`, x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: Math.min(0, 1.1 * low), most: Math.max(0, 1.22 * high) }, ground);
+      charts.pulse.draw({ title: tr`Ground acceleration`, x: { array: "motion_time", label: tr`time`, unit: "s" }, y: { label: tr`acceleration`, unit: "g" }, series: [{ array: "motion", label: tr`ground` }], least: Math.min(0, 1.1 * low), most: Math.max(0, 1.22 * high) }, ground);
     }
     if (!arrays) { for (const key of ["history", "energy", "friction"]) charts[key].draw({ ...blank({ history: tr`Rotation`, energy: tr`Energy`, friction: tr`Friction along the joints` }[key]), y: { label: "", unit: "" } }, {}); }
     else {
@@ -128,13 +129,13 @@ export function motionPanel(app, lower, frame) {
       const flat = (v) => ({ x: Float32Array.of(0, arrays.time.at(-1) || 1), y: Float32Array.of(v, v) });
       const level = flat(critical), under = flat(-1e3 * told.critical_rad[1]);
       const showLimit = most > 0.25 * critical;
-      charts.history.draw({ title: tr`Rotation`, x: { array: "time", label: "time", unit: "s" }, y: { label: "rotation", unit: "mrad" }, symmetric: true, span: [0, it.end], marks: Float64Array.from(told.impact_times_s),
-        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: arrays.rotation_upper ? tr`lower block` : "now", factor: 1e3, unnamed: !arrays.rotation_upper, colour: 0 },
+      charts.history.draw({ title: tr`Rotation`, x: { array: "time", label: tr`time`, unit: "s" }, y: { label: tr`rotation`, unit: "mrad" }, symmetric: true, span: [0, it.end], marks: Float64Array.from(told.impact_times_s),
+        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: tr`earlier`, factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: arrays.rotation_upper ? tr`lower block` : tr`now`, factor: 1e3, unnamed: !arrays.rotation_upper, colour: 0 },
           ...(arrays.rotation_upper ? [{ array: "rotation_upper", label: tr`upper block`, factor: 1e3, colour: 2, dashed: true }] : []),
-          ...(showLimit ? [{ array: level.y, x: level.x, label: "critical", dashed: true, colour: 1, unnamed: true }, { array: under.y, x: under.x, label: "critical", dashed: true, colour: 1, unnamed: true }] : [])] }, arrays);
-      const axis = { array: "time", label: "time", unit: "s" }, span = [0, it.end];
+          ...(showLimit ? [{ array: level.y, x: level.x, label: tr`critical`, dashed: true, colour: 1, unnamed: true }, { array: under.y, x: under.x, label: tr`critical`, dashed: true, colour: 1, unnamed: true }] : [])] }, arrays);
+      const axis = { array: "time", label: tr`time`, unit: "s" }, span = [0, it.end];
       const big = Math.max(...[...arrays.potential, ...arrays.kinetic].map(Math.abs), 1e-12), kilo = big > 2000 ? [1e-3, "kJ"] : [1, "J"];
-      if (shownThird === "energy") charts.energy.draw({ title: tr`Energy`, span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: tr`energy supplied less energy lost`, dashed: true, factor: kilo[0] }] }, arrays);
+      if (shownThird === "energy") charts.energy.draw({ title: tr`Energy`, span, x: axis, y: { label: tr`energy`, unit: kilo[1] }, series: [{ array: "kinetic", label: tr`kinetic`, factor: kilo[0] }, { array: "potential", label: tr`potential`, factor: kilo[0] }, { array: "ledger", label: tr`energy supplied less energy lost`, dashed: true, factor: kilo[0] }] }, arrays);
     }
     if (map || !it.map || it.map.why) drawMap(); else dot(charts.map);
     cursors();
@@ -142,12 +143,12 @@ export function motionPanel(app, lower, frame) {
   function drawMap() {
     if (app.tab !== "motion" || shownThird !== "map") return;
     for (const old of boxes.map.querySelectorAll(".map-why, .remark")) old.remove();
-    if (it.map?.why) boxes.map.append(h("p", { class: "map-why" }, `No map: ${it.map.why}.`));
-    if (!it.map || it.map.why) { mapLegend.replaceChildren(); charts.map.draw({ title: tr`Pulses that cause collapse`, x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
+    if (it.map?.why) boxes.map.append(h("p", { class: "map-why" }, tr`No map: ${it.map.why}.`));
+    if (!it.map || it.map.why) { mapLegend.replaceChildren(); charts.map.draw({ title: tr`Pulses that cause collapse`, x: { label: tr`duration`, unit: "s" }, y: { label: tr`amplitude`, unit: "g" }, series: [], span: [0, 1] }, {}); return; }
     const { told, arrays } = it.map;
-    charts.map.draw({ title: tr`Collapse by ${told.pulse} pulses`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
-    mapLegend.replaceChildren(...told.outcomes.map((o, k) => h("span", {}, h("i", { class: `m${k}` }), o)));
-    boxes.map.append(...(told.conditions ?? []).map((text) => h("p", { class: "remark" }, text)));
+    charts.map.draw({ title: told.pulse === "step" ? tr`Collapse by step pulses` : tr`Collapse by sine pulses`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: tr`amplitude`, unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
+    mapLegend.replaceChildren(...told.outcomes.map((o, k) => h("span", {}, h("i", { class: `m${k}` }), said(o))));
+    boxes.map.append(...(told.conditions ?? []).map((text) => h("p", { class: "remark" }, said(text))));
   }
   function pulse() {
     const found = app.deck?.motion?.pulse;
@@ -243,7 +244,7 @@ export function motionPanel(app, lower, frame) {
     const end = it.end;
     it.time = Math.min(Math.max(time, 0), end);
     slider.value = it.time;
-    clock.textContent = `${it.time.toFixed(3)} s of ${end.toFixed(2)} s`;
+    clock.textContent = tr`${it.time.toFixed(3)} s of ${end.toFixed(2)} s`;
     slider.setAttribute("aria-valuetext", clock.textContent);
     const k = frameAt(it.time), blocks = a.pose.shape[1], n = a.line ? a.line.shape[1] : 0;
     const turned = a.picture_time.length > 0;
@@ -269,7 +270,7 @@ export function motionPanel(app, lower, frame) {
       const n = it.arrays.friction.shape[1], k = it.frame ?? 0;
       const now = it.arrays.friction.subarray(k * n, (k + 1) * n), joint = Float32Array.from({ length: n }, (_, j) => j), most = new Float32Array(n);
       for (let i = 0; i < it.arrays.friction.length; i += 1) { const v = it.arrays.friction[i]; if (Number.isFinite(v) && v > most[i % n]) most[i % n] = Math.min(v, 2); }
-      charts.friction.draw({ title: tr`Friction needed at ${it.time.toFixed(2)} s`, x: { array: "joint", label: "joint", unit: "" }, y: { label: "coefficient", unit: "" }, series: [{ array: "now", label: "now", sort: n > 60 ? "line" : "both" }, { array: "most", label: tr`greatest so far`, dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
+      charts.friction.draw({ title: tr`Friction needed at ${it.time.toFixed(2)} s`, x: { array: "joint", label: tr`joint`, unit: "" }, y: { label: tr`coefficient`, unit: "" }, series: [{ array: "now", label: tr`now`, sort: n > 60 ? "line" : "both" }, { array: "most", label: tr`greatest so far`, dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
     }
   }
   function toggle() { if (it.playing) pause(); else run(); }

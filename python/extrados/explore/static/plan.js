@@ -229,7 +229,7 @@ export function planPanel(app, frame, box) {
       const w = it.walls[arrays.element_wall[e]];
       if (!w || arrays.element_storey[e] !== storey) continue;
       const state = arrays.state[now * n + e];
-      out.push({ tag: "path", class: "plan-state", fill: COLOURS[state], "data-state": state, d: line(part(w, arrays.element_part[4 * e], arrays.element_part[4 * e + 1], arrays.element_pier[e] === 1 ? 1 : 0.4).map(X)), title: STATES[state] });
+      out.push({ tag: "path", class: "plan-state", fill: COLOURS[state], "data-state": state, d: line(part(w, arrays.element_part[4 * e], arrays.element_part[4 * e + 1], arrays.element_kind[e] === 1 ? 1 : 0.4).map(X)), title: STATES[state] });
     }
     shapes(states, out);
     const found = STATES.map((text, k) => [text, COLOURS[k], k]).filter(([, , k]) => arrays.state.includes(k)), keys = [];

@@ -1,6 +1,7 @@
 // Panels beside the drawing: results of limit analysis, sizes, deck.
 import { teachPanel } from "./teach.js";
 import { capital, degrees, download, h, number, quantity } from "./dom.js";
+import { said } from "./said.js";
 import { tr } from "./words.js";
 
 const NAMES = { structure: tr`Structure`, motion: tr`Motion`, joints: tr`Joints`, material: tr`Material`, supports: tr`Supports`, initial: tr`Start` };
@@ -38,7 +39,7 @@ export function sidebar(app, box) {
     if (scene.immovable) parts.push(h("p", { class: "verdict good" }, scene.immovable));
     else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, tr`Limit analysis gives no result: `), scene.unknown));
     else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Cannot stand. `), capital(app.detail?.why ?? tr`no thrust line stays within the blocks`), "."));
-    else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Collapses towards ${side}. `), capital(scene.why), "."));
+    else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Collapses towards ${side}. `), capital(said(scene.why)), "."));
     else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? tr`Stands when tilted. ` : tr`Stands. `), scene.gamma ? tr`Collapse towards ${side} at ${number(c[`${way}_g`], 4)} g.` : tr`Collapse at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
     const rows = [];
     if (c && (scene.dilating?.plus || scene.dilating?.minus)) parts.push(h("p", { class: "remark" }, tr`Joints slide in the mechanism: the collapse acceleration is an upper bound (dilatant friction). The analysis tilt of a deck also gives the least state found without dilatancy.`));
@@ -52,23 +53,23 @@ export function sidebar(app, box) {
     }
     if (scene.chosen) rows.push(row(tr`Chosen line`, quantity(scene.chosen.thrust_N, "N"), tr`thrust of the chosen line, between the least and the greatest`));
     if (scene.through) rows.push(row(tr`Through the point`, quantity(scene.through.thrust_N, "N")));
-    if (app.detail && "safety" in app.detail) rows.push(row(tr`Geometric safety`, app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), tr`inverse of the smallest part of every joint that still contains a thrust line under self-weight`));
+    if (app.detail && "safety" in app.detail) rows.push(row(tr`Geometric safety`, app.detail.safety === null ? tr`unbounded` : number(app.detail.safety, 3), tr`inverse of the smallest part of every joint that still contains a thrust line under self-weight`));
     if (scene.required_friction !== undefined) rows.push(row(tr`Required friction`, number(scene.required_friction, 3), tr`coefficient of friction required at collapse to ${side}`));
     for (const tie of scene.ties ?? []) rows.push(row(tr`${tie.name}, at collapse`, quantity(tie.force_N, "N"), tr`tension of the tie at collapse to ${side}`));
     rows.push(row(tr`Weight`, tr`${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));
     rows.push(row(tr`Stones, joints`, `${scene.blocks}, ${scene.joints}`));
-    for (const [key, value] of Object.entries(scene.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
+    for (const [key, value] of Object.entries(scene.measures ?? {})) rows.push(row(said(key.replace(/_m$/, "").replaceAll("_", " ")), quantity(value, key.endsWith("_m") ? "m" : "")));
     parts.push(h("table", { class: "numbers" }, h("tbody", {}, rows)));
     if (scene.chains?.length > 1) {
       parts.push(h("label", { class: "field" }, tr`Thrust of the `, h("select", { "aria-label": tr`Chain whose thrust is shown`, onchange: (e) => app.show({ chain: e.target.value, through: null }) }, scene.chains.map((name) => h("option", { value: name, selected: name === scene.chain }, name)))));
     }
     for (const [name, text] of [["plus", tr`Hinges, load to +x`], ["minus", tr`Hinges, load to −x`]]) {
       if (!scene[`${name}_hinges`]?.length || !app.drawn(name)) continue;
-      parts.push(h("h3", {}, text), h("ul", { class: "plain" }, scene[`${name}_hinges`].map((x) => h("li", {}, x.where)), (scene[`${name}_sliding`] ?? []).slice(0, 6).map((x) => h("li", {}, tr`slides: ${x.name}`))));
+      parts.push(h("h3", {}, text), h("ul", { class: "plain" }, scene[`${name}_hinges`].map((x) => h("li", {}, said(x.where))), (scene[`${name}_sliding`] ?? []).slice(0, 6).map((x) => h("li", {}, tr`slides: ${said(x.name)}`))));
     }
     if (scene.reactions?.length && app.layers.reactions) {
       const of = { least: tr`at least thrust`, through: tr`of the chosen line`, plus: tr`at collapse to +x`, minus: tr`at collapse to −x` }[scene.reactions_of] ?? "";
-      parts.push(h("h3", {}, tr`Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, tr`across`), h("th", {}, tr`up`))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
+      parts.push(h("h3", {}, tr`Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, tr`across`), h("th", {}, tr`up`))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, said(r.name)), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
     }
     if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));
     for (const text of scene.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
@@ -168,7 +169,7 @@ export function sidebar(app, box) {
     const box = app.dialog(tr`Save the deck`, h("form", { onsubmit: (e) => {
       e.preventDefault();
       app.ask({ do: "save", path: field.value, replace: replace.checked }, { reply: (words) => { if (words.saved) { app.source = { path: words.saved }; app.say(tr`Saved as ${words.saved}`); box.close(); } } });
-    } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, tr` replace an existing file`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Save`))));
+    } }, h("p", {}, tr`In ${app.welcome.folder}, as`), field, h("label", {}, replace, tr` replace an existing file`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Save`))));
   };
   const adder = h("select", { "aria-label": tr`Add an analysis`, onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
   pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, tr`Copy`), h("button", { class: "keeps", onclick: () => app.save() }, tr`Save…`), h("button", { onclick: () => download(new Blob([shown()], { type: "application/toml" }), app.draft ? "drawing.toml" : app.name) }, tr`Download`), h("button", { onclick: () => app.chooser() }, tr`Open…`), adder), complaints, h("div", { class: "editor" }, numbersBox, text));

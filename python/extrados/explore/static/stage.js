@@ -1,6 +1,7 @@
 // The drawing of a structure: blocks, lines of thrust, hinges, loads, reactions, and handles.
 import { degrees, number, quantity, s, set, shapes } from "./dom.js";
 import { pinch } from "./gestures.js";
+import { said } from "./said.js";
 import { tr } from "./words.js";
 
 const LINES = [
@@ -287,7 +288,7 @@ export function stage(box, hands) {
       for (const h of handles) wanted.set(h.name, { ...h, text: Array.isArray(h.value) ? `${number(h.value[0])}; ${number(h.value[1])} m` : quantity(h.value, h.unit), now: Array.isArray(h.value) ? h.value[0] : h.value });
       if (scene.through && it.layers?.through) {
         const t = scene.through;
-        wanted.set("through", { name: "through", label: tr`Thrust line through ${t.name}`, at: t.at, along: "both", text: tr`at ${number(t.reached, 3)} of the joint, ${quantity(t.thrust_N, "N", 4)}`, now: t.reached, sort: "through" });
+        wanted.set("through", { name: "through", label: tr`Thrust line through ${said(t.name)}`, at: t.at, along: "both", text: tr`at ${number(t.reached, 3)} of the joint, ${quantity(t.thrust_N, "N", 4)}`, now: t.reached, sort: "through" });
       }
       const [, , x1] = it.bounds, reach = x1 + 0.1 * (x1 - it.bounds[0]);
       if (!scene.seen) wanted.set("tilt", { name: "tilt", label: tr`Tilt of the ground`, at: [reach, 0], along: "y", text: `${number(degrees(scene.gamma), 3)}°, ${number(scene.gamma, 3)} g`, now: scene.gamma, sort: "tilt" });

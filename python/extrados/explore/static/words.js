@@ -7,9 +7,12 @@ let catalogue = {};
 
 /** A text in the language of the page, as tr`Collapse at ${x} g.`; a text that its catalogue lacks is English. */
 export function tr(strings, ...values) {
-  const text = typeof strings === "string" ? strings : strings.reduce((left, right, k) => `${left}{${k - 1}}${right}`);
-  return (catalogue[text] ?? text).replace(/\{(\d)\}/g, (_, k) => values[k]);
+  return inPage(typeof strings === "string" ? strings : strings.reduce((left, right, k) => `${left}{${k - 1}}${right}`), values);
 }
+/** The same of a text with its values as {0}, {1}. */
+export function inPage(text, values = []) { return (catalogue[text] ?? text).replace(/\{(\d)\}/g, (_, k) => values[k]); }
+/** Whether the page is in another language than English. */
+export function translated() { return Object.keys(catalogue).length > 0; }
 /** Take a catalogue, before the modules that draw are loaded. */
 export function use(words) { catalogue = words ?? {}; }
 

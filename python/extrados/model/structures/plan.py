@@ -2,15 +2,17 @@
 
 from collections import Counter
 from itertools import pairwise
+from math import cos, radians, tan
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from extrados.model.errors import BadGeometry
+from extrados.model.geometry.polygons import signed_area
 from extrados.model.places import Opening, Range
 from extrados.model.structure import Structure
-from extrados.schema.quantities import Force, Length, Stiffness, Stress
+from extrados.schema.quantities import Angle, Area, Force, Length, Stiffness, Stress
 from extrados.schema.table import Table, key
 
 #: Distance within which two walls meet [m]
@@ -36,6 +38,9 @@ class WallOpening(Table):
     x: Range = key(about="[from, to] along the wall, from its start")
     z: Range = key(about="[from, to] above the floor of the storey")
     lintel: Lintel | None = key(None, "beam over it")
+    through: bool = key(
+        False, "whether the opening passes through the floors above; z is then measured from the floor of `storey` to its head"
+    )
 
     @model_validator(mode="after")
     def _area(self) -> "WallOpening":
@@ -44,6 +49,13 @@ class WallOpening(Table):
             if high - low <= 2 * MEETS:
                 raise ValueError(f"{name}: the width or height of the opening is {high - low:.3g} m; expected more than {2 * MEETS:g} m")
         return self
+
+
+class Gable(Table):
+    """A triangular top of a wall, of the material and thickness of the highest storey of the wall."""
+
+    rise: Length = key(about="height of the ridge above the top of the wall", gt=0)
+    ridge: Length | None = key(None, "distance of the ridge from the start of the wall; default: the middle", ge=0)
 
 
 class PlanWall(Table):
@@ -58,6 +70,7 @@ class PlanWall(Table):
     openings: list[WallOpening] = key([], "doors and windows", max_length=200)
     material: str | None = key(None, "name in [materials] of the material of the wall; default: [material]")
     materials: list[str] = key([], "names in [materials], one for each storey of the wall, from the lowest", max_length=50)
+    gable: Gable | None = key(None, "triangular top of the wall above its highest storey")
 
     @model_validator(mode="after")
     def _long(self) -> "PlanWall":
@@ -69,7 +82,17 @@ class PlanWall(Table):
             raise ValueError("expected either material or materials")
         if not all(t > 0.0 for t in self.thicknesses):
             raise ValueError("thicknesses: each must be above 0")
+        if self.gable is not None and self.gable.ridge is not None and self.gable.ridge > self.length + MEETS:
+            raise ValueError(f"gable.ridge: {self.gable.ridge:g} m is beyond the end of the wall, whose length is {self.length:g} m")
         return self
+
+    @property
+    def gable_outline(self) -> list[tuple[float, float]]:
+        """Distance along the wall and height above its top [m] of the eaves and the ridge of its gable; empty without a gable."""
+        if self.gable is None:
+            return []
+        ridge = 0.5 * self.length if self.gable.ridge is None else min(self.gable.ridge, self.length)
+        return [(0.0, 0.0), (ridge, self.gable.rise), (self.length, 0.0)]
 
     @property
     def length(self) -> float:
@@ -130,9 +153,18 @@ class StoreyFloor(Table):
     young: Stress | None = key(None, "for a flexible floor: its modulus; for joists: the modulus of their wood", gt=0)
     thickness: Length | None = key(None, "of a flexible floor", gt=0)
     poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
-    joist_area: Annotated[float, Field(gt=0)] | None = key(None, "for joists: cross-section of one joist in m^2")
+    joist_area: Annotated[Area, Field(gt=0)] | None = key(None, "for joists: cross-section of one joist")
     joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
-    load: Stress = key(0.0, "weight per area of the floor and its loads", ge=0)
+    load: Stress = key(0.0, "weight per area of the floor and its loads; of a roof, per area of its slopes", ge=0)
+    pitch: Angle | None = key(None, "slope of a roof from the horizontal", gt=0, le=75)
+    roof: Literal["rafters", "trusses", "purlins"] | None = key(
+        None,
+        (
+            "structure of a roof with a pitch. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and "
+            "push them apart, because nothing ties them; trusses: rafters with ties, without thrust; purlins: beams along the ridge "
+            "between the two walls of `bears_on`, without thrust"
+        ),
+    )
     bears_on: list[str] = key(
         [], "walls that carry the load, in proportion to their length; default: all walls around the floor", max_length=100
     )
@@ -145,9 +177,31 @@ class StoreyFloor(Table):
                 raise ValueError(f"a floor of kind '{self.kind}' {'requires' if name in needed else 'takes no'} {name}")
         if self.kind == "joists" and len(set(self.bears_on)) != 2:
             raise ValueError("bears_on: for joists, expected the names of two different walls, between which the joists span")
+        if (self.pitch is None) != (self.roof is None):
+            raise ValueError("a roof requires both pitch and roof (rafters, trusses or purlins)")
+        if self.roof is not None and len(set(self.bears_on)) != 2:
+            raise ValueError(f"bears_on: for a roof of {self.roof}, expected the names of two different walls")
+        if self.roof == "rafters" and self.kind == "joists":
+            raise ValueError("joists tie the two walls: give roof = 'trusses', or another kind of floor")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
             raise ValueError(f"walls: wall '{twice[0]}' occurs twice")
         return self
+
+    @property
+    def weight(self) -> float:
+        """Weight per area on the plan [Pa]: that of the slopes over the cosine of the pitch."""
+        return self.load / self.flatness
+
+    @property
+    def flatness(self) -> float:
+        """Cosine of the pitch; 1 of a level floor."""
+        return 1.0 if self.pitch is None else cos(radians(self.pitch))
+
+    @property
+    def thrust_ratio(self) -> float:
+        """Thrust on each of the two walls that carry rafters over the weight of the roof: of a three-hinged arch of span l and rise
+        f = l/2 tan(pitch) the thrust is w l^2/(8 f). 0 of other floors."""
+        return 0.25 / tan(radians(self.pitch)) if self.roof == "rafters" and self.pitch is not None else 0.0
 
 
 class Rod(Table):
@@ -275,6 +329,12 @@ class Plan(Structure):
         for k, floor in enumerate(self.floors):
             if floor.storey > len(self.storeys):
                 raise ValueError(f"floors[{k}].storey: storey {floor.storey} does not exist; the number of storeys is {len(self.storeys)}")
+            if floor.roof in ("rafters", "trusses"):
+                one, two = (self.wall(name) for name in dict.fromkeys(floor.bears_on))
+                if abs(float(one.direction @ two.direction)) < PARALLEL:
+                    raise ValueError(
+                        f"floors[{k}].bears_on: {floor.roof} span between parallel walls, but walls '{one.name}' and '{two.name}' are not parallel"
+                    )
         return self
 
     def _check_storey(self, what: str, wall: str, storey: int) -> None:
@@ -287,10 +347,10 @@ class Plan(Structure):
             self._check_storey(f"ring_beams[{k}].storey", wall.name, beam.storey)
             low = self.storeys[beam.storey - 1] - beam.depth
             for i, opening in enumerate(wall.openings):
-                if opening.storey == beam.storey and opening.z[1] > low + MEETS:
+                if self.part_in(wall, opening, beam.storey)[1] > low + MEETS:
                     raise ValueError(
-                        f"ring_beams[{k}].depth: wall '{wall.name}', opening {i + 1} reaches {opening.z[1]:g} m above the floor; the beam "
-                        f"begins at {low:g} m"
+                        f"ring_beams[{k}].depth: wall '{wall.name}', opening {i + 1} at x {opening.x[0]:g} to {opening.x[1]:g} m reaches "
+                        f"{self.part_in(wall, opening, beam.storey)[1]:g} m above the floor of storey {beam.storey}; the beam begins at {low:g} m"
                     )
         if beam.storey > len(self.storeys) or beam.depth >= self.storeys[beam.storey - 1] or not self.of_ring_beam(beam):
             raise ValueError(f"ring_beams[{k}]: no wall in storey {beam.storey} is as high as the beam")
@@ -326,13 +386,39 @@ class Plan(Structure):
                     f"{at}: {said}: x from {opening.x[0]:g} to {opening.x[1]:g} m, but the length of the wall is {wall.length:g} m"
                 )
             tall = self.storeys[opening.storey - 1]
-            if opening.z[0] < 0.0 or opening.z[1] >= tall:
-                raise ValueError(f"{at}: {said}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of {tall:g} m")
             above = float(sum(self.storeys[opening.storey - 1 : last])) - opening.z[1]
+            z = f"z from {opening.z[0]:g} to {opening.z[1]:g} m"
+            if opening.through and not (0.0 <= opening.z[0] < tall <= opening.z[1] and above > 0.0):
+                raise ValueError(
+                    f"{at}: {said}: {z} does not pass through the floor at {tall:g} m and end below the top of the wall, "
+                    f"{above + opening.z[1]:g} m above the floor of storey {opening.storey}"
+                )
+            if not opening.through and (opening.z[0] < 0.0 or opening.z[1] >= tall):
+                more = "; for an opening through several storeys give through = true" if opening.z[1] >= tall and above > 0.0 else ""
+                raise ValueError(f"{at}: {said}: {z} does not fit in a storey of {tall:g} m{more}")
             if opening.lintel is not None and opening.lintel.depth > above + MEETS:
                 raise ValueError(
                     f"{at}.lintel: {said}: a lintel with a depth of {opening.lintel.depth:g} m does not fit under {above:g} m of wall"
                 )
+
+    def part_in(self, wall: PlanWall, opening: WallOpening, storey: int) -> tuple[float, float]:
+        """Lower and upper height [m] above the floor of a storey of the part of an opening in this storey; equal without a part."""
+        foot = float(self.levels[storey - 1] - self.levels[opening.storey - 1])
+        low, high = (min(max(z - foot, 0.0), self.storeys[storey - 1]) for z in opening.z)
+        return (low, high) if high - low > MEETS else (0.0, 0.0)
+
+    def openings_in(self, wall: PlanWall, storey: int) -> list[WallOpening]:
+        """Openings of a wall in a storey, z above its floor; of an opening through several storeys its part there, which has the
+        lintel in the highest of them. None in a storey that the wall does not reach."""
+        found: list[WallOpening] = []
+        for opening in wall.openings if storey <= self.reach(wall)[1] else ():
+            low, high = self.part_in(wall, opening, storey)
+            if not opening.through and opening.storey == storey:
+                found.append(opening)
+            elif opening.through and high > low:
+                lintel = opening.lintel if high < self.storeys[storey - 1] - MEETS else None
+                found.append(opening.model_copy(update={"storey": storey, "z": [low, high], "lintel": lintel}))
+        return found
 
     def reach(self, wall: PlanWall) -> tuple[int, int]:
         """First and last storey of a wall."""
@@ -375,7 +461,7 @@ class Plan(Structure):
     def strips(self, wall: PlanWall, storey: int) -> list[tuple[float, float, float]]:
         """Masonry of a wall in a storey, from the bottom up: length, bottom and top above its floor [m] of each strip between
         sills and heads of openings. What openings share is left out once."""
-        holes = [o for o in wall.openings if o.storey == storey]
+        holes = self.openings_in(wall, storey)
         heights = sorted({0.0, self.storeys[storey - 1], *(z for o in holes for z in o.z)})
         found = []
         for low, high in pairwise(heights):
@@ -410,6 +496,32 @@ class Plan(Structure):
                 raise BadGeometry(f"{what}: walls '{self.walls[a].name}' and '{self.walls[b].name}' do not meet")
             corners.append(at)
         return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
+
+    def outline(self, around: list[tuple[int, float, float]]) -> np.ndarray:
+        """Corners (n, 2) of a floor on the plan [m], from the walls `around` it."""
+        return np.array([np.asarray(self.walls[w].start) + s * self.walls[w].direction for w, _, s in around])
+
+    def bearing(self, floor: StoreyFloor, around: list[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
+        """The parts of the walls around a floor that carry its load; BadGeometry if a wall of `bears_on` is not around it."""
+        names = [self.walls[w].name for w, _, _ in around]
+        if strange := [name for name in floor.bears_on if name not in names]:
+            raise BadGeometry(
+                f"floor on storey {floor.storey}: wall '{strange[0]}' of bears_on is not adjacent to it; the walls around it are "
+                f"{', '.join(names)}"
+            )
+        return [part for part in around if self.walls[part[0]].name in floor.bears_on] or around
+
+    def thrusts(self, floor: StoreyFloor, around: list[tuple[int, float, float]]) -> list[tuple[int, float, float, np.ndarray]]:
+        """Thrust of rafters on the walls that carry them: wall, from and to along it [m], force (2) on the plan, outward [N]."""
+        corners = self.outline(around)
+        total = floor.thrust_ratio * floor.weight * abs(signed_area(corners))
+        found = []
+        for w, a, b in self.bearing(floor, around) if total > 0.0 else ():
+            wall = self.walls[w]
+            out = np.array([-wall.direction[1], wall.direction[0]])
+            aside = float(out @ (np.asarray(wall.start) - corners.mean(axis=0)))
+            found.append((w, min(a, b), max(a, b), total * np.sign(aside) * out))
+        return found
 
 
 def nearly_meeting(one: PlanWall, two: PlanWall) -> float | None:

@@ -79,7 +79,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 def _draw_places(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """The capacity over the place of the first axle."""
     place, way = run.array(name, "place"), run.array(name, "way")
-    adequacy = "adequacy" in run.arrays[name]
+    adequacy, moving = "adequacy" in run.arrays[name], "first axle" if len(run.array(name, "axle")) else "train"
     value = run.array(name, "adequacy") if adequacy else run.array(name, "capacity") / 1e3
     with style.figure(7.5, 3.6) as (fig, (curve,)):
         for sense, colour, label in ((1, style.THRUST, "heading to +x"), (-1, style.HINGE, "heading to -x")):
@@ -91,12 +91,12 @@ def _draw_places(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             curve.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle="--")
         low = float(np.nanmin(value))
         curve.set_ylim(0.0, max(1.1 * low, min(float(np.nanmax(value)) * 1.05, 8.0 * low), 1.1 if adequacy else 0.0))
-        curve.set_xlabel("x of the first axle [m]")
+        curve.set_xlabel(f"x of the {moving} [m]")
         curve.set_ylabel("adequacy factor" if adequacy else "load at collapse [kN]")
         curve.set_title("Adequacy factor over position" if adequacy else "Load at collapse over position")
         return (
             style.save(fig, folder, f"{name}-places"),
-            "Load that causes collapse, over the position of the first axle."
+            f"Load that causes collapse, over the position of the {moving}."
             + (f" At the most dangerous position joints slide: {DILATANT}." if run.results_of(name, MovingLoad).dilating_joints else ""),
         )
 

@@ -121,7 +121,7 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         else:
             ax.plot(gamma[order], (np.arange(len(order)) + 1.0) / len(order), color=style.THRUST)
             ax.set_xlabel("collapse acceleration [g]")
-            ax.set_ylabel("share of sections with at most this acceleration")
+            ax.set_ylabel("share of sections with at most\nthis acceleration")
         return [(style.save(fig, folder, name), "Collapse acceleration of the sections that carry their self-weight.")]
 
 
@@ -148,14 +148,16 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
         )
         given = r.given_collapse_acceleration_g
         ax.axvline(given, color=style.HINGE, linestyle="--", label=f"geometry of the deck: {given:.4f} g")
-        ax.set_xlabel("lesser collapse acceleration of +x and -x [g]")
-        ax.set_ylabel("share of random geometries with at most this acceleration")
+        ways = "along the direction and opposite" if "solid_vertex" in run.arrays[name] else "to +x and to -x"
+        ax.set_xlabel(f"lesser collapse acceleration of both senses ({ways}) [g]")
+        ax.set_ylabel("share of the random geometries")
         ax.set_ylim(0.0, 1.0)
         ax.set_title("Capacity within the tolerance of the survey")
         style.legend_below(fig, ax)
         return [
             (
                 style.save(fig, folder, name),
-                "Capacities of random geometries of the same blocks. Corners and joints are displaced within the deviation of the survey.",
+                "Share of the random geometries of the same blocks with at most this capacity. Corners and joints are displaced within the "
+                "deviation of the survey.",
             )
         ]

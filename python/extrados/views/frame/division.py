@@ -27,7 +27,7 @@ class Division:
     def divide_wall(self, w: int, wall: PlanWall) -> None:
         """Nodes, piers, spandrels and ring beams of a wall; BadGeometry if a storey has no pier."""
         plan, (_, last) = self.plan, self.plan.reach(wall)
-        pieces = {storey: _between(wall, storey, plan.storeys[storey - 1]) for storey in range(1, last + 1)}
+        pieces = {storey: _between(wall, plan.openings_in(wall, storey)) for storey in range(1, last + 1)}
         for storey, found in pieces.items():
             if not found:
                 raise BadGeometry(f"wall '{wall.name}', storey {storey}: the openings leave no pier")
@@ -79,8 +79,10 @@ class Division:
     def _spandrel(self, w: int, wall: PlanWall, level: int, k: int, i: int, j: int) -> None:
         plan = self.plan
         gap = (self.nodes[i].end, self.nodes[j].start)
-        below = [o for o in wall.openings if o.storey == level and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
-        above = [o for o in wall.openings if o.storey == level + 1 and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
+        below, above = (
+            [o for o in plan.openings_in(wall, storey) if o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
+            for storey in (level, level + 1)
+        )
         z = float(plan.levels[level])
         low = max((float(plan.levels[level - 1]) + o.z[1] for o in below), default=z)
         ring = self.ring_depth(wall, level)
@@ -118,10 +120,10 @@ class Division:
             self.strips.append(Strip("ring beam", f"{wall.name}, level {level}, ring beam {k + 1}", w, level, box, box, thickness, (i, j)))
 
 
-def _between(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, Side, Side]]:
-    """Piers of a storey from start to end: s from, to, and what stands beside them."""
+def _between(wall: PlanWall, openings: list[WallOpening]) -> list[tuple[float, float, Side, Side]]:
+    """Piers between the openings of a storey from start to end: s from, to, and the openings beside them."""
     merged: list[list[float]] = []
-    for opening in sorted((o for o in wall.openings if o.storey == storey), key=lambda o: o.x[0]):
+    for opening in sorted(openings, key=lambda o: o.x[0]):
         if merged and opening.x[0] < merged[-1][1] + MEETS:
             last = merged[-1]
             merged[-1] = [last[0], max(last[1], opening.x[1]), min(last[2], opening.z[0]), max(last[3], opening.z[1])]
@@ -136,9 +138,8 @@ def _between(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, floa
     return found
 
 
-def parts_around_openings(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, float, bool]]:
+def parts_around_openings(own: list[WallOpening], tall: float) -> list[tuple[float, float, float, bool]]:
     """Masonry above and below the openings of a storey: s from, to, height, whether above."""
-    own: list[WallOpening] = [o for o in wall.openings if o.storey == storey]
     breaks = sorted({x for o in own for x in o.x})
     found = []
     for a, b in itertools.pairwise(breaks):

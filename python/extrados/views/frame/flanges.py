@@ -36,7 +36,7 @@ def effective_part(
     ends = []
     for sense in (-1.0, 1.0):
         limit = 0.0 if sense < 0.0 else own.length
-        edges = [x for o in own.openings if o.storey == level for x in o.x if sense * (x - at) > MEETS]
+        edges = [x for o in plan.openings_in(own, level) for x in o.x if sense * (x - at) > MEETS]
         masonry = min((abs(x - at) for x in (*edges, limit)), default=0.0)
         spacing = min((abs(s - at) for s in others if sense * (s - at) > MEETS), default=float("inf"))
         wide = min(masonry, half + side_width(thickness, plan.storeys[level - 1], total, spacing, masonry))

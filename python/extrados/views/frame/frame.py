@@ -50,6 +50,16 @@ class PointMass:
     level: int
 
 
+@dataclass(frozen=True)
+class Trace:
+    """A place of a wall on a level, x and y [m], and the rows (2, n) by which freedoms displace it along x and y."""
+
+    wall: int
+    level: int
+    place: tuple[float, float]
+    rows: np.ndarray
+
+
 @dataclass
 class EquivalentFrame:
     """`strips` goes with `elements`. inertia (n): masses of the nodes that move up and down, and turn; `remarks` states what is
@@ -71,6 +81,8 @@ class EquivalentFrame:
     along: dict[tuple[int, int], int] = field(default_factory=dict)
     #: Remarks on strengths, which vibration does not use
     weaknesses: list[str] = field(default_factory=list)
+    #: Ends and corners of every wall on every level above the ground, along the wall
+    traces: list[Trace] = field(default_factory=list)
 
     @property
     def piers(self) -> int:

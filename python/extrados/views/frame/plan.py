@@ -12,12 +12,13 @@ import numpy as np
 from extrados.core.frame import UNLIMITED, Link, MacroElement
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
+from extrados.model.geometry.polygons import signed_area
 from extrados.model.properties import Material
 from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
 from extrados.views.frame.division import Division, parts_around_openings
 from extrados.views.frame.flanges import Flange, effective_part
-from extrados.views.frame.frame import EquivalentFrame, PointMass, Strip
+from extrados.views.frame.frame import EquivalentFrame, PointMass, Strip, Trace
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.spandrels import BLOCK, flexural_strength, shear_strength, strut_of, strut_strength
 from extrados.views.mesh.triangles import fill_ring
@@ -29,6 +30,8 @@ SHEAR_FACTOR = 1.2
 HORIZONTAL = 0.5
 #: Distance of a rod from the middle plane of a wall, and from its spandrels, within which it is their tie [m]
 BESIDE = 0.5
+#: Slices of gables, and of the thrust along a wall
+SLICES = 8
 #: Stiffness of props that do not move [N/m]
 HELD = 1e12
 
@@ -84,6 +87,8 @@ class _Maker(Division):
         self.total = 0.0
         for strip in self.strips:
             self._weigh(strip)
+        for w, wall in enumerate(plan.walls):
+            self._gable(w, wall)
         rings: dict[tuple[int, frozenset[int]], int] = {}
         for k, floor in enumerate(plan.floors):
             with blaming("floors", k):
@@ -120,7 +125,20 @@ class _Maker(Division):
             self.flanges,
             self.along,
             self._unbonded(),
+            self._traces(),
         )
+
+    def _traces(self) -> list[Trace]:
+        found = []
+        for w, wall in enumerate(self.plan.walls):
+            places = {0.0, wall.length}
+            for (a, b), (s, t) in self.junctions.items():
+                places |= {s} if a == w else {t} if b == w else set()
+            for level in range(1, self.plan.reach(wall)[1] + 1):
+                for place in sorted(places):
+                    x, y = (np.asarray(wall.start) + place * wall.direction).tolist()
+                    found.append(Trace(w, level, (x, y), self._vector(w, place, level)))
+        return found
 
     def _unbonded(self) -> list[str]:
         """A statement of what masonry without cohesion lacks; none with a cohesion or a diagonal strength."""
@@ -237,29 +255,50 @@ class _Maker(Division):
         for level in (strip.storey - 1, strip.storey):
             self._load(strip.wall, level, start, end, 0.5 * force)
         if strip.name.endswith("pier 1"):  # once for each storey of a wall
-            for start, end, height, upper in parts_around_openings(wall, strip.storey, high - low):
+            for start, end, height, upper in parts_around_openings(self.plan.openings_in(wall, strip.storey), high - low):
                 level = strip.storey if upper else strip.storey - 1
                 self._load(strip.wall, level, start, end, density * GRAVITY * strip.thickness * (end - start) * height)
+
+    def _gable(self, w: int, wall: PlanWall) -> None:
+        """Weight of a triangular top on the highest level of its wall, in slices."""
+        outline = wall.gable_outline
+        for (start, low), (end, high) in itertools.pairwise(outline):
+            last = self.plan.reach(wall)[1]
+            unit = self._material(wall, last).density * GRAVITY * self.plan.thickness_of(wall, last)
+            cuts = np.linspace(start, end, SLICES + 1)
+            for a, b in itertools.pairwise(cuts.tolist()) if end - start > MEETS else ():
+                height = float(np.interp(0.5 * (a + b), (start, end), (low, high)))
+                self._load(w, last, a, b, unit * height * (b - a))
+
+    def _thrust(self, floor: StoreyFloor, around: list[tuple[int, float, float]]) -> None:
+        """Thrust of rafters as constant horizontal forces on the level of their eaves, in slices along the walls."""
+        for w, a, b, force in self.plan.thrusts(floor, around):
+            middles = a + (b - a) * (np.arange(SLICES) + 0.5) / SLICES
+            self.weight += sum(force / SLICES @ self._vector(w, s, floor.storey) for s in middles.tolist())
+            self.remarks.append(
+                f"Floor on storey {floor.storey}: the rafters push wall '{self.plan.walls[w].name}' outward with "
+                f"{float(np.hypot(*force)) / (b - a) / 1e3:.3g} kN/m. In the frame the transverse walls resist this thrust: check the wall "
+                "out of its plane with local-mechanism."
+            )
 
     def _floor(self, floor: StoreyFloor) -> None:
         plan, level = self.plan, floor.storey
         around = plan.around(floor)
-        corners, rows = [], []
+        rows = []
         for w, _, s in around:
             if (w, level) not in self.along:
                 raise BadGeometry(f"floor on storey {level}: wall '{plan.walls[w].name}' has no masonry there")
-            corners.append(np.asarray(plan.walls[w].start) + s * plan.walls[w].direction)
             rows.append(self._vector(w, s, level))
-        outline = np.array(corners)
-        x, y = outline.T
-        area = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+        outline = plan.outline(around)
+        area = signed_area(outline)
         if area < 0.0:
             outline, rows, area = outline[::-1], rows[::-1], -area
+        bearing = plan.bearing(floor, around)
         if floor.load > 0.0:
-            bearing = [part for part in around if plan.walls[part[0]].name in floor.bears_on] or around
             length = sum(abs(b - a) for _, a, b in bearing)
             for w, a, b in bearing:
-                self._load(w, level, min(a, b), max(a, b), floor.load * area * abs(b - a) / length)
+                self._load(w, level, min(a, b), max(a, b), floor.weight * area * abs(b - a) / length)
+        self._thrust(floor, around)
         if floor.kind == "none":
             return
         if floor.kind == "joists":
@@ -272,7 +311,7 @@ class _Maker(Division):
             young, thickness = (RIGID_YOUNG, RIGID_THICKNESS) if floor.kind == "rigid" else (floor.young, floor.thickness)
             assert young and thickness
             nu = floor.poisson
-            law = young * thickness / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+            law = floor.flatness * young * thickness / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
         _, triangles = fill_ring(outline, 10.0 * float(np.ptp(outline, axis=0).max()))
         for triangle in triangles:
             p = outline[triangle]
@@ -377,7 +416,7 @@ class _Maker(Division):
                 depth -= self.ring_depth(wall, strip.storey)
             tie = self._tie(strip)
             moment, by_shear = self._spandrel_strength(strip, depth, length, cohesion, tension, pressed, tie)
-            held = any(x.lintel is not None for x in wall.openings if x.storey == strip.storey and x.x[0] < end and x.x[1] > start)
+            held = any(x.lintel is not None for x in self.plan.openings_in(wall, strip.storey) if x.x[0] < end and x.x[1] > start)
             residual = o.spandrel_residual if o.spandrel_residual is not None else 0.6 if held else 0.1
             drifts = (o.spandrel_drift_tied if tie > 0.0 else o.spandrel_drift_flexure, o.spandrel_drift_shear)
         return MacroElement(
@@ -463,6 +502,11 @@ class _Maker(Division):
             for level in range(1, min(plan.reach(one)[1], plan.reach(two)[1]) + 1):
                 p, q = self.nodes[self.node_at(a, level, s)], self.nodes[self.node_at(b, level, t)]
                 if not (p.start - MEETS <= s <= p.end + MEETS and q.start - MEETS <= t <= q.end + MEETS):
+                    x, y = np.asarray(one.start) + s * one.direction
+                    self.remarks.append(
+                        f"Walls '{one.name}' and '{two.name}' meet at ({x:.3g}, {y:.3g}) m in an opening, not in a pier, on level {level}: "
+                        "no vertical force passes between them there."
+                    )
                     continue
                 tall = 0.5 * (plan.storeys[level - 1] + (plan.storeys[level] if level < len(plan.storeys) else 0.0))
                 thin = min(plan.thickness_of(wall, level) for wall in (one, two))

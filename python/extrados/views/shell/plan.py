@@ -85,13 +85,17 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     mass, push = np.zeros(len(xyz)), np.zeros((len(xyz), 3))
     bars: list[ShellBar] = []
     grown = xyz
+    for w, wall in enumerate(plan.walls):
+        if wall.gable is not None:
+            grown = _add_gable(plan, w, grids[w], number, grown, parts, names, size)
+    mass, push = (np.concatenate([of, np.zeros((len(grown) - len(of), *of.shape[1:]))]) for of in (mass, push))
     rings: dict[tuple[int, frozenset[int]], int] = {}
     for k, floor in enumerate(plan.floors):
         with blaming("floors", k):
-            walls, ring = _ring(plan, floor, grids, number, xyz)
+            ring = _ring(plan, floor, grids, number, xyz)
             if (first := rings.setdefault((floor.storey, frozenset(ring)), k)) != k:
                 raise BadGeometry(f"floor {first + 1} is given for the same walls on storey {floor.storey}")
-            grown, mass, push = _add_floor(plan, floor, (walls, ring), grids, number, (grown, mass, push), parts, materials, bars, size)
+            grown, mass, push = _add_floor(plan, floor, ring, grids, number, (grown, mass, push), parts, materials, bars, size)
     used = np.zeros(len(grown), dtype=bool)
     for connect in (*(part.connect for part in parts), *(joint.connect for joint in joints)):
         used[connect] = True
@@ -310,6 +314,43 @@ def _wall_part(plan: Plan, w: int, grids: list[_Grid], junctions: dict, number: 
     return ShellPart(wall.name, "Q4", connect, thickness, material, linear, strength, wall=w)
 
 
+def _add_gable(
+    plan: Plan, w: int, grid: _Grid, number: np.ndarray, xyz: np.ndarray, parts: list[ShellPart], names: list[str], size: float
+) -> np.ndarray:
+    """Triangles of the triangular top of a wall, on the nodes of its highest level; the nodes with those of the gable."""
+    wall = plan.walls[w]
+    last = plan.reach(wall)[1]
+    foot, s = _level_nodes(plan, last, grid, number)
+    left, ridge, right = np.array(wall.gable_outline)
+    sides = []
+    for a, b in ((right, ridge), (ridge, left)):
+        share = np.linspace(0.0, 1.0, max(1, round(float(np.linalg.norm(b - a)) / size)) + 1)[1:, None]
+        if np.linalg.norm(b - a) > MEETS:
+            sides.append(a + share * (b - a))
+    slope = np.concatenate(sides)[:-1]  # the left eave is a node of the wall
+    if np.linalg.norm(ridge - right) < MEETS:
+        slope = np.concatenate([[ridge], slope])
+    place, triangles = fill_ring(np.concatenate([np.column_stack([s, np.zeros(len(s))]), slope]), size)
+    new = place[len(s) :]
+    nodes = np.concatenate([foot, len(xyz) + np.arange(len(new))])
+    name = plan.material_of(wall, last)
+    count = len(triangles)
+    parts.append(
+        ShellPart(
+            f"{wall.name} gable",
+            "T3",
+            nodes[triangles],
+            np.full(count, plan.thickness_of(wall, last)),
+            np.full(count, 0 if name is None else _named(name, names, f"wall '{wall.name}'")),
+            np.zeros(count, dtype=bool),
+            np.ones(count),
+            wall=w,
+        )
+    )
+    on_plan = np.asarray(wall.start) + new[:, :1] * wall.direction
+    return np.concatenate([xyz, np.column_stack([on_plan, plan.levels[last] + new[:, 1]])])
+
+
 def _joints(
     plan: Plan, grids: list[_Grid], junctions: dict, number: np.ndarray, parts: list[ShellPart], nodes: int
 ) -> tuple[list[ShellJoint], np.ndarray]:
@@ -492,8 +533,8 @@ def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tu
     return number[grid.number(i, np.full(len(i), k))], grid.s[i]
 
 
-def _ring(plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray) -> tuple[list[int], list[int]]:
-    """Walls around a floor and the nodes on them in order, counter-clockwise."""
+def _ring(plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray) -> list[int]:
+    """The nodes on the walls around a floor in order, counter-clockwise."""
     what = f"floor on storey {floor.storey}"
     walls = plan.around(floor)
     nodes: list[int] = []
@@ -506,17 +547,22 @@ def _ring(plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray
         nodes += own[inside][order].tolist()
     ring = [n for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True) if np.linalg.norm(xyz[n] - xyz[before]) > MEETS]
     if len(ring) < 3 or len(set(ring)) < len(ring):
-        raise BadGeometry(f"{what}: the walls do not form a ring; name them in order by `walls`")
+        twice = next((n for k, n in enumerate(ring) if n in ring[:k]), None)
+        at = "" if twice is None else f" twice at ({xyz[twice, 0]:.3g}, {xyz[twice, 1]:.3g}) m"
+        raise BadGeometry(
+            f"{what}: the walls {', '.join(plan.walls[w].name for w, _, _ in walls)} do not form a simple ring: it passes{at or ' no area'}. "
+            "Name the walls around the floor in order by `walls`"
+        )
     x, y = xyz[ring, 0], xyz[ring, 1]
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
         ring.reverse()
-    return [w for w, _, _ in walls], ring
+    return ring
 
 
 def _add_floor(
     plan: Plan,
     floor: StoreyFloor,
-    around: tuple[list[int], list[int]],
+    ring: list[int],
     grids: list[_Grid],
     number: np.ndarray,
     nodes: Nodes,
@@ -525,26 +571,24 @@ def _add_floor(
     bars: list[ShellBar],
     size: float,
 ) -> Nodes:
-    """Elements, bars and masses of a floor; the nodes with those within it. around: its walls and their nodes, as a ring."""
-    (walls, ring), (xyz, mass, push) = around, nodes
+    """Elements, bars and masses of a floor; the nodes with those within it. ring: the nodes of the walls around it."""
+    xyz, mass, push = nodes
     level = float(plan.levels[floor.storey])
     outline = xyz[ring, :2]
     x, y = outline.T
     area = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     name = f"floor {floor.storey}"
+    ends = plan.around(floor)
+    bearing = [w for w, _, _ in plan.bearing(floor, ends)]
     if floor.load > 0.0:
-        bearing = [i for i, w in enumerate(plan.walls) if w.name in floor.bears_on] or walls
-        shares = np.zeros(len(xyz))
-        for w in bearing:
-            own, s = _level_nodes(plan, floor.storey, grids[w], number)
-            on = np.isin(own, ring)
-            half = np.diff(s[on]) / 2.0
-            np.add.at(shares, own[on], np.append(half, 0.0) + np.append(0.0, half))
-        if not shares.sum() > 0.0:
-            raise BadGeometry(f"{name}: none of the walls that carry its load is adjacent to it")
-        mass = mass + floor.load * area / GRAVITY * shares / shares.sum()
+        shares = np.sum([_shares(plan, floor, w, ring, grids, number, len(xyz)) for w in bearing], axis=0)
+        mass = mass + floor.weight * area / GRAVITY * shares / shares.sum()
+    for w, _, _, force in plan.thrusts(floor, ends):
+        shares = _shares(plan, floor, w, ring, grids, number, len(xyz))
+        push = push.copy()
+        push[:, :2] += shares[:, None] / shares.sum() * force
     if floor.kind in ("flexible", "rigid"):
-        thickness = floor.thickness if floor.kind == "flexible" else RIGID_THICKNESS
+        thickness = floor.flatness * (RIGID_THICKNESS if floor.thickness is None else floor.thickness)
         young = floor.young if floor.kind == "flexible" else RIGID_YOUNG
         inner, triangles = fill_ring(outline, size)
         new = inner[len(ring) :]
@@ -569,6 +613,18 @@ def _add_floor(
     elif floor.kind == "joists":
         bars += _joists(plan, floor, grids, number, xyz, name, ring)
     return xyz, mass, push
+
+
+def _shares(plan: Plan, floor: StoreyFloor, w: int, ring: list[int], grids: list[_Grid], number: np.ndarray, count: int) -> np.ndarray:
+    """Length (count) [m] of a wall beside a floor at each of the nodes."""
+    shares = np.zeros(count)
+    own, s = _level_nodes(plan, floor.storey, grids[w], number)
+    on = np.isin(own, ring)
+    half = np.diff(s[on]) / 2.0
+    np.add.at(shares, own[on], np.append(half, 0.0) + np.append(0.0, half))
+    if not shares.sum() > 0.0:
+        raise BadGeometry(f"floor on storey {floor.storey}: wall '{plan.walls[w].name}' has no masonry there to carry its load")
+    return shares
 
 
 def _joists(

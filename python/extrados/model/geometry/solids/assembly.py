@@ -96,6 +96,17 @@ class SolidAssembly:
         return found
 
     @cached_property
+    def share(self) -> np.ndarray:
+        """Positive weights (nv) of the corners of each contact that have its centre of area as their mean."""
+        return np.concatenate([np.empty(0), *map(_shares, self.polygon)])
+
+    @cached_property
+    def middle(self) -> np.ndarray:
+        """Centre of area of each contact (nj, 3) [m]."""
+        weighted = self.share[:, None] * self.corner
+        return np.stack([np.bincount(self.corner_joint, weighted[:, k], len(self.a)) for k in range(3)], axis=1)
+
+    @cached_property
     def tangents(self) -> tuple[np.ndarray, np.ndarray]:
         """Two unit vectors of the plane of each contact (nj, 3), which with the normal make a right-handed frame."""
         n = self.normal
@@ -103,6 +114,18 @@ class SolidAssembly:
         first = np.cross(helper, n)
         first /= np.linalg.norm(first, axis=1)[:, None]
         return first, np.cross(n, first)
+
+
+def _shares(polygon: np.ndarray) -> np.ndarray:
+    """Positive weights (k) of the corners of a convex polygon that have its centre of area as their mean."""
+    count = len(polygon)
+    mean = polygon.mean(axis=0)
+    arm = polygon - mean
+    area = np.linalg.norm(np.cross(arm, np.roll(arm, -1, axis=0)), axis=1)
+    area /= area.sum()
+    # each triangle of the mean and a side shares its area equally among its corners; that of the mean goes to all
+    shares: np.ndarray = (area + np.roll(area, 1)) / 3.0 + 1.0 / (3.0 * count)
+    return shares
 
 
 @dataclass(frozen=True)
