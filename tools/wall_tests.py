@@ -8,13 +8,14 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     limit     bricks in running bond, joints without cohesion that crush; the load acts at the shear span
     codes     `code-checks` of a panel, by NTC 2018, the code of decks that name none; its least lateral strength
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
-    units     `sla` of its units and joints, likewise, to 75 % of the peak; walls of more than 200 units have units twice as long and
-              as high. Head joints of blocks in thin beds are unfilled and carry no stress (Mann and Mueller 1982). Blocks are units of
-              190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a unit). Walls with the same deck share
-              one run. The failure mode is that of the state at the peak: does more than half of the displacement
-              of the top come from the rotation of horizontal sections (F), or from the slip of beds and the shear of units (S)?
+    units     `sla` of its units and joints, likewise, to 75 % of the peak, on a bed joint at the foot. Walls of more than 200 units
+              have units twice as long and as high. Head joints of blocks in thin beds are unfilled and carry no stress (Mann and
+              Mueller 1982). Blocks are units of 190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a
+              unit). Walls with the same deck share one run. The failure mode is that of the state at the peak: does more than half
+              of the displacement of the top come from the rotation of horizontal sections (F), or from the slip of beds and the
+              shear of units (S)?
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
-              part and Turnsek-Cacovic; without drift limits, to 2 % drift
+              part and Turnsek-Cacovic; to 2 % drift, without drift limits but for the drift at the loss of 20 %
 
 Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested, and without it (stone masonry) shear by
 diagonal cracking alone; tensile strength of the diagonal test, else the cohesion; modulus 600 times the compressive strength.
@@ -37,6 +38,8 @@ from typing import Any
 import numpy as np
 
 import extrados
+from extrados.core.frame import STATE, UNLIMITED, Frame, MacroElement
+from extrados.core.frame import Path as PushPath
 
 FRICTION = 0.4
 CRUSHES_AT = 0.85  # of the compressive strength: the rectangular stress block of codes
@@ -282,6 +285,7 @@ def units_deck(wall: Wall) -> dict[str, Any]:
     units = {"tensile_strength": cracks, "fracture_energy": CRACK_DUCTILITY * cracks}
     deck = _panel(wall, bond, units, joints, {"size": 0.5 * bond["unit_length"], "joints": "interfaces"})
     deck["analysis"][0]["stop_fraction"] = ENOUGH
+    del deck["supports"]  # a bed joint at the foot
     return deck
 
 
@@ -376,10 +380,20 @@ def by_macro_element(wall: Wall) -> dict[str, Predicted]:
 
 
 def _pier(wall: Wall, law: str) -> Predicted:
-    """Strength, and drifts at which 99 % of it is reached and at which it drops below 80 %. Without an initial shear strength a pier
-    fails diagonally, whatever the law."""
-    from extrados.core.frame import STATE, Frame, MacroElement
+    """Strength without drift limits, and drifts at which 99 % of it is reached and at which it drops below 80 %, at the latest at a drift
+    limit. Without an initial shear strength a pier fails diagonally, whatever the law."""
+    path, limited = (_pushed(wall, law, limits) for limits in ((UNLIMITED, UNLIMITED), LIMITS))
+    peak = int(path.multiple.argmax())
+    sheared = bool((path.state[: peak + 1, 0] == STATE["shear"]).any())
+    reached = int((path.multiple >= 0.99 * path.multiple[peak]).argmax())
+    last = int(limited.multiple.argmax())
+    lost = np.flatnonzero(limited.multiple[last:] < 0.8 * limited.multiple[last])
+    drop = float(limited.control[last + lost[0]]) / wall.height if len(lost) else math.nan
+    return Predicted(float(path.multiple[peak]), "S" if sheared else "F", "", float(path.control[reached]) / wall.height, drop)
 
+
+def _pushed(wall: Wall, law: str, limits: tuple[float, float]) -> PushPath:
+    """Push of one pier to a drift of 2 %."""
     double, diagonal = wall.span < 0.75, math.isnan(wall.cohesion)
     height = wall.height * max(wall.span, 1.0)
     pier = MacroElement(
@@ -396,20 +410,13 @@ def _pier(wall: Wall, law: str) -> Predicted:
         tension=wall.tensile,
         slenderness=min(max(wall.height / wall.length, 1.0), 1.5),
         second_order=False,
-        drifts=LIMITS,
+        drifts=limits,
     )
     n = 2 if double else 3
     weight, along = np.zeros(n), np.zeros(n)
     weight[1], along[0] = -wall.axial, 1.0
     with Frame([pier], [], np.zeros((n, n)), weight, np.zeros((n, n))) as frame:
-        path = frame.push(along, along, 0.02 * wall.height, 800, 0.0)
-    peak = int(path.multiple.argmax())
-    sheared = bool((path.state[: peak + 1, 0] == STATE["shear"]).any())
-    drift = path.control / wall.height
-    reached = int((path.multiple >= 0.99 * path.multiple[peak]).argmax())
-    fallen = np.flatnonzero(path.multiple[peak:] < 0.8 * path.multiple[peak])
-    drop = float(drift[peak + fallen[0]]) if len(fallen) else math.nan
-    return Predicted(float(path.multiple[peak]), "S" if sheared else "F", "", float(drift[reached]), drop)
+        return frame.push(along, along, 0.02 * wall.height, 800, 0.0)
 
 
 #: Drift limits in flexure and in shear, of NTC 2018 7.8.2.2.1 and 7.8.2.2.2

@@ -7,7 +7,7 @@ module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, joints, dowels, surroundings, bodies, attitudes, joint_forces, slips
+   public :: create, joints, dowels, surroundings, bodies, attitudes, slips
 
 contains
 
@@ -144,29 +144,6 @@ contains
       end if
       call handle_leave(handle)
    end subroutine attitudes
-
-   !> Forces and losses of the joints at the points of the last run's history
-   subroutine joint_forces(handle, nj, nt, joint, status)
-      use common_handles, only : handle_leave
-      use common_status, only : status_ok, status_invalid_argument
-      use dem3_handle, only : solids_run_take
-      use dem3_run, only : solid_simulation
-      integer(c_int64_t), intent(in) :: handle
-      integer(c_int), intent(in) :: nj                        !! joints
-      integer(c_int), intent(in) :: nt                        !! points, see api_dem_run
-      real(c_double), intent(out) :: joint(5, nj, nt)         !! force on the first body [N]; friction, dashpots [J]
-      integer(c_int), intent(out) :: status
-      type(solid_simulation), pointer :: run
-      joint = 0.0_c_double
-      call solids_run_take(handle, run, status)
-      if (status /= status_ok) return
-      status = status_invalid_argument
-      if (nj == size(run%record%joint, 2) .and. nt <= run%record%points) then
-         status = status_ok
-         joint = run%record%joint(:, :, 1:nt)
-      end if
-      call handle_leave(handle)
-   end subroutine joint_forces
 
    !> What became of the dowels in the last run
    subroutine slips(handle, n, slip, is_out, status)

@@ -7,7 +7,7 @@ module api_dem_run
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: laws, options, rigid, ties, start, run, state_size, state, resume, summary, effort, history, tensions
+   public :: laws, options, rigid, ties, start, run, state_size, state, resume, summary, effort, history, joint_forces, tensions
 
 contains
 
@@ -322,6 +322,30 @@ contains
       end associate
       call handle_leave(handle)
    end subroutine history
+
+   !> Forces and losses of the joints at the points of the last run's history
+   subroutine joint_forces(handle, nj, nt, joint, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : run_take
+      use dem_simulation, only : simulation
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nj                        !! joints, in the order of their lower bodies
+      integer(c_int), intent(in) :: nt                        !! points, see summary
+      !> force on the first body, in the plane x, y, 0 [N]; losses by friction and in dashpots [J]
+      real(c_double), intent(out) :: joint(5, nj, nt)
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      joint = 0.0_c_double
+      call run_take(handle, run, status)
+      if (status /= status_ok) return
+      status = status_invalid_argument
+      if (nj == size(run%record%joint, 2) .and. nt <= run%record%points) then
+         status = status_ok
+         joint = run%record%joint(:, :, 1:nt)
+      end if
+      call handle_leave(handle)
+   end subroutine joint_forces
 
    !> Tensions in the ties that the last run recorded, and of all its steps the extremes
    subroutine tensions(handle, ntie, nt, tension, extreme, status)

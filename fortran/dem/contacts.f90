@@ -10,7 +10,7 @@ module dem_contacts
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: contact_point, contact_pair, contact_set, overlap, measure_overlap, choose_edges, place_part
+   public :: contact_point, contact_pair, contact_set, overlap, measure_overlap, choose_edges, pair_loss, place_part
 
    !> Memory of one contact point
    type :: contact_point
@@ -31,6 +31,7 @@ module dem_contacts
       integer :: bodies(2) = 0
       integer :: edges(2) = 0
       integer :: law = 1
+      integer :: joint = 0              !! of the two bodies in the law table, 0 where they had none at the start
       logical :: careful = .false.      !! the overlap is short: choose the edges anew in every step
       real(wp) :: rx = 0.0_wp, ry = 0.0_wp          !! start of the reference edge, in body 1 [m]
       real(wp) :: tx = 0.0_wp, ty = 0.0_wp          !! its tangent, in body 1
@@ -58,6 +59,7 @@ module dem_contacts
       integer(c_int), allocatable :: law_first(:)   !! rows of the law table: first entry of each body
       integer(c_int), allocatable :: law_body(:)    !! the other body
       integer(c_int), allocatable :: law_number(:)
+      real(wp), allocatable :: joint_loss(:, :)     !! (2, joints) by friction and dashpots of contacts that are gone [J]
       real(wp) :: skin = 0.0_wp                     !! [m]
       real(wp) :: friction_loss = 0.0_wp            !! of contacts that are gone [J]
       real(wp) :: damping_loss = 0.0_wp
@@ -75,6 +77,13 @@ module dem_contacts
    end type overlap
 
 contains
+
+   !> Energy lost by friction and in dashpots, or by impacts, of a pair [J]
+   pure function pair_loss(pair) result(lost)
+      type(contact_pair), intent(in) :: pair
+      real(wp) :: lost(2)
+      lost = pair%loss_before + [sum(pair%point%friction_loss), sum(pair%point%damping_loss)]
+   end function pair_loss
 
    !> Ends of the common stretch of reference and incident edge
    pure subroutine measure_overlap(pair, a, b, now)

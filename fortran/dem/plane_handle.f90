@@ -189,8 +189,8 @@ contains
       allocate (run, stat=failed)
       if (failed /= 0) return
       call start_model(built, run%model, status)
-      if (status == status_ok) call run_record_new(size(built%set%item), 3, .false., count_ties(built), 0, &
-         wanted, run%record, status)
+      if (status == status_ok) call run_record_new(size(built%set%item), 3, .false., count_ties(built), &
+         size(run%model%contacts%law_body), wanted, run%record, status)
       if (status /= status_ok) return
       run%domain = built%domain
       call move_alloc(run, built%run)
@@ -210,7 +210,7 @@ contains
       allocate (model%set%item(bodies), model%set%parts(size(built%set%parts)), &
          model%set%edges(size(built%set%edges)), model%law(size(built%law)), model%load%move(moves), &
          model%contacts%law_first(bodies + 1), model%contacts%law_body(joints), &
-         model%contacts%law_number(joints), stat=failed)
+         model%contacts%law_number(joints), model%contacts%joint_loss(2, joints), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       model%set%item(:) = built%set%item
@@ -219,6 +219,7 @@ contains
       model%set%size = built%set%size
       model%law(:) = built%law
       model%contacts%law_first(:) = 1
+      model%contacts%joint_loss = 0.0_wp
       if (joints > 0) then
          model%contacts%law_first(:) = built%law_first
          model%contacts%law_body(:) = built%law_body

@@ -4,8 +4,8 @@ module dem_plane_run
    use common_lists, only : stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, &
       stop_left => dem_stop_left, stop_overlap => dem_stop_overlap
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
-   use dem_bodies, only : body
-   use dem_contacts, only : contact_pair, overlap, measure_overlap
+   use dem_bodies, only : body, body_set
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, pair_loss
    use dem_energy, only : energy_terms
    use dem_jointed, only : jointed_model
    use dem_law, only : elastic_energy
@@ -112,7 +112,7 @@ contains
       class(block_simulation), intent(in) :: run
       type(energy_terms) :: now
       integer :: k
-      real(wp) :: vx, vy, spin, ax, ay, turn, cut, span
+      real(wp) :: vx, vy, spin, ax, ay, turn, cut, span, lost(2)
 
       associate (model => run%model)
          ! The first step takes half a kick from the initial velocity; steps never grow after it.
@@ -143,8 +143,9 @@ contains
          do k = 1, model%contacts%pairs
             associate (pair => model%contacts%pair(k))
                if (.not. model%rigid%setting%used) now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
-               now%friction = now%friction + pair%loss_before(1) + sum(pair%point%friction_loss)
-               now%damping = now%damping + pair%loss_before(2) + sum(pair%point%damping_loss)
+               lost = pair_loss(pair)
+               now%friction = now%friction + lost(1)
+               now%damping = now%damping + lost(2)
                now%work = now%work + pair%support_work
             end associate
          end do
@@ -282,6 +283,7 @@ contains
          end do
          contacts%friction_loss = 0.0_wp
          contacts%damping_loss = 0.0_wp
+         contacts%joint_loss = 0.0_wp
          contacts%support_work = 0.0_wp
          call forget_tie_losses(run%model%ties)
          b%work = 0.0_wp
@@ -309,7 +311,37 @@ contains
             rate(1:2, k) = rate(1:2, k) - model%base
          end do
       end associate
+      call record_joints(run%model%set, run%model%contacts, run%record%joint(:, :, run%record%points))
    end subroutine record_state
+
+   !> Forces of the joints at the last forces, and what they lost so far
+   pure subroutine record_joints(set, contacts, joint)
+      type(body_set), intent(in) :: set
+      type(contact_set), intent(in) :: contacts
+      real(wp), intent(out) :: joint(:, :)          !! (5, joints) on the first body: x, y [N], 0; friction, dashpots [J]
+      type(overlap) :: now
+      real(wp) :: force(2), normal, shear
+      integer :: k, i
+      joint(1:3, :) = 0.0_wp
+      joint(4:5, :) = contacts%joint_loss
+      do k = 1, contacts%pairs
+         associate (pair => contacts%pair(k))
+            if (pair%joint == 0) cycle
+            call measure_overlap(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
+            force = 0.0_wp
+            do i = 1, 2
+               if (.not. pair%point(i)%closed) cycle
+               normal = pair%point(i)%spring_n + pair%point(i)%dash_n
+               shear = pair%point(i)%spring_s + pair%point(i)%dash_s
+               force = force + [normal * now%ty(i) + shear * now%tx(i), shear * now%ty(i) - normal * now%tx(i)]
+            end do
+            ! The forces of points are those on the second body.
+            if (pair%bodies(1) < pair%bodies(2)) force = -force
+            joint(1:2, pair%joint) = joint(1:2, pair%joint) + force
+            joint(4:5, pair%joint) = joint(4:5, pair%joint) + pair_loss(pair)
+         end associate
+      end do
+   end subroutine record_joints
 
    function list_sizes(run) result(told)
       class(block_simulation), intent(in) :: run
@@ -364,6 +396,7 @@ contains
          call on%pass(contacts%friction_loss, storage_size(contacts%friction_loss))
          call on%pass(contacts%damping_loss, storage_size(contacts%damping_loss))
          call on%pass(contacts%support_work, storage_size(contacts%support_work))
+         call on%pass(contacts%joint_loss, storage_size(contacts%joint_loss))
       end associate
    end subroutine walk_state
 

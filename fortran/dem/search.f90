@@ -3,7 +3,7 @@ module dem_search
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body_set, most_vertices
-   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, choose_edges, place_part
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, choose_edges, pair_loss, place_part
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
@@ -131,7 +131,8 @@ contains
       if (pair%parts(1) == 0) then
          pair%parts = [p, q]
          pair%bodies = [set%parts(p)%owner, set%parts(q)%owner]
-         pair%law = law_of(contacts, pair%bodies(1), pair%bodies(2))
+         pair%joint = joint_between(contacts, pair%bodies(1), pair%bodies(2))
+         if (pair%joint > 0) pair%law = contacts%law_number(pair%joint)
       end if
       call choose_edges(set, contacts%skin, pair, distance)
       took = merge(1, 0, distance <= contacts%skin)
@@ -141,18 +142,18 @@ contains
       if (first_time) pair%point%bonded = .not. pair%careful .and. now%gap <= 0.05_wp * contacts%skin
    end subroutine consider_pair
 
-   !> Law of the joint between two bodies: from the table, or the first one
-   pure function law_of(contacts, a, b) result(law)
+   !> Row of the law table of the joint between two bodies, 0 without one
+   pure function joint_between(contacts, a, b) result(joint)
       type(contact_set), intent(in) :: contacts
       integer, intent(in) :: a
       integer, intent(in) :: b
-      integer :: law
+      integer :: joint
       integer :: k
-      law = 1
+      joint = 0
       do k = contacts%law_first(min(a, b)), contacts%law_first(min(a, b) + 1) - 1
-         if (contacts%law_body(k) == max(a, b)) law = contacts%law_number(k)
+         if (contacts%law_body(k) == max(a, b)) joint = k
       end do
-   end function law_of
+   end function joint_between
 
    !> Sort the pairs found by their parts and remember what the vanished ones have lost
    subroutine sort_pairs(set, contacts, found, failed)
@@ -167,6 +168,7 @@ contains
 
       failed = 0
       total = losses(contacts%pair, contacts%pairs)
+      call count_joint_losses(contacts, 1.0_wp)
       contacts%friction_loss = contacts%friction_loss + total(1)
       contacts%damping_loss = contacts%damping_loss + total(2)
       contacts%support_work = contacts%support_work + total(3)
@@ -206,10 +208,24 @@ contains
       end do
       contacts%pairs = found
       total = losses(contacts%pair, found)
+      call count_joint_losses(contacts, -1.0_wp)
       contacts%friction_loss = contacts%friction_loss - total(1)
       contacts%damping_loss = contacts%damping_loss - total(2)
       contacts%support_work = contacts%support_work - total(3)
    end subroutine sort_pairs
+
+   !> Add the losses of the pairs, times `sense`, to those of their joints
+   pure subroutine count_joint_losses(contacts, sense)
+      type(contact_set), intent(inout) :: contacts
+      real(wp), intent(in) :: sense
+      integer :: k
+      do k = 1, contacts%pairs
+         associate (pair => contacts%pair(k))
+            if (pair%joint > 0) contacts%joint_loss(:, pair%joint) = contacts%joint_loss(:, pair%joint) &
+               + sense * pair_loss(pair)
+         end associate
+      end do
+   end subroutine count_joint_losses
 
    !> Friction loss, damping loss and support work remembered by the pairs [J]
    pure function losses(pair, n) result(total)
@@ -219,8 +235,7 @@ contains
       integer :: k
       total = 0.0_wp
       do k = 1, n
-         total(1) = total(1) + pair(k)%loss_before(1) + sum(pair(k)%point%friction_loss)
-         total(2) = total(2) + pair(k)%loss_before(2) + sum(pair(k)%point%damping_loss)
+         total(1:2) = total(1:2) + pair_loss(pair(k))
          total(3) = total(3) + pair(k)%support_work
       end do
    end function losses

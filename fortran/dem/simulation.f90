@@ -43,7 +43,7 @@ module dem_simulation
       real(wp), allocatable :: rate(:, :, :)    !! (3 or 6, bodies, nt) velocity, spin; relative to the ground
       real(wp), allocatable :: energy(:, :)     !! (dem_energy_count, nt) [J]
       real(wp), allocatable :: tension(:, :)    !! (ties, nt) [N]
-      !> (5, joints, nt) force on the first body of each joint [N], losses by friction and in dashpots so far [J]; plane: of none
+      !> (5, joints, nt) force on the first body of each joint [N], losses by friction and in dashpots so far [J]
       real(wp), allocatable :: joint(:, :, :)
       integer :: points = 0
       integer(c_int) :: reason = stop_end

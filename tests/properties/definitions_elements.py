@@ -69,11 +69,15 @@ def runs_of_elements_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float
             moved = np.stack([spin[:, :1] * arm[:, 0] - spin[:, 1:] * arm[:, 1], spin[:, 1:] * arm[:, 0] + spin[:, :1] * arm[:, 1]], axis=2)
             ends.append(place[:, body, None, :2] + moved)
             turned.append(angle)
-        mean = 0.5 * (turned[0] + turned[1])
-        c, s = np.cos(mean)[:, None], np.sin(mean)[:, None]
-        n, t = (np.concatenate([c * v[0] - s * v[1], s * v[0] + c * v[1]], axis=1) for v in (normal[j], tangent[j]))
         apart = ends[0] - ends[1]
-        gap, along = (apart * n[:, None]).sum(axis=2), (apart * t[:, None]).sum(axis=2)
+
+        def across(v: np.ndarray, turn: np.ndarray, apart: np.ndarray = apart) -> np.ndarray:
+            c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
+            return (apart * np.concatenate([c * v[0] - s * v[1], s * v[0] + c * v[1]], axis=1)[:, None]).sum(axis=2)
+
+        over, under = (across(normal[j], turn) for turn in turned)
+        gap = np.where(np.abs(over) < np.abs(under), over, under)  # a block that slid along either face has not left it
+        along = across(tangent[j], 0.5 * (turned[0] + turned[1]))
         near(f"openings of joint {j}", [a["opening_p"][:, j], a["opening_q"][:, j]], gap.T, 1e-5, 0.1)
         slip[:, j] = np.where(gap[:, 0] < gap[:, 1], along[:, 0], along[:, 1])
         near(f"slip of joint {j}", np.abs(a["slip"][:, j]), np.abs(slip[:, j]), 1e-4, 1e-2)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from asking import Answer, Deck, ask, at_most, must, near
 from buildings import changed, decks, number
+from conservation import building
 from hypothesis import reject
 from hypothesis import strategies as st
 from relations import GRAVITY, RECTANGLES, RIGID, SLIDERS, SLOW, ok, relation
@@ -33,6 +34,28 @@ def places(answer: Answer, axis: int) -> np.ndarray:
     if "place" in arrays:
         return np.asarray(arrays["place"].data)[:, :, axis]
     return (np.asarray(arrays["solid_centroid"].data) + np.asarray(arrays["pose"].data)[:, :, :3])[:, :, 2 * axis]
+
+
+WALLS = decks("brickwork", "arch", "column", "blocks", friction=number(0.2, 0.9, 14))
+
+
+@relation("dem", st.tuples(WALLS, number(0.1, 0.8), number(0.2, 0.6), st.booleans()), 0.05, share=0.3)
+def forces_of_blocks_are_their_momentum(deck: Deck, amplitude: float, period: float, rigid: bool, within: float) -> None:
+    """What the pairs of a block give it, less weight and inertia, is its momentum; what pairs lost is the loss of the run."""
+    moving = waving(changed(deck, joints={} if rigid else {"normal_stiffness": 1e9}), amplitude, period)
+    answer = ask(moving, "dem", end_time=0.2, output_step=0.001, perturbed=False, **(RIGID if rigid else {}))
+    if not answer.answers or answer.results.stopped != "end":
+        reject()
+    a = {name: np.asarray(array.data) for name, array in answer.result.arrays.items()}
+    mass = building(moving).blocks().mass
+    inertia = np.column_stack([a["ground"], np.full(len(a["ground"]), GRAVITY)])
+    for k in range(len(mass)):
+        first, second = (a["pair_block"] == k).T
+        force = a["pair_force"][:, first].sum(axis=1) - a["pair_force"][:, second].sum(axis=1)
+        moves = force - mass[k] * inertia
+        gained = 0.0005 * (moves[1:] + moves[:-1]).sum(axis=0)
+        near("momentum", gained, mass[k] * (a["rate"][-1, k, :2] - a["rate"][0, k, :2]), within, 0.2 * mass[k] * GRAVITY)
+    near("friction of the pairs", a["pair_friction_work"][-1].sum(), answer.results.friction_loss_J, 1e-8, 1e-6)
 
 
 PIERS = st.tuples(decks("block", "column", friction=number(0.5, 0.9, 8)), number(1.2, 1.8), number(0.3, 0.6, 12), st.booleans())

@@ -69,6 +69,7 @@ SLOW = {
     "bounds-of-solids",
     "dilatancy-helps",
     "dowels-of-a-column-at-rest",
+    "forces-of-blocks-are-their-momentum",
     "heights-of-mechanisms",
     "layers-that-are-switched-off",
     "noise-of-solids",

@@ -11,6 +11,10 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
 import wall_tests as tool
 
+from extrados.analyses.context import Context
+from extrados.decks.reader import make_deck
+from extrados.views.mesh.options import MeshOptions
+
 HEAD = (
     "# a source\nn,reference,name,units,height_m,length_m,thickness_m,unit_length_mm,unit_height_mm,masonry_compressive_MPa,"
     "masonry_tensile_diagonal_MPa,young_MPa,shear_strength_initial_MPa,friction,shear_span_over_height,vertical_stress_MPa,"
@@ -113,6 +117,16 @@ def test_head_joints_of_blocks_in_thin_beds_are_unfilled(tmp_path, height: float
     (wall,) = walls(tmp_path, f"1,x,A,block,{height},1,0.2,250,{unit},5,,,0.3,0.6,0.5,0.6,F,40,40")
     types = tool.units_deck(wall)["joints"].get("types")
     assert types == ([{"joints": ["heads"], **tool.UNFILLED}] if unfilled else None)
+
+
+def test_walls_of_units_have_a_bed_at_the_foot(tmp_path) -> None:
+    """Held at both sides, the lowest bed could not open: a warning says so."""
+    (wall,) = walls(tmp_path, "1,x,A,brick,1,1,0.2,500,500,5,,,0.3,0.6,0.5,0.6,F,40,40")
+    deck = tool.units_deck(wall)
+    held = deck | {"supports": {"held": [{"edge": "bottom"}]}}
+    meshes = [Context(make_deck(one)).building.mesh(MeshOptions(**deck["analysis"][0]["mesh"])) for one in (deck, held)]
+    assert [any("both sides of joints at the ground" in text for text in mesh.warnings) for mesh in meshes] == [False, True]
+    assert len(meshes[0].ground) and meshes[1].ground is None
 
 
 def test_walls_of_one_deck_are_run_once(tmp_path, monkeypatch) -> None:

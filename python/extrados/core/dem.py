@@ -146,9 +146,11 @@ class Model(BodyModel[Run]):
             ]
         )
         if bodies.joints:
-            pairs = indices("joints", np.transpose(list(bodies.joints)), self.count, (2, None))
-            law = indices("joints", list(bodies.joints.values()), len(bodies.laws), (None,))
-            check(_core.api_dem.joints(self.handle, pairs, law), "joints")
+            listed = sorted((min(pair), max(pair), law) for pair, law in bodies.joints.items())
+            joints = indices("joints", np.transpose([pair for *pair, _ in listed]), self.count, (2, None))
+            law = indices("joints", [law for *_, law in listed], len(bodies.laws), (None,))
+            check(_core.api_dem.joints(self.handle, joints, law), "joints")
+            self._joints = np.array([pair for *pair, _ in listed])
 
     def _put_moves(self, moves: Sequence[SupportMove]) -> None:
         if not moves:

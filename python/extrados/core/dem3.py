@@ -68,18 +68,12 @@ class Options(RunOptions):
 @dataclass(frozen=True, kw_only=True)
 class Run(FoundRun):
     """A run. turn (t, n, 3, 3): rotation matrices from the attitude at the start, settled_turn (n, 3, 3) after settling.
-    dowel_slip (nk) [m]: how far each dowel gave way at most; dowel_out (nk): whether the bodies have parted from it. joint_body
-    (joints, 2): bodies that touched as drawn, ascending; joint_force (t, joints, 3): force on the first of them [N];
-    joint_friction, joint_damping (t, joints): their losses so far by friction and in dashpots or impacts [J]."""
+    dowel_slip (nk) [m]: how far each dowel gave way at most; dowel_out (nk): whether the bodies have parted from it."""
 
     turn: np.ndarray
     settled_turn: np.ndarray
     dowel_slip: np.ndarray
     dowel_out: np.ndarray
-    joint_body: np.ndarray
-    joint_force: np.ndarray
-    joint_friction: np.ndarray
-    joint_damping: np.ndarray
 
 
 class Model(BodyModel[Run]):
@@ -175,8 +169,6 @@ class Model(BodyModel[Run]):
         check(status, "history of the run")
         slip, is_out, status = _core.api_dem3.slips(self.handle, self._dowels)
         check(status, "dowels after the run")
-        joint, status = _core.api_dem3.joint_forces(self.handle, len(self._joints), len(recorded["time"]))
-        check(status, "forces of the joints")
         axes = np.moveaxis(turn, (2, 3), (1, 0))  # (t, n, 3, 3): columns are the own axes
         start = np.swapaxes(self._axes, 1, 2)
         return Run(
@@ -188,10 +180,6 @@ class Model(BodyModel[Run]):
             settled_turn=np.moveaxis(settled_turn, 2, 0) @ start,
             dowel_slip=slip,
             dowel_out=is_out.astype(bool),
-            joint_body=self._joints,
-            joint_force=joint[:3].T,
-            joint_friction=joint[3].T,
-            joint_damping=joint[4].T,
         )
 
 

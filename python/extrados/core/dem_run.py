@@ -146,7 +146,9 @@ class FoundRun:
     time (t) [s]; place (t, n, 3): x, y [m] and rotation [rad] relative to the ground, or in space the centroids [m]; rate
     (t, n, 3 or 6); energy: see ENERGIES, each (t) [J]; settled (n, 3): place after settling; residual: greatest energy from
     nowhere over the total energy exchanged; bounces and airborne time [s] of each body; tension (t, ties) [N]; extreme (ties, 3):
-    least and greatest tension of any step after settling [N], plastic elongation at the end [m]; effort: of rigid contacts.
+    least and greatest tension of any step after settling [N], plastic elongation at the end [m]; effort: of rigid contacts. joint_body
+    (joints, 2): bodies that touched as drawn, ascending; joint_force (t, joints, 2 or 3): force on the first of them [N];
+    joint_friction, joint_damping (t, joints): their losses so far by friction and in dashpots or impacts [J].
     """
 
     reason: str
@@ -169,6 +171,10 @@ class FoundRun:
     tension: np.ndarray
     extreme: np.ndarray
     effort: Effort
+    joint_body: np.ndarray
+    joint_force: np.ndarray
+    joint_friction: np.ndarray
+    joint_damping: np.ndarray
     interrupted: bool = False
 
 
@@ -186,6 +192,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
     count: int
     options: RunOptions
     _ties: int = 0
+    _joints: np.ndarray = np.empty((0, 2), dtype=int)
 
     def _put_ties(self, ties: Ties | None, place: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> None:
         """Ties; place: the places (anchors, 2 or 3) of anchors in the frames of their bodies (anchors), of none in the ground."""
@@ -352,6 +359,8 @@ class BodyModel(Owner, ABC, Generic[Found]):
         check(status, "tensions of the ties")
         took, measures, status = _core.api_dem_run.effort(self.handle)
         check(status, "effort of the run")
+        joint, status = _core.api_dem_run.joint_forces(self.handle, len(self._joints), points)
+        check(status, "forces of the joints")
         return {
             "reason": REASONS[reason],
             "blamed": [k - 1 for k in (first, second) if k > 0],
@@ -370,6 +379,10 @@ class BodyModel(Owner, ABC, Generic[Found]):
             "interrupted": interrupted,
             "tension": tension.T,
             "extreme": extreme.T,
+            "joint_body": self._joints,
+            "joint_force": joint[: 3 if self.in_space else 2].T,
+            "joint_friction": joint[3].T,
+            "joint_damping": joint[4].T,
             "effort": Effort(*(int(n) for n in took), *(float(value) for value in measures)),
         }
 

@@ -10,6 +10,8 @@ Origin = Literal["default", "deck", "analysis", "method"]
 #: The key that every answer which rests on it tells, whatever its value
 FRICTION = "joints.friction"
 NO_SLIDING = "no-sliding"
+#: Keys whose names in words differ from the keys
+LABELS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 
 
 class Assumption(ResultModel):
@@ -41,7 +43,8 @@ def _silent(one: Assumption) -> bool:
 
 
 def _words(name: str, one: Assumption) -> str:
-    word = name.rpartition(".")[2].replace("_", " ")
+    key = name.rpartition(".")[2]
+    word = LABELS.get(key, key.replace("_", " "))
     if one.unit in ENGINEERING and isinstance(one.value, int | float):
         said = f"{word} {engineering(one.value, one.unit)}"
     else:

@@ -70,6 +70,15 @@ class TieRun(ResultModel):
     )
 
 
+class PairWork(ResultModel):
+    """Energy that a pair of blocks, or a block and its support, lost in a run."""
+
+    name: str = fact("both blocks; the ground is one support")
+    friction_J: float = fact("energy lost by friction", "J")
+    damping_J: float = fact("energy lost in dashpots, or by impacts of rigid contacts", "J")
+    peak_force_N: float = fact("greatest force between both blocks, over the output times", "N")
+
+
 class BlocksRun(KindResults):
     """What the blocks of a section and those in space have in common under a motion."""
 
@@ -107,6 +116,9 @@ class BlocksRun(KindResults):
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
+    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks, over the output times", "N")
+    peak_base_shear_over_weight: float = fact("ratio of the greatest horizontal force of the ground to the weight of the structure")
+    joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
     bounces: int = fact("number of times that blocks separated from the ground or from each other")
     airborne_time_s: float = fact("longest time during which a block had no contact", "s")
@@ -226,15 +238,6 @@ class DemTilt(BlocksTilt):
     peak_slip_m: float = fact("greatest slip in the mechanism", "m")
 
 
-class PairWork(ResultModel):
-    """Energy that a pair of blocks, or a block and its support, lost in a run."""
-
-    name: str = fact("both blocks; the ground is one support")
-    friction_J: float = fact("energy lost by friction", "J")
-    damping_J: float = fact("energy lost in dashpots, or by impacts of rigid contacts", "J")
-    peak_force_N: float = fact("greatest force between both blocks, over the output times", "N")
-
-
 class SolidDemRun(BlocksRun):
     """dem: blocks in space under a motion."""
 
@@ -249,9 +252,6 @@ class SolidDemRun(BlocksRun):
     dowels_out: int = fact("number of dowels that came out of their holes")
     final_displacement_m: float = fact("greatest displacement of any block at the end of the run", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed at another point", "m")
-    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks, over the output times", "N")
-    peak_base_shear_over_weight: float = fact("ratio of the greatest horizontal force of the ground to the weight of the structure")
-    joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
 
 
 class SolidDemTilt(BlocksTilt):

@@ -7,10 +7,6 @@ from extrados.results.fields import ResultModel, fact
 
 Outcome = Literal["stands", "collapses", "cannot-stand", "open", "not-applicable"]
 Bound = Literal["exact", "upper", "lower"]
-#: Outcomes by which a strategy decides
-DECIDED: tuple[Outcome, ...] = ("stands", "collapses", "cannot-stand")
-
-
 #: Outcomes in words, the gravest first
 OUTCOMES: dict[Outcome, str] = {
     "cannot-stand": "cannot stand",

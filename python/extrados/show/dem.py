@@ -22,6 +22,7 @@ from extrados.results.dem import (
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, solid_dem, style
+from extrados.show.dem_forces import draw_forces
 from extrados.show.stones import Stones, moved, outlines
 
 SHOWN = 6
@@ -161,7 +162,7 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         return [*figures, *_ties(run, name, folder)]
     figures = [_snapshots(run, name, folder)]
     if "rotation" in run.arrays[name]:
-        figures += [_histories(run, name, folder), _energies(run, name, folder)]
+        figures += [_histories(run, name, folder), _energies(run, name, folder), draw_forces(run, name, folder)]
         if run.array(name, "hinge").shape[1] > 1:
             figures.append(_hinge_map(run, name, folder))
         figures += _ties(run, name, folder)

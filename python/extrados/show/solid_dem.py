@@ -14,6 +14,7 @@ from extrados.results.solid_files import rotations
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, scene, style
+from extrados.show.dem_forces import draw_forces
 from extrados.show.limit.section import TIE
 from extrados.show.solids import FILM_PIXELS, VIEW, faces_of
 
@@ -32,7 +33,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Everything that a run or a tilt test of solids has to show."""
     found = [_snapshots(run, name, folder)]
     if "shift" in run.arrays[name]:
-        found += [_histories(run, name, folder), _contacts(run, name, folder), _forces(run, name, folder)]
+        found += [_histories(run, name, folder), _contacts(run, name, folder), draw_forces(run, name, folder)]
         _film(run, name, folder)
     return found
 
@@ -138,32 +139,6 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     return saved, (
         f"Greatest displacements and rotations of blocks, measured from equilibrium under self-weight. The ground moves along "
         f"{r.direction_deg:g} degrees in plan{' and at right angles to it' if both else ''}."
-    )
-
-
-def _forces(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    """Reactions of the ground over time, and the energy lost by friction in the pairs that lost most, if any."""
-    r, time, reaction = _stored(run, name), run.array(name, "time"), run.array(name, "reaction")
-    assert isinstance(r, SolidDemRun)
-    worked = [row for row in r.joint_work if row.friction_J > 0.0][:SHOWN]
-    lost, names = run.array(name, "pair_friction_work"), run.array(name, "pair_name").astype(str).tolist()
-    with style.figure(8.0, 6.0 if worked else 3.4, rows=1 + bool(worked), sharex=True) as (fig, axes):
-        for k, axis in enumerate("xyz"):
-            axes[0].plot(time, reaction[:, k] / 1e3, label=axis)
-        axes[0].set_ylabel("reaction of the ground [kN]")
-        style.legend_above(axes[0])
-        for row in worked:
-            axes[-1].plot(time, lost[:, names.index(row.name)], label=row.name)
-        if worked:
-            axes[-1].set_ylabel("lost by friction [J]")
-            axes[-1].legend(loc="upper left", fontsize=7)
-        axes[-1].set_xlabel("time [s]")
-        axes[-1].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
-        saved = style.save(fig, folder, f"{name}-forces")
-    return saved, "Force of the ground on the blocks" + (
-        ", and the energy that pairs of blocks lost by friction: those that lost most."
-        if worked
-        else ". No pair of blocks loses energy by friction."
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from extrados.results.assess import Assess
+from extrados.results.assumptions import LABELS
 from extrados.results.codes import Checked
 from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
@@ -346,7 +347,8 @@ def label_of(words: Language, table: str, key: str) -> str:
         name, _, number = part.partition(" ")
         parts.append(f"{words(name.replace('_', ' '))} {number}".strip())
     before = f"{' '.join(parts)}: " if parts else ""
-    return f"{before}{words(key.replace('_', ' '))}"
+    label = LABELS.get(key) if words.code == "en" else None
+    return f"{before}{label or words(key.replace('_', ' '))}"
 
 
 def _properties(rows: list[dict[str, Any]], words: Language) -> Table:

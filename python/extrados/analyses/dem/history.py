@@ -10,6 +10,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import files as dem_files
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.forces import force_arrays, force_columns
 from extrados.analyses.dem.friction import friction_threshold
 from extrados.analyses.dem.job import Runs, watched
 from extrados.analyses.dem.model import Model
@@ -105,12 +106,13 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             **{f"rotation of {names[i]}": seen.rotation[:, i] for i in tracked},
             **{f"{name}_energy": values for name, values in found.energy.items() if name != "leapfrog"},
             **tie_columns(model.ties, found.tension),
+            **force_columns(model, found),
         },
         {
             "time": "s",
             **{f"rotation of {names[i]}": "rad" for i in tracked},
             **{f"{name}_energy": "J" for name in found.energy if name != "leapfrog"},
-            **dict.fromkeys(tie_columns(model.ties, found.tension), "N"),
+            **dict.fromkeys(tie_columns(model.ties, found.tension) | force_columns(model, found), "N"),
         },
     )
     result.tables["dem_hinges"] = measures.hinge_table(model, found.time, seen.state)
@@ -136,6 +138,7 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
         "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
         **{f"{name}_energy": Array(values, ("time",), "J") for name, values in found.energy.items() if name != "leapfrog"},
         **tie_arrays(model.ties, found.tension),
+        **force_arrays(model, found),
         **segment_arrays(model.ties, 2),
         "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),

@@ -23,8 +23,8 @@ SOLIDS_FOR_THREADS = 60
 KEEP_SECONDS, ENDED = 10.0, 999_999_999_999
 NUMBERS = ("stop_time", "step", "critical_step", "residual")
 COUNTS = ("steps", "settling_steps", "searches", "most_pairs")
-HISTORIES = ("time", "place", "rate", "tension")
-OF_BODIES = ("settled", "bounces", "airborne", "extreme")
+HISTORIES = ("time", "place", "rate", "tension", "joint_force", "joint_friction", "joint_damping")
+OF_BODIES = ("settled", "bounces", "airborne", "extreme", "joint_body")
 NO_CONTACTS = dem.Contacts(*(np.zeros(shape) for shape in ((0, 2), (0, 2), (0, 2), 0, 0)))
 
 Found = TypeVar("Found", bound=dem_run.FoundRun)
@@ -102,10 +102,6 @@ class Runs(Job[dem.Run]):
         return dem.Run(**record_of(row), contacts=NO_CONTACTS)
 
 
-#: Histories of blocks in space alone
-SOLID_HISTORIES = ("turn", "joint_force", "joint_friction", "joint_damping")
-
-
 @dataclass(frozen=True)
 class SolidTask:
     """One run of blocks in space: options, and how the ground moves along their way and, horizontally, across it, each times
@@ -149,8 +145,7 @@ class SolidRuns(Job[dem3.Run]):
         return {
             **recorded(found, length),
             "blamed": np.array([*found.blamed, -1][:1]),
-            **{name: padded(getattr(found, name), length) for name in SOLID_HISTORIES},
-            "joint_body": found.joint_body,
+            "turn": padded(found.turn, length),
             "settled_turn": found.settled_turn,
             "dowel_slip": found.dowel_slip,
             "dowel_out": found.dowel_out,
@@ -159,9 +154,8 @@ class SolidRuns(Job[dem3.Run]):
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem3.Run:
         """The run of row k."""
         row = {name: values[k] for name, values in rows.items()}
-        history = {name: row[name][: int(row["points"])] for name in SOLID_HISTORIES}
-        rest = {name: row[name] for name in ("joint_body", "settled_turn", "dowel_slip", "dowel_out")}
-        return dem3.Run(**record_of(row), **history, **rest)
+        rest = {name: row[name] for name in ("settled_turn", "dowel_slip", "dowel_out")}
+        return dem3.Run(**record_of(row), turn=row["turn"][: int(row["points"])], **rest)
 
 
 def recorded(found: dem_run.FoundRun, length: int) -> dict[str, np.ndarray]:

@@ -8,6 +8,7 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.forces import force_keys
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
@@ -127,6 +128,7 @@ def numbers_of(options: Dem, seen: BlocksSeen, collapse: measures.Collapse) -> d
         "energy_residual_ratio": found.residual,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
+        **force_keys(model, found),
         **tie_rows(model.ties, found),
         "solver": options.solver,
         "convergence": measures.convergence(found.effort) if options.rigid else None,

@@ -8,11 +8,11 @@ from extrados.analyses.context import Context
 from extrados.analyses.dem import measures, solid_measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.files import MOST_FRAMES
+from extrados.analyses.dem.forces import force_arrays, force_columns
 from extrados.analyses.dem.job import SolidRuns, SolidTask, watched
 from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.perturbed import probe_chaos
 from extrados.analyses.dem.seen import begun_result, doubts_of_run, numbers_of
-from extrados.analyses.dem.solid_forces import force_arrays, force_keys, reactions
 from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import farthest_settlement
@@ -97,7 +97,6 @@ def _numbers(options: Dem, seen: SolidsSeen, collapse: Collapse) -> dict[str, An
         "peak_rotation_rad": {names[i]: float(angle[i]) for i in solid_measures.followed(seen, options.track)},
         "final_displacement_m": float(apart[-1].max(initial=0.0)) if len(found.time) else 0.0,
         "peak_opening_m": float(np.where(seen.state == APART, 0.0, seen.opening).max(initial=0.0)),
-        **force_keys(model, found),
     }
 
 
@@ -144,7 +143,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         columns[f"rotation of {names[i]}"] = seen.angle[:, i]
     units = {key: "rad" if key.startswith("rotation") else "m" for key in columns} | {"time": "s"}
     forces = tie_columns(model.ties, found.tension)
-    forces |= {f"reaction {axis}": values for axis, values in zip("xyz", reactions(model, found).T, strict=True)}
+    forces |= force_columns(model, found)
     result.tables["dem"] = TableData(columns | energies | forces, units | dict.fromkeys(energies, "J") | dict.fromkeys(forces, "N"))
     result.arrays = {
         **run_arrays(model, found, measures.snapshot_times(options, found)),

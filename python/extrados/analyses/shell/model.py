@@ -13,12 +13,11 @@ from extrados.analyses.sla.model import (
     EventModel,
     bands_of,
     crushing_of,
-    hills_of,
-    laws_of,
     refusal,
     softening_of,
     spring_groups,
     teeth_of_joints,
+    values_of,
 )
 from extrados.core import sla as core
 from extrados.core.shell import layers_of, node_frames, shell_axes
@@ -392,34 +391,23 @@ def first_mode(model: ShellModel, options: Pushover, mass: np.ndarray) -> tuple[
 
 
 def _shells(mesh: ShellMesh, part: ShellPart, axes: np.ndarray, frames: np.ndarray, flat: np.ndarray, options: Pushover) -> core.Shells:
-    materials = [mesh.materials[m] for m in part.material]
     corners = mesh.xyz[part.connect]
     local = np.einsum("eax,ecx->eca", axes[:, :2], corners - corners.mean(axis=1, keepdims=True)).reshape(-1, 2)
     alone = np.arange(len(local)).reshape(part.connect.shape)
     # Equal elements have equal bands: their tooth tables are made once
     band, reach = bands_of(local, part.kind, alone, options)
     band, reach = np.round(band, 9), None if reach is None else np.round(reach, 9)
-    tension, crushing, beds = laws_of(materials, part.linear, part.strength, band, reach, options)
     return core.Shells(
         part.kind,
         part.connect,
         part.thickness,
-        np.array([m.young for m in materials]),
-        np.array([m.poisson for m in materials]),
-        band,
-        tension if any(t is not None for t in tension) else None,
-        crushing if any(c is not None for c in crushing) else None,
-        np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
         selective=options.mesh.selective and part.kind == "Q4",
-        reach=reach,
-        confinement=np.array([m.confinement for m in materials]),
-        bedding=beds if any(bed is not None for bed in beds) else None,
-        hill=hills_of(materials, part.linear, options),
         frames=frames,
         flat=flat,
         layers=options.mesh.layers if part.bends else 1,
         through=options.mesh.through if part.bends else "gauss",
         bends=part.bends,
+        **values_of([mesh.materials[m] for m in part.material], part.linear, part.strength, band, reach, options),
     )
 
 

@@ -382,6 +382,226 @@ def _constant_stage(
     return events
 
 
+@dataclass
+class _Run:
+    """Events under A + lambda B on their way. before: see run_reference_loads; wanted: events whose states are kept; variant: what happens
+    without equilibrium; goes_on: equilibrium iterations follow; begin, ends_at: by the clocks of time and of the processor [s]. start: damage
+    before the events of this batch, and the first of them. best_step, drop_step, last_step: states after steps of equilibrium iterations at
+    the greatest load, after its drop, and the last."""
+
+    core_model: core.Model
+    model: EventModel
+    options: Staged
+    sign: int
+    before: float
+    stop: core.Stop
+    way: UnderWay
+    wanted: list[int]
+    variant: str
+    goes_on: bool
+    spent_before: float
+    begin: float
+    ends_at: float
+    start: tuple[np.ndarray, int]
+    best_step: State | None = None
+    drop_step: State | None = None
+    last_step: State | None = None
+
+    @property
+    def release(self) -> bool:
+        """Whether forces are released where equilibrium is lost."""
+        return self.variant == "force-release"
+
+    @property
+    def floor(self) -> float:
+        """Compliance over that of the first event beyond which the structure is a mechanism."""
+        return MECHANISM_OF_STONES if self.model.mesh.has_joints else MECHANISM
+
+    def loop(self, progress: Callable[[float, float, str], None], chain: Chain | None) -> None:
+        """Run events until the run stops."""
+        batch, begun = GRID, self.way.done
+        while (done := self.way.done) < self.options.events:
+            # Steps of equilibrium iterations are found again from the events before them
+            due = done % KEPT == 0 and done > begun and not (self.release or self.core_model.iterates)
+            if due and not self._renew(done, chain):
+                break
+            if done % GRID == 0:
+                # The event chosen last is not applied yet: a run from this damage records it again first
+                self.start = (self.core_model.damage(), max(done - 1, 0))
+            clock = time.perf_counter()
+            part = self._run_part(self._room(done, batch))
+            spent = time.perf_counter() - clock
+            if len(part):
+                self._note(part, done)
+            done += len(part)
+            if len(part) and done - 1 in self.wanted:
+                self.way.states.append(_state(self.core_model, done - 1, part))
+            load = (part.pull if self.model.driven else self.model.already + part.load * self.model.unit)[-1:]
+            progress(done, self.options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
+            if part.reason or part.interrupted or not (len(part) or self.core_model.iterates):
+                break
+            if time.process_time() > self.ends_at:
+                part.reason = SPENT
+                break
+            batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
+
+    def _renew(self, done: int, chain: Chain | None) -> bool:
+        """Begin anew from the damage, since what is on its way from one point to others has no name; keep the run. False where a node is free."""
+        damage, standing = self.core_model.damage(), self.core_model.standing()
+        try:
+            self.core_model.renew(damage, standing)
+        except core.FreeNode:
+            self.way.parts[-1].reason = "mechanism"
+            return False
+        self.way.seconds = self.spent_before + time.perf_counter() - self.begin
+        if chain is not None:
+            chain.keep(done, self.way.arrays(damage, standing))
+        return True
+
+    def _room(self, done: int, batch: int) -> int:
+        """How many events are run at once."""
+        room = min(batch, GRID - done % GRID, self.options.events - done)
+        ahead = [e for e in self.wanted if e >= done]
+        if ahead:
+            room = min(room, ahead[0] + 1 - done)
+        return 1 if self.core_model.iterates else room  # the state after a step may be that of the peak
+
+    def _run_part(self, room: int) -> core.Events:
+        """The next events. Refused where the constant loads exceed the strength."""
+        try:
+            part = self.core_model.run(room, self.model.watched, self.stop, variant=self.variant)
+        except CoreError as error:
+            if error.status != status_code("beyond_strength"):
+                raise
+            raise Refused(
+                (
+                    "the constant loads alone exceed the strength, and no multiplier of the reference load relieves them. Reduce "
+                    "them, or apply them with damage: constant_damage = true"
+                ),
+                WHOLE,
+            ) from None
+        if self.model.driven and not part.steps.any():  # as of a force that moves them
+            part.compliance = 1.0 / np.maximum(part.compliance, np.finfo(float).tiny)
+        self.way.parts.append(part)
+        return part
+
+    def _note(self, part: core.Events, done: int) -> None:
+        """The greatest load so far, and states after steps of equilibrium iterations; done: events before this part."""
+        model, way = self.model, self.way
+        most = np.inf if model.driven else self.floor * way.parts[0].compliance[0]
+        moved = np.abs(part.monitors[:, 0] - self.sign * self.before)
+        load = part.pull if model.driven else part.load
+        found, _ = states(part.equilibrium, load, moved, part.compliance, FAR * model.extent, most)
+        load = np.where(found, load, -np.inf)
+        if part.reason == "mechanism" and model.mesh.has_joints:
+            load[-1] = -np.inf  # on the way of the mechanism
+        if part.steps[-1] and np.isfinite(load[-1]):
+            self.last_step = _state(self.core_model, done + len(part) - 1, part)
+        if load.max() > way.best:
+            way.best, way.before_best = float(load.max()), self.start
+            self.best_step = self.last_step if part.steps[-1] else None
+            self.drop_step = None
+        elif part.steps[-1] and self.drop_step is None and load[-1] < DROP * way.best:
+            self.drop_step = self.last_step
+
+    def curve(self, ends_by_drift: bool) -> Curve:
+        """The curve of all events, with its states and warnings. ends_by_drift: the displacement at which it stops is that of DRIFT."""
+        core_model, model = self.core_model, self.model
+        events = core.Events.join(self.way.parts)
+        events.monitors[:, 0] *= self.sign  # positive in the sense of the load
+        collapsed = (
+            events.reason == "mechanism" and len(events) > 0 and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+        )
+        if events.reason == "mechanism" and len(events) and model.driven:
+            events.equilibrium[-1] = False  # the constant loads carry it away
+        if collapsed and model.mesh.has_joints:
+            # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
+            events.equilibrium[-1] = False
+        damage, kept, size = core_model.damage(), self.way.states, (core_model.equations, core_model.points)
+        curve = Curve(events, None, kept, NOTHING, damage, 0.0, self.sign, [], *size)
+        if core_model.iterates and len(events):
+            curve.histories = core_model.histories()
+        curve.already, curve.driven, curve.releases = model.already, model.driven, self.release
+        curve.before, curve.unit, curve.extent, curve.control = self.before, model.unit, model.extent, model.control
+        if len(events) and not model.driven:
+            curve.most_compliance = self.floor * float(events.compliance[0])
+        if ends_by_drift and events.reason == REACHED:
+            events.reason = DRIFTED
+        self._warn(curve)
+        if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
+            self._end_on_a_line(curve)
+        if len(events):
+            self._keep_states(curve, collapsed)
+        curve.seconds = self.spent_before + time.perf_counter() - self.begin
+        return curve
+
+    def _warn(self, curve: Curve) -> None:
+        """Warnings of a budget that is spent, of equilibrium that is lost, and of work that does not balance."""
+        events = curve.events
+        if events.reason == SPENT and len(events):
+            curve.warnings.append(
+                f"The budget of {self.options.budget:.4g} s of processor time ended the run at a displacement of "
+                f"{1e3 * events.monitors[-1, 0]:.3g} mm: peak and drifts are those up to there. Increase budget, or use larger elements."
+            )
+        lost = np.flatnonzero(~events.equilibrium)
+        if self.options.without_equilibrium == "continue" and not (self.goes_on or self.model.mesh.has_joints) and len(lost):
+            curve.warnings.append(
+                f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations can follow only "
+                "rotating cracks of isotropic masonry (no bed joints, lateral reduction, confinement, shear retention or bars). "
+                "The events after that are therefore those of load-unload."
+            )
+        steps = events.steps & events.equilibrium
+        if steps.any():
+            # Work that unloading takes back is no measure
+            work = np.maximum(np.maximum.accumulate(np.abs(events.external))[steps], np.finfo(float).tiny)
+            gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
+            if gap > UNBALANCED:
+                curve.warnings.append(
+                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the "
+                    f"loads by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not "
+                    "reliable."
+                )
+
+    def _end_on_a_line(self, curve: Curve) -> None:
+        """The line on which the curve goes on after its last event; a mechanism where it is flat."""
+        events, watch = curve.events, self.model.control
+        ends = [self.core_model.displacement(load) for load in (0.0, 1.0)]
+        constant, one = (self.sign * float(watch.share @ u[watch.node, watch.direction]) for u in ends)
+        curve.last_line = (constant, one - constant)
+        if events.reason == TOO_FAR and curve.flat():
+            events.reason = MECHANISM_REACHED
+            if self.model.mesh.has_joints:
+                events.equilibrium[-1] = False  # on the way of the mechanism
+
+    def _keep_states(self, curve: Curve, collapsed: bool) -> None:
+        """The residual at the end, and states at the end, at the peak and after its drop; collapsed: the last event begins a mechanism."""
+        core_model, events, kept = self.core_model, curve.events, curve.states
+        # A mechanism found while its event is applied leaves the displacements of the event before
+        if events.steps[-1]:
+            curve.residual = float(events.residual[-1])
+        elif events.reason != "mechanism" or (collapsed and not self.model.mesh.has_joints):
+            curve.residual = core_model.residual()
+        if not (self.way.done - 1 in self.wanted and kept):
+            kept.append(_state(core_model, len(events) - 1, events))
+        peak = curve.peak
+        if self.best_step is not None and self.best_step.event == peak != len(events) - 1:
+            kept.append(self.best_step)
+        elif peak >= 0 and peak not in {s.event for s in kept} and not (events.interrupted or self.release):
+            try:
+                state = _replay(core_model, self.model, self.sign, events, peak, self.way.before_best, self.variant)
+            except Cancelled:
+                events.interrupted = True
+            else:
+                if state is None:
+                    curve.warnings.append("the state at the peak could not be calculated again from the batch before it")
+                else:
+                    kept.append(state)
+        for step in (self.drop_step, self.last_step):
+            if step is not None and step.event not in {s.event for s in kept}:
+                kept.append(step)
+        kept.sort(key=lambda s: s.event)
+
+
 def run_reference_loads(
     core_model: core.Model,
     model: EventModel,
@@ -398,8 +618,7 @@ def run_reference_loads(
     before: control displacement of A alone [m], in the sense of the load. fresh: A was not brought on with damage before;
     it must be carried.
     """
-    begin = time.perf_counter()
-    ends_at = time.process_time() + (options.budget or np.inf)
+    begin, ends_at = time.perf_counter(), time.process_time() + (options.budget or np.inf)
     stop = replace(stop, refuse_overload=fresh and bool(np.any(model.constant)), far=FAR * model.extent)
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
     way = UnderWay((core_model.damage(), 0))
@@ -407,7 +626,6 @@ def run_reference_loads(
         kept = chain.state[1]
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
-    spent_before, begun = way.seconds, way.done
     goes_on = options.without_equilibrium == "continue" and core_model.continues and model.continues
     variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
     follow(core_model, model, options.continuation if goes_on else None)
@@ -416,154 +634,9 @@ def run_reference_loads(
     ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
     if ends_by_drift:
         stop = replace(stop, displacement=DRIFT * model.reach)
-    release = variant == "force-release"
-    floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
-    batch, start = GRID, way.before_best
-    best_step: State | None = None
-    drop_step: State | None = None
-    last_step: State | None = None
-    while (done := way.done) < options.events:
-        # What is on its way from one point to others has no name
-        # Steps of equilibrium iterations are found again from the events before them
-        if done % KEPT == 0 and done > begun and not (release or core_model.iterates):
-            damage, standing = core_model.damage(), core_model.standing()
-            try:
-                core_model.renew(damage, standing)
-            except core.FreeNode:
-                way.parts[-1].reason = "mechanism"
-                break
-            way.seconds = spent_before + time.perf_counter() - begin
-            if chain is not None:
-                chain.keep(done, way.arrays(damage, standing))
-        if done % GRID == 0:
-            # The event chosen last is not applied yet: a run from this damage records it again first
-            start = (core_model.damage(), max(done - 1, 0))
-        room = min(batch, GRID - done % GRID, options.events - done)
-        ahead = [e for e in wanted if e >= done]
-        if ahead:
-            room = min(room, ahead[0] + 1 - done)
-        if core_model.iterates:
-            room = 1  # its state may be that of the peak
-        clock = time.perf_counter()
-        try:
-            part = core_model.run(room, model.watched, stop, variant=variant)
-        except CoreError as error:
-            if error.status != status_code("beyond_strength"):
-                raise
-            raise Refused(
-                (
-                    "the constant loads alone exceed the strength, and no multiplier of the reference load relieves them. Reduce "
-                    "them, or apply them with damage: constant_damage = true"
-                ),
-                WHOLE,
-            ) from None
-        spent = time.perf_counter() - clock
-        if model.driven and not part.steps.any():  # as of a force that moves them
-            part.compliance = 1.0 / np.maximum(part.compliance, np.finfo(float).tiny)
-        way.parts.append(part)
-        if len(part):
-            most = np.inf if model.driven else floor * way.parts[0].compliance[0]
-            moved = np.abs(part.monitors[:, 0] - sign * before)
-            load = part.pull if model.driven else part.load
-            found, _ = states(part.equilibrium, load, moved, part.compliance, FAR * model.extent, most)
-            load = np.where(found, load, -np.inf)
-            if part.reason == "mechanism" and model.mesh.has_joints:
-                load[-1] = -np.inf  # on the way of the mechanism
-            if part.steps[-1] and np.isfinite(load[-1]):
-                last_step = _state(core_model, done + len(part) - 1, part)
-            if load.max() > way.best:
-                way.best, way.before_best = float(load.max()), start
-                best_step = last_step if part.steps[-1] else None
-                drop_step = None
-            elif part.steps[-1] and drop_step is None and load[-1] < DROP * way.best:
-                drop_step = last_step
-        done += len(part)
-        if len(part) and done - 1 in wanted:
-            way.states.append(_state(core_model, done - 1, part))
-        load = (part.pull if model.driven else model.already + part.load * model.unit)[-1:]
-        progress(done, options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
-        if part.reason or part.interrupted or not (len(part) or core_model.iterates):
-            break
-        if time.process_time() > ends_at:
-            part.reason = SPENT
-            break
-        batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
-    events, kept_states = core.Events.join(way.parts), way.states
-    events.monitors[:, 0] *= sign  # positive in the sense of the load
-    collapsed = events.reason == "mechanism" and len(events) > 0 and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
-    if events.reason == "mechanism" and len(events) and model.driven:
-        events.equilibrium[-1] = False  # the constant loads carry it away
-    if collapsed and model.mesh.has_joints:
-        # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
-        events.equilibrium[-1] = False
-    damage_end = core_model.damage()
-    curve = Curve(events, None, kept_states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
-    if core_model.iterates and len(events):
-        curve.histories = core_model.histories()
-    curve.already, curve.driven, curve.releases = model.already, model.driven, release
-    curve.before, curve.unit, curve.extent, curve.control = before, model.unit, model.extent, model.control
-    if len(events) and not model.driven:
-        curve.most_compliance = floor * float(events.compliance[0])
-    if ends_by_drift and events.reason == REACHED:
-        events.reason = DRIFTED
-    if events.reason == SPENT and len(events):
-        curve.warnings.append(
-            f"The budget of {options.budget:.4g} s of processor time ended the run at a displacement of {1e3 * events.monitors[-1, 0]:.3g} mm: "
-            "peak and drifts are those up to there. Increase budget, or use larger elements."
-        )
-    lost = np.flatnonzero(~events.equilibrium)
-    if options.without_equilibrium == "continue" and not (goes_on or model.mesh.has_joints) and len(lost):
-        curve.warnings.append(
-            f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations can follow only "
-            "rotating cracks of isotropic masonry (no bed joints, lateral reduction, confinement, shear retention or bars). "
-            "The events after that are therefore those of load-unload."
-        )
-    steps = events.steps & events.equilibrium
-    if steps.any():
-        # Work that unloading takes back is no measure
-        work = np.maximum(np.maximum.accumulate(np.abs(events.external))[steps], np.finfo(float).tiny)
-        gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
-        if gap > UNBALANCED:
-            curve.warnings.append(
-                "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the "
-                f"loads by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not "
-                "reliable."
-            )
-    if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
-        watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
-        constant, one = (sign * float(watch.share @ u[watch.node, watch.direction]) for u in ends)
-        curve.last_line = (constant, one - constant)
-        if events.reason == TOO_FAR and curve.flat():
-            events.reason = MECHANISM_REACHED
-            if model.mesh.has_joints:
-                events.equilibrium[-1] = False  # as below
-    if len(events):
-        # A mechanism found while its event is applied leaves the displacements of the event before
-        if events.steps[-1]:
-            curve.residual = float(events.residual[-1])
-        elif events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
-            curve.residual = core_model.residual()
-        if not (done - 1 in wanted and kept_states):
-            kept_states.append(_state(core_model, len(events) - 1, events))
-        peak = curve.peak
-        if best_step is not None and best_step.event == peak != len(events) - 1:
-            kept_states.append(best_step)
-        elif peak >= 0 and peak not in {s.event for s in kept_states} and not (events.interrupted or release):
-            try:
-                state = _replay(core_model, model, sign, events, peak, way.before_best, variant)
-            except Cancelled:
-                events.interrupted = True
-            else:
-                if state is None:
-                    curve.warnings.append("the state at the peak could not be calculated again from the batch before it")
-                else:
-                    kept_states.append(state)
-        for step in (drop_step, last_step):
-            if step is not None and step.event not in {s.event for s in kept_states}:
-                kept_states.append(step)
-        kept_states.sort(key=lambda s: s.event)
-    curve.seconds = spent_before + time.perf_counter() - begin
-    return curve
+    run = _Run(core_model, model, options, sign, before, stop, way, wanted, variant, goes_on, way.seconds, begin, ends_at, way.before_best)
+    run.loop(progress, chain)
+    return run.curve(ends_by_drift)
 
 
 def follow(core_model: core.Model, model: EventModel, how: str | None) -> None:

@@ -448,15 +448,15 @@ def crushing_of(material: Material, options: CrackOptions) -> core.Softening | N
     )
 
 
-def laws_of(
+def values_of(
     materials: Sequence[Material],
     linear: np.ndarray,
     factors: np.ndarray,
     band: np.ndarray,
     reach: np.ndarray | None,
     options: CrackOptions,
-) -> tuple[list[core.Softening | None], list[core.Softening | None], list[core.Bedding | None]]:
-    """Tension and compression softening and bed joints of elements; BadGeometry where a crack band snaps back."""
+) -> dict[str, Any]:
+    """The fields of a core.Plane that follow from the material of each element; BadGeometry where a crack band snaps back."""
     crushing = [None if s else crushing_of(m, options) for m, s in zip(materials, linear, strict=True)]
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
@@ -473,30 +473,30 @@ def laws_of(
                         f"{energy} is too small for the size of the elements: with a crack band of {widths[k]:.4g} m the softening law "
                         f"snaps back. The greatest possible band is {limit:.4g} m: use smaller elements"
                     )
-    return tension, crushing, beds
+    return {
+        "young": np.array([m.young for m in materials]),
+        "nu": np.array([m.poisson for m in materials]),
+        "band": band,
+        "tension": tension if any(t is not None for t in tension) else None,
+        "compression": crushing if any(c is not None for c in crushing) else None,
+        "lateral": np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
+        "reach": reach,
+        "confinement": np.array([m.confinement for m in materials]),
+        "bedding": beds if any(bed is not None for bed in beds) else None,
+        "hill": hills_of(materials, linear, options),
+    }
 
 
 def _plane(mesh: Mesh, group: ElementGroup, band: np.ndarray, reach: np.ndarray | None, factors: np.ndarray, options: Sla) -> core.Plane:
-    materials = [mesh.materials[m] for m in group.material]
-    tension, crushing, beds = laws_of(materials, group.linear, factors, band, reach, options)
     return core.Plane(
         group.kind,
         group.connect,
         group.thickness,
-        np.array([m.young for m in materials]),
-        np.array([m.poisson for m in materials]),
-        band,
-        tension if any(t is not None for t in tension) else None,
-        crushing if any(c is not None for c in crushing) else None,
-        np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
-        group.axis,
-        group.gauss,
-        mesh.selective and group.kind == "Q4",
-        group.joint is not None,
-        reach,
-        np.array([m.confinement for m in materials]),
-        beds if any(bed is not None for bed in beds) else None,
-        hills_of(materials, group.linear, options),
+        axis=group.axis,
+        points=group.gauss,
+        selective=mesh.selective and group.kind == "Q4",
+        joint=group.joint is not None,
+        **values_of([mesh.materials[m] for m in group.material], group.linear, factors, band, reach, options),
     )
 
 

@@ -118,7 +118,7 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     mass = np.concatenate([*(_masses(s, assembly, i) for i, s in enumerate(stones)), np.zeros(free - first[-1])])
     stone_of = np.repeat([*range(len(stones)), -1], [*(len(s.xy) for s in stones), free - first[-1]])
     walled = building.structure if isinstance(building.structure, MeshedWall) else None
-    return Mesh(
+    mesh = Mesh(
         nodes,
         groups,
         [building.material, *materials],
@@ -134,6 +134,21 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
         joint_names=assembly.joint_names,
         warnings=passive_left_out(assembly.earth),
     )
+    grounded = (assembly.a[joint] == GROUND) | (assembly.b[joint] == GROUND)
+    _tell_of_idle_joints(mesh, row[grounded])
+    return mesh
+
+
+def _tell_of_idle_joints(mesh: Mesh, row: np.ndarray) -> None:
+    """Warns if supports hold both sides of joints at the ground; `row` (n, 4) are their elements."""
+    fixed = [mesh.nodes_at(place, f"supports.held[{k}]") for k, place in enumerate(mesh.held) if "y" in place.fix]
+    held = np.zeros(len(mesh.xy), dtype=bool)
+    held[np.concatenate([np.empty(0, dtype=int), *fixed])] = True
+    if held[row].all(axis=1).any():
+        mesh.tell(
+            "supports.held holds both sides of joints at the ground. These joints neither open nor slide. Omit supports.held to keep "
+            "them: the ground is then held"
+        )
 
 
 def _rows(
