@@ -108,7 +108,7 @@ contains
    end subroutine at_rest
 
    !> Push by a growing multiple of a pattern, see push_frame
-   subroutine push(handle, n, count, most, pattern, control, target, steps, drop, states, ended, curve, displacement, &
+   subroutine push(handle, n, count, most, pattern, control, target, steps, drop, states, ended, loose, curve, displacement, &
       force, drift, state, status)
       use common_handles, only : handle_leave
       use common_status, only : status_invalid_argument
@@ -126,6 +126,7 @@ contains
       real(c_double), intent(in) :: drop                     !! share of the greatest multiple at which it ends
       integer(c_int), intent(out) :: states
       integer(c_int), intent(out) :: ended                    !! list frame_stop
+      integer(c_int), intent(out) :: loose                    !! freedom from 1 that moves most without equilibrium; else 0
       real(c_double), intent(out) :: curve(2, most)          !! control displacement, multiple
       real(c_double), intent(out) :: displacement(n, most)
       real(c_double), intent(out) :: force(3, count, most)   !! N, moments at both ends
@@ -137,6 +138,7 @@ contains
       !f2py threadsafe
       states = 0
       ended = 0
+      loose = 0
       curve = 0.0_c_double
       displacement = 0.0_c_double
       force = 0.0_c_double
@@ -153,6 +155,7 @@ contains
       end if
       if (status == 0) then
          states = path%count
+         loose = path%loose
          curve(:, :) = path%curve
          displacement(:, :) = path%displacement
          force(:, :, :) = path%force

@@ -41,6 +41,8 @@ module frame_model
    !> Forces out of balance, over the greatest sum of constant loads
    real(wp), parameter :: tolerance = 1.0e-7_wp
    integer, parameter :: most_iterations = 40, patience = 8, most_damped = 400
+   !> Share of the damping that remains after an iteration that leaves the forces out of balance as they were
+   real(wp), parameter :: faster = 0.9_wp
    !> Least and greatest damping over the elastic stiffness, and the least and greatest change of it in an iteration
    real(wp), parameter :: damping_range(2) = [1.0e-9_wp, 1.0e2_wp], damping_change(2) = [0.2_wp, 4.0_wp]
 
@@ -167,15 +169,26 @@ contains
       type(frame_state), intent(inout) :: now    !! a first guess in
       real(wp), intent(inout) :: multiple
       integer(c_int), intent(out) :: status
-      real(wp) :: right(model%n, 2), matrix(model%n, model%n), stiff(model%n), scale, more, part, damping, out, before
+      real(wp) :: right(model%n, 2), matrix(model%n, model%n), stiff(model%n), taken(model%n)
+      real(wp) :: scale, more, part, damping, out, before
       integer :: iteration, columns, i
       columns = merge(2, 1, controlled)
       damping = merge(1.0_wp, 0.0_wp, now%damped)
       before = huge(1.0_wp)
       stiff = 0.0_wp
+      taken = 0.0_wp
+      more = 0.0_wp
       do iteration = 1, merge(most_damped, most_iterations, now%damped)
          call assemble(model, past, now, status)
-         if (status /= status_ok) return
+         if (status /= status_ok) then
+            if (.not. now%damped .or. iteration == 1) return
+            damping = min(damping_range(2), damping_change(2) * damping)   ! half the way back
+            taken = 0.5_wp * taken
+            more = 0.5_wp * more
+            now%d(:) = now%d - taken
+            if (controlled) multiple = multiple - more
+            cycle
+         end if
          right(:, 1) = weighed * model%weight + multiple * pattern - now%force
          right(:, 2) = pattern
          out = maxval(abs(right(:, 1)))
@@ -186,7 +199,7 @@ contains
          matrix(:, :) = now%tangent
          if (now%damped) then
             if (iteration > 1) damping = min(damping_range(2), max(damping_range(1), damping &
-               * min(damping_change(2), max(damping_change(1), out / before))))
+               * min(damping_change(2), max(damping_change(1), faster * out / before))))
             before = max(out, tiny(1.0_wp))
             do i = 1, model%n
                stiff(i) = max(stiff(i), now%tangent(i, i))
@@ -203,7 +216,8 @@ contains
          part = 1.0_wp
          if (iteration > patience .and. .not. now%damped) part = merge(0.5_wp, 0.8_wp, mod(iteration, 2) == 0)
          if (controlled) multiple = multiple + part * more
-         now%d(:) = now%d + part * right(:, 1)
+         taken = part * right(:, 1)
+         now%d(:) = now%d + taken
       end do
       status = status_too_many_steps
    end subroutine equilibrate

@@ -14,6 +14,7 @@ module frame_push
    !> States in equilibrium along a run
    type :: push_path
       integer :: count = 0
+      integer :: loose = 0                            !! freedom that moved most when no equilibrium was found; 0: none
       real(wp), allocatable :: curve(:, :)            !! (2, most) control displacement [m], multiple of the pattern
       real(wp), allocatable :: displacement(:, :)     !! (n, most)
       real(wp), allocatable :: force(:, :, :)         !! (3, elements, most) N, moments at both ends
@@ -106,6 +107,7 @@ contains
       logical :: goes_on, cut
       integer :: failed
       path%count = 0
+      path%loose = 0
       goes_on = .false.
       ended = frame_stop_weight
       call weigh_frame(model, past, status)
@@ -143,7 +145,10 @@ contains
             step = 0.5_wp * step
             ended = frame_stop_step
             if (step < least_step * most) then
-               if (now%damped) return
+               if (now%damped) then
+                  path%loose = maxloc(abs(now%d - past%d), 1)
+                  return
+               end if
                call try_otherwise(now)
                step = lagged_step * most
             end if
@@ -262,7 +267,10 @@ contains
             if (.not. cut) cycle
             part = 0.5_wp * part
             if (part < 1.0e-3_wp) then
-               if (now%damped) return
+               if (now%damped) then
+                  path%loose = maxloc(abs(now%d - past%d), 1)
+                  return
+               end if
                call try_otherwise(now)
                part = 0.05_wp
             end if

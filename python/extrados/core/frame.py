@@ -117,7 +117,8 @@ class Path:
     """States in equilibrium. displacement (states, n) [m]; force (states, elements, 3): N (compression) [N], moments at both
     ends [N m]; drift and state (states, elements), greatest chord rotation and number of the list frame_state.
 
-    control (states) [m] and multiple (states) of a push; shear (states) [N] of a motion.
+    control (states) [m] and multiple (states) of a push; shear (states) [N] of a motion. loose: the freedom that moves most where a
+    push has no further equilibrium.
     """
 
     stop: str
@@ -128,6 +129,7 @@ class Path:
     control: np.ndarray = field(default_factory=lambda: np.empty(0))
     multiple: np.ndarray = field(default_factory=lambda: np.empty(0))
     shear: np.ndarray = field(default_factory=lambda: np.empty(0))
+    loose: int | None = None
 
 
 class Frame(Owner):
@@ -171,12 +173,13 @@ class Frame(Owner):
         most = 2000 + 2 * steps if most is None else most
         room_for(self.n + 5 * self.count, most)
         own = real("pattern", pattern, (self.n,)), real("control", control, (self.n,))
-        count, stop, curve, displacement, force, drift, state, status = long_call(
+        count, stop, loose, curve, displacement, force, drift, state, status = long_call(
             _core.api_frame.push, self.handle, self.count, most, *own, float(target), int(steps), float(drop)
         )
         check(status, "pushover of a frame")
         kept = slice(0, int(count))
-        return Path(STOPS[int(stop)], displacement.T[kept], force.T[kept], drift.T[kept], state.T[kept], curve[0, kept], curve[1, kept])
+        arrays = displacement.T[kept], force.T[kept], drift.T[kept], state.T[kept]
+        return Path(STOPS[int(stop)], *arrays, curve[0, kept], curve[1, kept], loose=int(loose) - 1 if loose else None)
 
     def move(self, unit: np.ndarray, acceleration: np.ndarray, step: float, damping: tuple[float, float]) -> Path:
         """Motion relative to the ground under its acceleration [m/s^2] at steps of `step` seconds; unit (n): displacements of a

@@ -73,6 +73,7 @@ class FramePush(ResultModel):
     pattern: str = fact("of the forces")
     eccentricity: float = fact("ratio of the accidental eccentricity to the length of the plan across the direction")
     stop: str = fact("why it ended")
+    lost_at: str = maybe("where the frame moves most at the end, if no equilibrium was found")
     control_displacement_m: list[float] = fact("mean displacement, in the sense of the load, of the masses on the control level", "m")
     base_shear_N: list[float] = fact("base shear along the sense", "N")
     peak_base_shear_N: float = fact("greatest base shear", "N")

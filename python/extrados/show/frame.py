@@ -110,8 +110,9 @@ def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                     )
                 word = ("load", "membrane", "rigid", "joists")[int(kind)]
                 word += f"\n{('', 'rafters', 'trusses', 'purlins')[int(roof)]}, {pitch:.3g}°" if roof else ""
+                look = {"va": "center", "fontsize": 7, "color": style.EDGE, "bbox": BEHIND, "zorder": 6}
                 ax.annotate(
-                    word, (x, y), (6, 0), textcoords="offset points", va="center", fontsize=7, color=style.EDGE, bbox=BEHIND, zorder=6
+                    word, (x, y), (6 if dx or dy else 0, 0), textcoords="offset points", ha="left" if dx or dy else "center", **look
                 )
             ax.set_aspect("equal")
             ax.margins(0.12)  # room for the names of walls

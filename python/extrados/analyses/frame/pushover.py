@@ -193,6 +193,7 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
         "pattern": push.pattern,
         "eccentricity": float(push.eccentricity),
         "stop": path.stop,
+        **({} if path.loose is None else {"lost_at": place_of(frame, path.loose)}),
         "control_displacement_m": moved,
         "base_shear_N": shear,
         "peak_base_shear_N": float(shear[peak]),
@@ -208,6 +209,16 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
         "storeys": storeys,
         "failed": _failed(frame, path),
     }
+
+
+def place_of(frame: EquivalentFrame, freedom: int) -> str:
+    """Where the frame has a freedom: a rigid node, or a wall that moves along itself on a level."""
+    for node in frame.nodes:
+        if freedom in node.freedoms:
+            moves = "moves vertically" if freedom == node.freedoms[0] else "rotates"
+            return f"the rigid node of wall '{frame.plan.walls[node.wall].name}' at {node.s:.3g} m on level {node.level} {moves}"
+    w, level = next(place for place, own in frame.along.items() if own == freedom)
+    return f"wall '{frame.plan.walls[w].name}' moves along itself on level {level}"
 
 
 def _limits(frame: EquivalentFrame, push: Push, path: Path) -> list[dict[str, Any]]:
@@ -295,7 +306,7 @@ def _answer(r: out.FramePushover) -> str:
             f" The first element beyond its drift limit is {first.element}, in {first.mode}, at "
             f"{1e3 * first.control_displacement_m:.3g} mm."
         )
-    lost = [row.name for row in r.runs if row.stop.startswith("no equilibrium")]
+    lost = [f"{row.name} ({row.lost_at})" if row.lost_at else row.name for row in r.runs if row.stop.startswith("no equilibrium")]
     if lost:
         text += f" These runs ended without equilibrium at the least step: {', '.join(lost)}."
     return text
