@@ -227,7 +227,7 @@ WRONG = {
         ROOMS + '[[structure.prestress]]\nwall = "a"\nforce = 1e4\nx = [2.5, 3.5] # here\n' + PUSH,
     ),
     "ring beam through a window": (
-        "wall 'a', opening 1 reaches 2.9 m",
+        "opening 1 at x 1 to 2 m reaches 2.9 m",
         WALL
         + 'openings = [{ x = [1, 2], z = [1, 2.9] }]\n[[structure.ring_beams]]\nstorey = 1\ndepth = 0.2 # here\nmaterial = "steel"\n'
         + STEEL
