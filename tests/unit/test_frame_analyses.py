@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import extrados
+from extrados.analyses.frame.modes import Mode
+from extrados.analyses.frame.pushover import Push
 from extrados.schema.constants import GRAVITY
 
 YOUNG, STRENGTH, DENSITY = 2e9, 4e6, 1800.0
@@ -134,3 +136,12 @@ def test_a_wall_that_nothing_joins_and_bad_plans_are_reported():
     given["analysis"][0]["control_level"] = 2
     analysis = extrados.run(given).analyses[0]
     assert analysis["status"] == "refused" and "control_level is 2" in analysis["reason"]
+
+
+@pytest.mark.parametrize(
+    ("direction", "sense", "name"), [(0.0, "+", "+x uniform"), (90.0, "-", "-y uniform"), (113.0, "-", "113 deg, sense -, uniform")]
+)
+def test_a_push_in_a_skew_direction_names_its_sense(direction, sense, name):
+    """A sign before the angle reads as a negative angle."""
+    push = Push(direction, sense, "uniform", 0.0, np.zeros(3), np.zeros(3), Mode(np.zeros(3), 1.0, np.zeros(2), 1.0), np.zeros(3))
+    assert push.name == name
