@@ -405,6 +405,7 @@ def test_trains_of_railways() -> None:
     train = train_of(options(train="LM71", alpha=1.21), 5.0)
     assert np.diff(train.axles) == pytest.approx([1.6] * 3) and train.forces == pytest.approx([1.21 * 250e3] * 4)
     assert train.even.tolist() == [[-FOR_EVER, -0.8, 1.21 * 80e3], [5.6, FOR_EVER, 1.21 * 80e3]]
+    assert train.marks == pytest.approx([0.0, 1.6, 3.2, 4.8, 5.6])
     train = train_of(options(train="SW/2"), 5.0)
     assert not len(train.axles) and train.even.tolist() == [[0.0, 25.0, 150e3], [32.0, 57.0, 150e3]]
     assert train.marks.tolist() == [0.0, 25.0, 32.0, 57.0]

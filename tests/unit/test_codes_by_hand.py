@@ -375,3 +375,23 @@ def test_the_first_page_shows_the_governing_wall_of_a_plan() -> None:
     with style.kept():
         drawn = draw_local_mechanism(run, "local-mechanism", Path("."))
     assert drawn[0][0].endswith("-mechanism") and "about the foot of storey 1" in drawn[0][1]
+
+
+@pytest.mark.parametrize("partial", [1.0, 1.5, 3.0])
+def test_a_partial_factor_divides_the_strengths_of_a_pier(partial: float) -> None:
+    """NTC 2018 7.8.2.2: 2 M_u / h with f_d = f_m / (FC gamma_M), and l' t (f_v0 / (FC gamma_M) + mu sigma_0) within f_b's limit."""
+    width, h, t, n, fc = 1.5, 2.7, 0.4, 240e3, 1.35
+    deck = {
+        "structure": {"kind": "panel", "width": width, "height": h, "thickness": t},
+        "material": {"density": 1e-6, "compressive_strength": 2.6e6},
+        "code": {"jurisdiction": "NTC", "knowledge_level": "LC1"},
+    }
+    pier = {"kind": "code-checks", "axial_load": n, "fixity": "double", "partial_factor": partial}
+    checks, limited = (
+        extrados.run({**deck, "joints": {"cohesion": 0.13e6}, "analysis": {**pier, **more}})["code-checks"].checks
+        for more in ({}, {"unit_strength": 2e5})
+    )
+    stress = n / (width * t)
+    flexure = width**2 * t * stress / 2.0 * (1.0 - stress / (0.85 * 2.6e6 / (fc * partial))) * 2.0 / h
+    assert checks["NTC flexure"].capacity == pytest.approx(flexure, rel=1e-6)
+    assert limited["NTC sliding"].capacity < 0.2 * checks["NTC sliding"].capacity  # weak units

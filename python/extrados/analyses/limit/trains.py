@@ -32,9 +32,12 @@ class Train:
 
     @property
     def marks(self) -> np.ndarray:
-        """Axles, and ends of even loads where they have one, from the front to the rear [m]."""
-        ends = np.unique([*self.axles, *self.even[:, :2].ravel()])
-        return ends[np.abs(ends) < FOR_EVER]
+        """Axles, and ends of even loads where they have one, from the front to the rear [m]. A load without a front that ends before
+        the first axle has none: it is on all of the way then, as nearly with the first axle at its end."""
+        front = min(self.axles, default=-np.inf)
+        ends = [end for start, stop, _ in self.even for end in (start, stop) if start > -FOR_EVER or stop > front]
+        found = np.unique([*self.axles, *ends])
+        return found[np.abs(found) < FOR_EVER]
 
     def within(self, low: float, high: float, place: float) -> float:
         """Load between two places when the first axle, heading to +x, is at a place [m]: [N], a share where no load is given."""

@@ -128,7 +128,7 @@ def _adverse_of(work: Sizing, worth: Worth, volume: float, met: bool) -> list[st
         if volume > NAMED * whole:
             density = building.material.density
             found.append(
-                f"The weight increases by {volume * density * GRAVITY / 1e3:.3g} kN ({100.0 * volume / whole:.0f} %): check the foundation."
+                f"The weight increases by {engineering(volume * density * GRAVITY, 'N')} ({100.0 * volume / whole:.0f} %): check the foundation."
             )
         if building.supports.stiffness is not None and not is_spatial(building):
             stones = building.blocks()
