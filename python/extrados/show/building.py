@@ -251,8 +251,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
     storeys = np.concatenate([[0.0], np.cumsum(structure["storeys"])])
     with style.canvas() as fig:
         sheet = Sheet(fig, [plan])
-        middle = 0.5 * (low + high)
-        for wall, (start, end) in zip(walls, ends, strict=True):
+        for number, (wall, (start, end)) in enumerate(zip(walls, ends, strict=True)):
             thicknesses = wall.get("thicknesses") or [wall["thickness"]]
             thick = max(thicknesses)
             along = (end - start) / np.linalg.norm(end - start)
@@ -260,18 +259,18 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
             for each in sorted(set(thicknesses), reverse=True):
                 half = 0.5 * each * across
                 sheet.stone(plan, [start + half, end + half, end - half, start - half], each < thick)
-            out = across if across @ (0.5 * (start + end) - middle) >= 0.0 else -across
-            place = sheet.to_paper(plan, [0.5 * (start + end) + out * 0.5 * thick])[0] + 3.5 * out
-            turn = np.degrees(np.arctan2(along[1], along[0]))
+            place, turn = elevation.place_beside(ends.reshape(-1, 4), number, 0.5 * thick)
+            out = place - start - along * ((place - start) @ along)
+            at = sheet.to_paper(plan, [place])[0] + 3.5 * out / np.linalg.norm(out)
             of_storeys = " / ".join(words.number(t) for t in dict.fromkeys(thicknesses))
             told = f"{wall['name']}: {words.number(float(np.linalg.norm(end - start)))} m, {of_storeys} m"
             sheet.ax.text(
-                *style.pair(place),
+                *style.pair(at),
                 told,
                 color=INK,
                 ha="center",
                 va="center",
-                rotation=90.0 - (90.0 - turn) % 180.0,
+                rotation=turn,
                 fontsize=7,
                 zorder=7,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},

@@ -78,6 +78,23 @@ def dimension_around(sheet: Sheet, view: View, words: Language) -> None:
     sheet.dimension(low, np.array([low[0], high[1]]), words.number(float(up)), -LINE)
 
 
+def place_beside(lines: np.ndarray, w: int, aside: float) -> tuple[np.ndarray, float]:
+    """A place (2) for words beside wall w on the plan, at a distance [m] from its axis, outward and away from walls that cross it; and the
+    angle of the words [deg]. lines (walls, 4): x, y of start and end [m]."""
+    line, others = lines[w], np.delete(lines, w, axis=0)
+    length = float(np.hypot(*(line[2:] - line[:2])))
+    way = (line[2:] - line[:2]) / length
+    across = np.array([-way[1], way[0]])
+    outward = -1.0 if across @ (0.5 * (line[:2] + line[2:]) - lines.reshape(-1, 2).mean(axis=0)) < 0.0 else 1.0
+    place, run = line[:2], others[:, 2:] - others[:, :2]
+    for share in (0.5, 0.3, 0.7, 0.2, 0.8):
+        place = line[:2] + share * length * way + outward * aside * across
+        along = np.clip(np.einsum("kd,kd->k", place - others[:, :2], run) / np.square(run).sum(axis=1), 0.0, 1.0)
+        if not len(others) or np.hypot(*(others[:, :2] + along[:, None] * run - place).T).min() > 0.1 * length:
+            break
+    return place, 90.0 - (90.0 - float(np.degrees(np.arctan2(way[1], way[0])))) % 180.0
+
+
 def wall_views(walls: Sequence[dict[str, Any]], storeys: np.ndarray, words: Language) -> list[View]:
     """A view of each of the first walls; storeys: levels of the floors [m]."""
     found = []

@@ -12,6 +12,7 @@ from matplotlib.patches import Patch, Polygon, Rectangle
 from extrados.results.frame import FrameFragility, FrameMode, FrameModes, FramePushover, Modes
 from extrados.results.store import Stored
 from extrados.show import style
+from extrados.show.elevation import place_beside
 from extrados.show.verification import draw_verification
 
 #: Colours of the states of elements, by their numbers
@@ -154,22 +155,8 @@ def _plan_wall(ax: Axes, run: Stored, name: str, w: int, storey: int, label: str
 
 
 def _wall_name(ax: Axes, lines: np.ndarray, w: int, aside: float, label: str) -> None:
-    """The name of a wall beside it on the plan, at a distance [m] from its axis, away from walls that cross it."""
-    line = lines[w]
-    length = float(np.hypot(*(line[2:] - line[:2])))
-    way = (line[2:] - line[:2]) / length
-    across = np.array([-way[1], way[0]])
-    outward = -1.0 if across @ (0.5 * (line[:2] + line[2:]) - lines.reshape(-1, 2).mean(axis=0)) < 0.0 else 1.0
-    others = np.delete(lines, w, axis=0)
-    for share in (0.5, 0.3, 0.7, 0.2, 0.8):
-        place = line[:2] + share * length * way + outward * aside * across
-        gaps = np.clip(np.einsum("kd,kd->k", place - others[:, :2], others[:, 2:] - others[:, :2]), 0.0, None)
-        gaps = np.minimum(gaps / (np.square(others[:, 2:] - others[:, :2]).sum(axis=1)), 1.0)
-        away = np.hypot(*(others[:, :2] + gaps[:, None] * (others[:, 2:] - others[:, :2]) - place).T)
-        if not len(others) or away.min() > 0.1 * length:
-            break
-    angle = float(np.degrees(np.arctan2(way[1], way[0])))
-    turn = angle - 180.0 if angle > 90.0 else angle + 180.0 if angle <= -90.0 else angle
+    """The name of a wall beside it on the plan, at a distance [m] from its axis."""
+    place, turn = place_beside(lines, w, aside)
     ax.text(*style.pair(place), label, ha="center", va="center", fontsize=7, rotation=turn, bbox=BEHIND, zorder=6)
 
 
