@@ -106,6 +106,37 @@ def test_handles_never_cover_each_other(screen: Any, preset: str) -> None:
         assert small == []
 
 
+@pytest.mark.parametrize("screen", [(844, 390, True)], indirect=True, ids=["844x390"])
+def test_a_phone_held_sideways(screen: Any) -> None:
+    """The drawing keeps a third of the height, numbers are beside it, charts below; nothing overflows."""
+    page = screen
+    for side in ("sizes", "deck", "teach", "answer"):
+        page.click(f"[data-side={side}]")
+        assert page.locator(f".page.{side}").is_visible()
+        fits(page)
+    assert page.locator(".stones").bounding_box()["height"] > 60
+    page.evaluate("window.extrados.show({ gamma: 0.6 })")
+    until(page, "window.extrados.fall.now > 0.1")
+    assert "exceeds the capacity" in page.locator(".fall .why").inner_text()
+    open_text(page, ROCKING)
+    page.click("[data-tab=motion]")
+    until(page, "window.extrados.motion.map?.told")
+    settled(page)
+    fits(page)
+    assert page.locator("[aria-label='What is drawn']").is_hidden() and page.locator(".stones").bounding_box()["height"] > 40
+    page.screenshot(path=SHOTS / "screen-844x390-motion.png")
+
+
+@pytest.mark.parametrize("screen", SCREENS[:1], indirect=True, ids=["390x844"])
+def test_a_deck_without_a_structure_says_so_on_the_drawing(screen: Any) -> None:
+    page = screen
+    open_text(page, '[motion]\nkind = "sine-pulse"\namplitude = "0.3 g"\nperiod = 0.8\n[analysis]\nkind = "motion"\n')
+    assert "no [structure]" in page.locator(".nothing").inner_text()
+    fits(page)
+    open_text(page, ROCKING)
+    assert page.locator(".nothing").is_hidden()
+
+
 @pytest.mark.parametrize("screen", SCREENS[:1], indirect=True, ids=["390x844"])
 def test_a_finger_drags_under_a_loupe_and_two_enlarge(screen: Any) -> None:
     page = screen

@@ -21,7 +21,7 @@ class Damper(Table):
     ground: Place | None = key(None, "position of the anchorage in the ground, which moves with the supports")
     start_stone: str | None = key(None, "name of the block at `start`; required if this point lies between two blocks", max_length=80)
     end_stone: str | None = key(None, "name of the block at `end`; required if this point lies between two blocks", max_length=80)
-    damping: Damping | None = key(None, "c of a viscous damper: force per n-th power of the rate, in N (s/m)^n", gt=0)
+    damping: Damping | None = key(None, "c of a viscous damper: force per n-th power of the rate, in N (s/m)^n", gt=0, le=1e10)
     power: float = key(1.0, "power n of the rate; 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
     slip_force: Force | None = key(None, "force at which a friction damper slides", gt=0)
     stiffness: AxialStiffness | None = key(None, "stiffness of the brace of a friction damper, before it slides", gt=0)

@@ -491,10 +491,14 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);
   classPanel(app, tabs, classBox);
+  const nothing = h("p", { class: "map-why nothing", hidden: true });
+  stageBox.append(nothing);
   const arranged = () => {
     const results = ["results", "class"].includes(app.tab), plain = Boolean(app.scene?.empty);
     wide.hidden = app.tab !== "results"; classBox.hidden = app.tab !== "class"; stageFrame.hidden = results; layersBar.hidden = plain;
     lower.hidden = results || (plain && app.tab === "structure");
+    nothing.textContent = app.scene?.empty ?? "";
+    nothing.hidden = !plain || Boolean(app.scene.seen || app.arrays.outline);
   };
   on("scene", arranged);
   on("tab", (name) => {

@@ -122,6 +122,7 @@ export function stage(box, hands) {
     const turned = [[a0, b1], [a1, b1], [a0, b0], [a1, b0], [a0 - reach, 0], [a1 + reach, 0]].map(([x, y]) => [c * x + n * y, c * y - n * x]);
     const xs = turned.map((p) => p[0]), ys = turned.map((p) => p[1]);
     const x0 = Math.min(...xs), x1 = Math.max(...xs), y0 = Math.min(...ys), y1 = Math.max(...ys, y0 + 0.2 * size);
+    if (view.h < 3 * (room.top + room.bottom)) { room.top = view.h / 6; room.bottom = view.h / 6; } // a phone held sideways
     const k = Math.min((view.w - room.left - room.right) / (x1 - x0), (view.h - room.top - room.bottom) / (y1 - y0));
     view.k = Math.max(k, 1e-6);
     view.cx = room.left + (view.w - room.left - room.right) / 2 - (view.k * (x0 + x1)) / 2;
