@@ -48,7 +48,7 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
             yield _refused(f"{options.kind} cannot include {what}: remove it from the deck of this analysis, or use {_who(what)}", key)
     if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
         yield _refused(
-            ('"mp4" requires the program ffmpeg or the package imageio-ffmpeg, and neither is installed. "gif" requires neither'),
+            '"mp4" requires the program ffmpeg or the package imageio-ffmpeg, and neither is installed. "gif" requires neither',
             ("analysis", "animation"),
         )
     if options.needs_motion:

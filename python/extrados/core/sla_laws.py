@@ -70,10 +70,8 @@ def add_tables(handle: int, count: int, group: Plane | Joints | Bars) -> tuple[l
             largest = largest_band(Softening(strength, energy, name), modulus)
             check(
                 status,
-                (
-                    f"teeth of a {name} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: the crack band is "
-                    f"{width:g} m, and the largest possible is {largest:g} m"
-                ),
+                f"teeth of a {name} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: the crack band is "
+                f"{width:g} m, and the largest possible is {largest:g} m",
             )
         check(status, "softening laws")
     return numbers, ladder

@@ -289,7 +289,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "safety factor, geometric safety factor, factor of safety, margin, demand capacity ratio, dcr",
-        ("ratio of capacity to demand in every verdict; the geometric safety factor states how much thinner the structure could be"),
+        "ratio of capacity to demand in every verdict; the geometric safety factor states how much thinner the structure could be",
         "thrust results.tilt.geometric_safety_factor results.verdict",
         "limit.md",
     ),

@@ -34,10 +34,8 @@ class Material(Table):
     )
     shear_strength: Stress | None = key(
         None,
-        (
-            "for masonry with bed joints: strength under pure shear in the axes of its joints; default and greatest value: "
-            "the square root of the product of both tensile strengths"
-        ),
+        "for masonry with bed joints: strength under pure shear in the axes of its joints; default and greatest value: "
+        "the square root of the product of both tensile strengths",
         gt=0,
     )
     bed_angle: Angle = key(0.0, "angle from the x axis to the bed joints, counter-clockwise", ge=-180, le=180)
@@ -47,24 +45,22 @@ class Material(Table):
     compressive_strength: Stress | None = key(None, "compressive strength; without this value, no crushing", gt=0)
     compressive_strength_parallel: Stress | None = key(
         None,
-        ("compressive strength along the bed joints; compressive_strength is then the strength across them (criterion of Hill)"),
+        "compressive strength along the bed joints; compressive_strength is then the strength across them (criterion of Hill)",
         source="Lourenco, de Borst and Rots (1997)",
         gt=0,
     )
     compressive_coupling: float = key(
         -1.0,
-        (
-            "coupling of the compression along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + "
-            "(sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed joints; t: shear stress; fx, "
-            "fy: compressive strengths; c: the key compressive_shear"
-        ),
+        "coupling of the compression along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + "
+        "(sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed joints; t: shear stress; fx, "
+        "fy: compressive strengths; c: the key compressive_shear",
         source="-1.05 of Page's panels, Lourenco (1996), from memory",
         gt=-2,
         lt=2,
     )
     compressive_shear: float = key(
         1.2,
-        ("weight of the shear stress: c of the criterion of compressive_coupling"),
+        "weight of the shear stress: c of the criterion of compressive_coupling",
         source="1.20 of Page's panels, Lourenco (1996), from memory",
         gt=0,
         le=20,
@@ -75,10 +71,8 @@ class Material(Table):
     crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
     lateral_reduction: bool = key(
         False,
-        (
-            "reduce the tensile strength ft under lateral compression: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension "
-            "positive; fc: compressive strength); requires compressive_strength"
-        ),
+        "reduce the tensile strength ft under lateral compression: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension "
+        "positive; fc: compressive strength); requires compressive_strength",
     )
     confinement: float = key(
         0.0, "increase of the compressive strength per lateral pressure; 4.1 for concrete", source="Richart and others (1928)", ge=0, le=10
@@ -127,11 +121,9 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about=(
-            'names of joints. "ground" means all joints at the ground; "rings" and "backing" are joints of a bridge; "beds" '
-            '(including those at the ground) and "heads" are joints of a wall in running bond. The name of a layer of a '
-            "drawing means the joints between its blocks, or along its lines"
-        ),
+        about='names of joints. "ground" means all joints at the ground; "rings" and "backing" are joints of a bridge; "beds" '
+        '(including those at the ground) and "heads" are joints of a wall in running bond. The name of a layer of a '
+        "drawing means the joints between its blocks, or along its lines",
         min_length=1,
         max_length=10000,
     )
@@ -158,10 +150,8 @@ class Joints(Table):
     )
     shear_energy: Energy | None = key(
         None,
-        (
-            "fracture energy of the cohesion per area, mode II. Sequentially linear analysis requires it with a cohesion; "
-            "the cohesion then decreases with this energy instead of being lost at the first failure"
-        ),
+        "fracture energy of the cohesion per area, mode II. Sequentially linear analysis requires it with a cohesion; "
+        "the cohesion then decreases with this energy instead of being lost at the first failure",
         gt=0,
     )
     compressive_strength: Stress | None = key(
@@ -180,18 +170,14 @@ class Joints(Table):
     shear_ratio: float = key(1.0, "shear over normal stiffness", gt=0, le=10)
     stiffness_rule: Literal["consistent", "thesis"] = key(
         "consistent",
-        (
-            "rule for the default stiffness. consistent: E/L; thesis: E B/L, as printed in the thesis. E: elastic modulus; "
-            "L: length of block that a joint represents; B: width of the joint"
-        ),
+        "rule for the default stiffness. consistent: E/L; thesis: E B/L, as printed in the thesis. E: elastic modulus; "
+        "L: length of block that a joint represents; B: width of the joint",
         source="thesis Eqs 7.10-7.12",
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
         "edge",
-        (
-            "impact frequency at which the damping is critical: edge, corner or rotation. restitution, for a single "
-            "block: the damping that gives its coefficient of restitution (found by trial runs)"
-        ),
+        "impact frequency at which the damping is critical: edge, corner or rotation. restitution, for a single "
+        "block: the damping that gives its coefficient of restitution (found by trial runs)",
         source="thesis Eqs 7.13, 7.17-7.20",
     )
     damping_ratio: float = key(1.0, "damping ratio at this impact frequency (fraction of critical damping)", ge=0, le=100)
@@ -200,12 +186,10 @@ class Joints(Table):
     )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
-        (
-            "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic impact, with "
-            "impulses at all joints and all energy that remains; thesis: momentum balance of the thesis for arches "
-            "(energy-safe for other sections); energy-safe: energy-safe projection on the next mechanism only; or a number: "
-            "c_v, angular velocity after / before an impact (0 to 1)"
-        ),
+        "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic impact, with "
+        "impulses at all joints and all energy that remains; thesis: momentum balance of the thesis for arches "
+        "(energy-safe for other sections); energy-safe: energy-safe projection on the next mechanism only; or a number: "
+        "c_v, angular velocity after / before an impact (0 to 1)",
         source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
@@ -243,33 +227,27 @@ class Supports(Table):
     )
     foundation: Literal["winkler", "two-spring"] = key(
         "winkler",
-        (
-            "for `rocking`: place of the springs of the ground. winkler: springs of this stiffness along the whole "
-            "base; two-spring: half of the stiffness under each edge. The springs carry no tension"
-        ),
+        "for `rocking`: place of the springs of the ground. winkler: springs of this stiffness along the whole "
+        "base; two-spring: half of the stiffness under each edge. The springs carry no tension",
         source="Psycharis and Jennings 1983",
     )
     damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(
         None,
-        (
-            "for `rocking`: damping ratio of dashpots in parallel with these springs, for the vertical motion of the whole "
-            "structure on its base; default: no dashpots"
-        ),
+        "for `rocking`: damping ratio of dashpots in parallel with these springs, for the vertical motion of the whole "
+        "structure on its base; default: no dashpots",
     )
     abutting_wall: Literal["left", "right"] | None = key(
         None, "side of an abutting wall: the structure rocks only away from this wall, and rebounds from it"
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
         None,
-        (
-            "angular velocity after / before the rebound from the wall. Default for a block: three impacts (far toe, top at "
-            "the wall, near toe), which give an upper bound"
-        ),
+        "angular velocity after / before the rebound from the wall. Default for a block: three impacts (far toe, top at "
+        "the wall, near toe), which give an upper bound",
         source="three balances of angular momentum, derived here",
     )
     held: list[Held] = key(
         [],
-        ("nodes of finite-element meshes that are restrained, [[supports.held]]; default: the bottom edge, or the joints on the ground"),
+        "nodes of finite-element meshes that are restrained, [[supports.held]]; default: the bottom edge, or the joints on the ground",
         max_length=1000,
     )
 
@@ -304,7 +282,7 @@ class Initial(Table):
 
     rotation_ratio: float = key(
         0.0,
-        ("ratio of the initial rotation to the critical rotation on the same side; positive towards +x"),
+        "ratio of the initial rotation to the critical rotation on the same side; positive towards +x",
         source="thesis 6.2.2",
         gt=-1,
         lt=1,

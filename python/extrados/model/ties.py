@@ -23,14 +23,12 @@ class Tie(Table):
     ground: Place | None = key(None, "anchorage in the ground, which does not move with the supports")
     via: list[Place] = key([], "in space: points of blocks over which a chain runs from start to end, in order", max_length=1000)
     hoop: bool = key(
-        False, ("in space: closed hoop around the convex outline of the structure at the height z of `start`, as the chain of a dome")
+        False, "in space: closed hoop around the convex outline of the structure at the height z of `start`, as the chain of a dome"
     )
     bonded: bool = key(
         False,
-        (
-            "for a chain or hoop: true: anchored at every point, so that each segment has its own force; false: the chain "
-            "runs over the points without friction"
-        ),
+        "for a chain or hoop: true: anchored at every point, so that each segment has its own force; false: the chain "
+        "runs over the points without friction",
     )
     start_stone: str | None = key(
         None, "name of the block at `start`; required if this point lies between two blocks or outside all blocks", max_length=80
@@ -46,10 +44,8 @@ class Tie(Table):
     )
     stiffness: AxialStiffness | None = key(
         None,
-        (
-            "stiffness EA/L: force per change of length. Without this value the tie is rigid until it yields; limit analysis "
-            "always assumes this"
-        ),
+        "stiffness EA/L: force per change of length. Without this value the tie is rigid until it yields; limit analysis "
+        "always assumes this",
         gt=0,
     )
     prestress: Force = key(0.0, "force in the tie before any load, tension positive; it does not change a plastic collapse load")

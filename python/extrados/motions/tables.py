@@ -57,10 +57,8 @@ class Pulse(Motion):
     kind: Literal["pulse"]
     starter: ClassVar = {"shape": '"ricker"'}
     shape: Literal["rectangular", "half-sine", "cosine", "ricker"] = key(
-        about=(
-            "shape of the pulse. rectangular: constant; half-sine: half of a sine; cosine: one full cosine; ricker: the "
-            "symmetric Ricker wavelet"
-        )
+        about="shape of the pulse. rectangular: constant; half-sine: half of a sine; cosine: one full cosine; ricker: the "
+        "symmetric Ricker wavelet"
     )
     amplitude: Acceleration = key(about="greatest acceleration")
     period: Time = key(about="full period T_p (a half-sine lasts half of it); for a rectangular pulse, the duration", gt=0)
@@ -84,10 +82,8 @@ class Treated(Motion):
     unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(None, "unit of the values, if the file gives none")
     columns: Literal["series", "components"] | None = key(
         None,
-        (
-            "meaning of several columns in a file without times. series: the rows form one series; components: each "
-            "column is a component, selected by `channel`"
-        ),
+        "meaning of several columns in a file without times. series: the rows form one series; components: each "
+        "column is a component, selected by `channel`",
     )
     scale: float = key(1.0, "factor on the acceleration, applied after all other processing")
     time_scale: float = key(1.0, "factor on the time axis; accelerations do not change", gt=0)
@@ -128,10 +124,8 @@ class Components(Table):
     second_channel: int | str | None = key(None, "channel of the other horizontal component, in `second` or in `file`")
     angle: Angle | None = key(
         None,
-        (
-            "angle from the first component to the plane of the structure. The motion in this plane is the first component "
-            "times cos(angle) plus the second component times sin(angle)"
-        ),
+        "angle from the first component to the plane of the structure. The motion in this plane is the first component "
+        "times cos(angle) plus the second component times sin(angle)",
     )
     vertical: str | None = key(None, "file of the vertical component", min_length=1, max_length=1024)
     vertical_channel: int | str | None = key(None, "channel of the vertical component, in `vertical` or in `file`")
@@ -160,7 +154,7 @@ class Selection(TargetSpectrum):
     greatest_factor: float = key(4.0, "greatest factor on a record", gt=0, le=100)
     flatfile: str | None = key(
         None,
-        ("CSV table with a column `file` and columns with values of the records, such as magnitude, to which `limits` refer"),
+        "CSV table with a column `file` and columns with values of the records, such as magnitude, to which `limits` refer",
         min_length=1,
         max_length=1024,
     )
@@ -240,15 +234,13 @@ class Generated(Motion):
     )
     lines: int | list[Frequency] = key(15, "number of sine lines over the band of the spectrum, or their frequencies")
     spacing: Literal["log", "uniform"] = key(
-        "log", ("spacing of the spectral lines: equal ratios of the frequencies (log), or equal distances (uniform)")
+        "log", "spacing of the spectral lines: equal ratios of the frequencies (log), or equal distances (uniform)"
     )
     scaling: Literal["thesis", "fourier", "energy"] = key(
         "energy",
-        (
-            "rule for the amplitude of each spectral line. thesis: factor |X| df; fourier: 2 |X| df; energy: 2 |X| sqrt(df "
-            "/ int P^2 dt), which keeps the energy of the spectrum. |X|: amplitude of the Fourier spectrum, df: frequency "
-            "step, P: envelope, factor: the key `factor`"
-        ),
+        "rule for the amplitude of each spectral line. thesis: factor |X| df; fourier: 2 |X| df; energy: 2 |X| sqrt(df "
+        "/ int P^2 dt), which keeps the energy of the spectrum. |X|: amplitude of the Fourier spectrum, df: frequency "
+        "step, P: envelope, factor: the key `factor`",
         source="thesis Eq. 6.6",
     )
     factor: float = key(1.0, 'factor on the amplitudes; with scaling = "thesis", also the unit of the frequency step', gt=0)
@@ -260,15 +252,13 @@ class Generated(Motion):
     )
     rise: Time | None = key(
         None,
-        (
-            "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time to full amplitude "
-            "(default 0.15 or 0.2 times t_d)"
-        ),
+        "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time to full amplitude "
+        "(default 0.15 or 0.2 times t_d)",
         gt=0,
     )
     decay: Time | None = key(
         None,
-        ("duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d, down to 5 % (default 0.4 times t_d)"),
+        "duration of the decay: for a trapezoid, at the end of t_d; for jennings, after t_d, down to 5 % (default 0.4 times t_d)",
         gt=0,
     )
     lead: Time = key(0.5, "time before t_d, t_0", ge=0, le=60)

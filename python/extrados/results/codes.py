@@ -50,10 +50,8 @@ class Checked(KindResults):
     by_default: bool = maybe("whether the deck has no [code]; the rules of NTC 2018 are then applied")
     clause: str = maybe("clause of the governing check, with edition and equation; empty without a verdict")
     zeta_E: float | None = maybe(
-        (
-            "zeta_E of NTC: ratio of the seismic action that the part can carry to the action required by the code, at SLV; "
-            "null without a demand"
-        ),
+        "zeta_E of NTC: ratio of the seismic action that the part can carry to the action required by the code, at SLV; "
+        "null without a demand",
         source="NTC 2018 8.3",
     )
     nbs_percent: float | None = maybe(
@@ -218,10 +216,8 @@ class LocalMechanism(Checked):
     )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(
-        (
-            "d_0*: horizontal displacement of the centre of the moving blocks at which the multiplier becomes zero; null if "
-            "no such displacement exists"
-        ),
+        "d_0*: horizontal displacement of the centre of the moving blocks at which the multiplier becomes zero; null if "
+        "no such displacement exists",
         "m",
         source="Circ. 7/2019 [C8.7.1.4]",
     )
@@ -231,7 +227,7 @@ class LocalMechanism(Checked):
         "T_SLV: period 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        ("weight of the kinematic chain: the moving blocks, the loads on them that move with them, and the masses that push them"), "N"
+        "weight of the kinematic chain: the moving blocks, the loads on them that move with them, and the masses that push them", "N"
     )
     base_height_m: float = fact("z: height of the mechanism above the foundation; at z = 0 the demand is the ground acceleration", "m")
     building_height_m: float = maybe("H, for a mechanism above the ground: height of the building", "m")
@@ -241,10 +237,8 @@ class LocalMechanism(Checked):
         source="Circ. 7/2019 C7.2.3",
     )
     multiplier_associated: float = maybe(
-        (
-            "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between `multiplier`, the least "
-            "state found, and this value"
-        ),
+        "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between `multiplier`, the least "
+        "state found, and this value",
         source="Drucker 1954",
     )
 

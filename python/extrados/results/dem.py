@@ -345,10 +345,8 @@ class DemDomain(KindResults):
             if capacity is not None:
                 word = "shorter than" if duration < capacity else "at least as long as"
                 return judge(
-                    (
-                        f"The motion has an amplitude of {amplitude:.3g} g and a duration of {duration:.3g} s. The duration is {word} the "
-                        f"shortest that causes collapse at this amplitude ({capacity:.3g} s)."
-                    ),
+                    f"The motion has an amplitude of {amplitude:.3g} g and a duration of {duration:.3g} s. The duration is {word} the "
+                    f"shortest that causes collapse at this amplitude ({capacity:.3g} s).",
                     duration,
                     capacity,
                     "s",

@@ -82,10 +82,8 @@ class FramePush(ResultModel):
         "control displacement at which the base shear has decreased by 20 %; null if the curve does not reach it", "m"
     )
     ultimate_displacement_m: float | None = fact(
-        (
-            "ultimate displacement: the lesser of the displacement at 20 % decrease and of that at which all piers of one "
-            "storey of a wall are at their drift limit; null if the curve reaches neither"
-        ),
+        "ultimate displacement: the lesser of the displacement at 20 % decrease and of that at which all piers of one "
+        "storey of a wall are at their drift limit; null if the curve reaches neither",
         "m",
     )
     stiffness_N_m: float = fact("secant stiffness at a tenth of the greatest base shear", "N/m")
@@ -184,7 +182,7 @@ class FrameFragility(KindResults):
     )
     confidence_factor: float = maybe("confidence factor of the code, by the knowledge level")
     design_intensity_g: float = maybe(
-        ("intensity of the median motion at which the building collapses, if all strengths are divided by the confidence factor"), "g"
+        "intensity of the median motion at which the building collapses, if all strengths are divided by the confidence factor", "g"
     )
     weaker_share: float = maybe(
         "share of the sampled buildings that collapse at a lower intensity than that of `code_median_g`, under the same motion"
@@ -212,7 +210,7 @@ class FrameHistory(KindResults):
     peak_drift_element: str = fact("that pier")
     failed: list[FailedElement] = fact("elements beyond their drift limits, in order, with the control displacement at each instant")
     period_s: float = fact(
-        ("initial period (undamaged frame at rest) of the mode with the greatest participating mass in the direction of the motion"), "s"
+        "initial period (undamaged frame at rest) of the mode with the greatest participating mass in the direction of the motion", "s"
     )
     damping: list[float] = fact("Rayleigh damping: factor of the mass [1/s] and factor of the last tangent stiffness [s]")
     weight_N: float = fact("weight of walls and floors", "N")
@@ -228,7 +226,7 @@ class FrameHistory(KindResults):
         if self.stop != "target displacement":
             return judge(f"The calculation ends at {self.end_time_s:.3g} s ({self.stop}): {moved}.", None, None, "", "open")
         return judge(
-            (f"The calculation reaches the end of the motion: {moved}, and {len(self.failed)} elements are beyond their drift limits."),
+            f"The calculation reaches the end of the motion: {moved}, and {len(self.failed)} elements are beyond their drift limits.",
             None,
             None,
             "",

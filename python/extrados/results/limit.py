@@ -134,10 +134,8 @@ class NonDilatant(ResultModel):
         "calculated again independently of the solver"
     )
     zero_gap_g: float = fact(
-        (
-            "gap: difference between the collapse acceleration and the work of friction minus that of the weight, per "
-            "unit of work of the load; zero if forces and motion belong to the same state"
-        ),
+        "gap: difference between the collapse acceleration and the work of friction minus that of the weight, per "
+        "unit of work of the load; zero if forces and motion belong to the same state",
         "g",
     )
     equilibrium_residual: float = fact(
@@ -175,24 +173,18 @@ class Tilt(KindResults):
     )
     dilating_joints_opposite: list[int] = maybe("joints in compression that slide in the collapse mechanism towards -x")
     collapse_acceleration_non_associated_g: float = maybe(
-        (
-            "collapse acceleration towards +x for sliding without dilatancy: the least certified state found. It is one "
-            "value of an interval whose upper end is the associated value"
-        ),
+        "collapse acceleration towards +x for sliding without dilatancy: the least certified state found. It is one "
+        "value of an interval whose upper end is the associated value",
         "g",
         source="Ferris and Tin-Loi 2001",
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
     collapse_acceleration_load_path_g: float = maybe(
-        (
-            "design value of the collapse acceleration towards +x if joints slide: the least of the load paths of elastic "
-            "joints with three stiffness ratios"
-        ),
+        "design value of the collapse acceleration towards +x if joints slide: the least of the load paths of elastic "
+        "joints with three stiffness ratios",
         "g",
-        source=(
-            "collapse acceleration of elastic-frictional joints without dilatancy (incremental return mapping); the "
-            "certificate is the same as in non_dilatant"
-        ),
+        source="collapse acceleration of elastic-frictional joints without dilatancy (incremental return mapping); the "
+        "certificate is the same as in non_dilatant",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
     load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
@@ -355,10 +347,8 @@ class ThrustLine(ResultModel):
     horizontal_N: float = maybe("horizontal thrust at the left springing of an arch, or at the base of a stack", "N")
     horizontal_kN_per_m: float = maybe("horizontal thrust per metre of depth", "kN/m")
     crown_N: float = maybe(
-        (
-            "horizontal thrust at the crown of an arch whose voussoirs have ties: the thrust at the left springing plus the "
-            "tie forces. The lines of least and greatest thrust then refer to the crown"
-        ),
+        "horizontal thrust at the crown of an arch whose voussoirs have ties: the thrust at the left springing plus the "
+        "tie forces. The lines of least and greatest thrust then refer to the crown",
         "N",
     )
     over_weight: float = maybe("ratio of the horizontal thrust to the weight of the structure")
@@ -543,10 +533,8 @@ class MovingSupports(KindResults):
                 "Under the given movements the structure stands, with open joints. No limit of the movement is calculated.", None, None, "m"
             )
         return judge(
-            (
-                f"The arch follows the movement of its support up to {move:.4g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
-                "% of the span). It then collapses."
-            ),
+            f"The arch follows the movement of its support up to {move:.4g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
+            "% of the span). It then collapses.",
             None,
             move,
             "m",
@@ -565,7 +553,7 @@ class Change(ResultModel):
 
     value: float = fact("value of the varied key, in the unit of the key")
     before: int | Literal["locked"] = fact(
-        ('number of the mechanism that governs below this value; 0: the structure cannot stand; "locked": no collapse mechanism exists'),
+        'number of the mechanism that governs below this value; 0: the structure cannot stand; "locked": no collapse mechanism exists',
         name="from",
     )
     after: int | Literal["locked"] = fact(
@@ -674,7 +662,7 @@ class Imperfections(KindResults):
         "5th percentile of the capacity: lower end of the band that contains 90 % of the random geometries", "g"
     )
     high_collapse_acceleration_g: float = fact(
-        ("95th percentile of the capacity: upper end of the band that contains 90 % of the random geometries"), "g"
+        "95th percentile of the capacity: upper end of the band that contains 90 % of the random geometries", "g"
     )
     least_collapse_acceleration_g: float = fact("least capacity; 0 if a geometry cannot stand", "g")
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")

@@ -54,10 +54,8 @@ class Conditions(ResultModel):
     hinges_elsewhere: int = maybe("for many runs: number of runs in which hinges form at other joints")
     hinges_elsewhere_share: float = maybe("for many runs: share of the runs in which hinges form at other joints")
     energy_astray: float = maybe(
-        (
-            "after a plastic impact at all joints: share of the kinetic energy that does not belong to the mechanism of the "
-            "subsequent rocking; if it exceeds 0.2, hinges form at other joints at impacts"
-        ),
+        "after a plastic impact at all joints: share of the kinetic energy that does not belong to the mechanism of the "
+        "subsequent rocking; if it exceeds 0.2, hinges form at other joints at impacts",
         source="Moreau 1988",
     )
     not_checked: str = fact("conditions that are not checked, with the reason; empty if all are checked")
@@ -83,7 +81,7 @@ class RestraintForces(ResultModel):
     greatest_force_N: float = maybe("greatest force of a tie or damper; tension is positive", "N")
     permanent_elongation_m: float = maybe("permanent elongation of a tie or damper at the end, by yield or slip", "m")
     least_moment_Nm: float = maybe(
-        ("least moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint"), "N*m"
+        "least moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint", "N*m"
     )
     greatest_moment_Nm: float = maybe("greatest moment of an added hinge", "N*m")
     permanent_turn_rad: float = maybe("permanent rotation of an added hinge at the end, by yield", "rad")
@@ -133,10 +131,8 @@ class HandOver(ResultModel):
     """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
 
     time_s: float = fact(
-        (
-            "time of the transfer to rigid contacts, just before a condition is violated; positions and velocities of the "
-            "blocks are then transferred"
-        ),
+        "time of the transfer to rigid contacts, just before a condition is violated; positions and velocities of the "
+        "blocks are then transferred",
         "s",
     )
     reason: str = fact("condition that fails, and where")
@@ -220,9 +216,7 @@ class Rocking(KindResults):
         outcome: Outcome = "collapses" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
             "collapses": "Collapse under the motion",
-            "stands": (
-                f"No collapse under the motion. The greatest rotation is {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation"
-            ),
+            "stands": f"No collapse under the motion. The greatest rotation is {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation",
             "open": "The run ended before the structure came to rest",
         }[outcome]
         broken = [] if self.conditions is None else self.conditions.violated
@@ -246,7 +240,7 @@ class AtAmplitudes(ResultModel):
 
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     mode_I_durations_s: list[float | None] = fact(
-        ("shortest pulse that causes collapse, with or without an impact; null if no pulse up to the longest of `durations` does"), "s"
+        "shortest pulse that causes collapse, with or without an impact; null if no pulse up to the longest of `durations` does", "s"
     )
     mode_II_durations_s: list[float | None] = fact(
         "shortest pulse that causes collapse without an impact; null if no pulse up to the longest of `durations` does", "s"
@@ -273,7 +267,7 @@ class FailureDomain(KindResults):
         "lowest amplitude of the map at which blocks slide, at each duration; null if they slide at no amplitude", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        ("lowest amplitude of the map at which hinges form at other joints, at each duration; null if this occurs at no amplitude"), "g"
+        "lowest amplitude of the map at which hinges form at other joints, at each duration; null if this occurs at no amplitude", "g"
     )
     conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all pulses of the map")
     handed_over: int = maybe(
@@ -395,13 +389,11 @@ class FailureCurve(ResultModel):
     )
     run_outcomes: list[RockingOutcome | None] = fact("for each motion: outcome of the whole motion; null without a result")
     sliding_from_g: list[float | None] = fact(
-        ("lowest amplitude, tried up to the failure curve, at which blocks slide, at each duration; null if they slide at none"), "g"
+        "lowest amplitude, tried up to the failure curve, at which blocks slide, at each duration; null if they slide at none", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        (
-            "lowest amplitude, tried up to the failure curve, at which hinges form at other joints, at each duration; null "
-            "if this occurs at none"
-        ),
+        "lowest amplitude, tried up to the failure curve, at which hinges form at other joints, at each duration; null "
+        "if this occurs at none",
         "g",
     )
     conditions: Conditions = fact("number of points of the curve below which blocks slide or hinges form at other joints")
@@ -426,10 +418,8 @@ class FailureCurves(KindResults):
         "share of the verdicts by the curves that agree with the run of the whole motion; null without a comparison"
     )
     scaling_misfit: float | None = fact(
-        (
-            "greatest relative difference of amplitude between two curves, if durations are divided by the natural time and "
-            "amplitudes by the uplift acceleration; null with one curve, or with curves for different trains"
-        ),
+        "greatest relative difference of amplitude between two curves, if durations are divided by the natural time and "
+        "amplitudes by the uplift acceleration; null with one curve, or with curves for different trains",
         source="thesis Eq. 5.7",
     )
 
@@ -528,10 +518,8 @@ class Assessment(KindResults):
         word = "below" if size < failing else "at or above"
         conditional = "".join(f" {one}" for one in self.margin_conditions)
         return judge(
-            (
-                f"The impulse of the motion ({size:.3g} g, period {worst.period_s:.3g} s) is {word} the failure amplitude of "
-                f"{failing:.3g} g.{conditional}"
-            ),
+            f"The impulse of the motion ({size:.3g} g, period {worst.period_s:.3g} s) is {word} the failure amplitude of "
+            f"{failing:.3g} g.{conditional}",
             size,
             failing,
             "g",

@@ -77,7 +77,7 @@ class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
     capacity_N: float | None = fact(
-        ("greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, and for a moving ground"), "N"
+        "greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, and for a moving ground", "N"
     )
     sliding_capacity_N: float = maybe("least base shear at which a level slides by Coulomb's law", "N")
     sliding_level: str = maybe("the level that slides first")

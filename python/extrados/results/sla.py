@@ -19,7 +19,7 @@ class Bilinear(ResultModel):
     yield_load_N: float = fact("load of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
     ultimate_displacement_m: float = fact(
-        ("ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement"), "m"
+        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement", "m"
     )
     ductility: float = fact("ultimate over yield displacement")
 
@@ -38,10 +38,8 @@ class BarForce(ResultModel):
 
     name: str = fact("name of the bar; bars of the wall have numbers as names")
     force_at_greatest_load_N: float | None = fact(
-        (
-            "force of the bar at the greatest load in equilibrium; for an embedded bar, at the section with the greatest "
-            "force; null if this state was not saved"
-        ),
+        "force of the bar at the greatest load in equilibrium; for an embedded bar, at the section with the greatest "
+        "force; null if this state was not saved",
         "N",
     )
     last_force_N: float | None = fact(
@@ -60,7 +58,7 @@ class SlaCurve(ResultModel):
 
     sense: Literal["+", "-"] = fact("sense of the reference loads")
     peak_load_N: float | None = fact(
-        ("peak load: greatest load in equilibrium that is followed by a decrease of the load or by a mechanism; null without a peak"), "N"
+        "peak load: greatest load in equilibrium that is followed by a decrease of the load or by a mechanism; null without a peak", "N"
     )
     peak_displacement_m: float | None = fact("control displacement at the peak", "m")
     displacement_of_constant_loads_m: float = fact("control displacement under the constant loads only", "m")
@@ -90,19 +88,15 @@ class SlaCurve(ResultModel):
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        (
-            "dissipated energy up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
-            "the stored energy, from one equilibrium state to the next, with friction. For events without equilibrium, the "
-            "area of their teeth is used"
-        ),
+        "dissipated energy up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
+        "the stored energy, from one equilibrium state to the next, with friction. For events without equilibrium, the "
+        "area of their teeth is used",
         "J",
     )
     crack_energy_J: float = fact(
-        (
-            "crack energy: area of the teeth that were passed across cracks and along joints, in all events. It follows from "
-            "the material laws (fracture energy), without friction and without the energy lost between states, so it can "
-            "differ from dissipated_energy_J"
-        ),
+        "crack energy: area of the teeth that were passed across cracks and along joints, in all events. It follows from "
+        "the material laws (fracture energy), without friction and without the energy lost between states, so it can "
+        "differ from dissipated_energy_J",
         "J",
     )
     residual_ratio: float | None = fact("greatest measured residual of the equations; null if it was not measured")
@@ -127,10 +121,8 @@ class SlaCurve(ResultModel):
         "energy released as motion in these steps when the load drops to another equilibrium; part of dissipated_energy_J", "J"
     )
     drift_height_m: float = maybe(
-        (
-            "height to which drifts refer (extent of the structure perpendicular to the control displacement): drift is "
-            "displacement divided by this height"
-        ),
+        "height to which drifts refer (extent of the structure perpendicular to the control displacement): drift is "
+        "displacement divided by this height",
         "m",
     )
     peak_drift: float | None = maybe("drift at the peak")
@@ -139,7 +131,7 @@ class SlaCurve(ResultModel):
     )
     drop_drift: float | None = maybe("drift there")
     axial_loss_displacement_m: float | None = maybe(
-        ("control displacement of the last state at which the constant loads were still carried; null if they are carried to the end"), "m"
+        "control displacement of the last state at which the constant loads were still carried; null if they are carried to the end", "m"
     )
     axial_loss_drift: float | None = maybe("drift there")
     seconds_per_event: float = fact("computing time of an event", "s")

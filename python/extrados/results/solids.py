@@ -63,10 +63,8 @@ class SolidNonDilatant(ResultModel):
     starts_g: list[float] = fact("loads of the certified states found from each starting point; the least is used", "g")
     spread_g: float | None = fact("difference between the greatest and the least of these loads", "g")
     zero_gap_g: float | None = fact(
-        (
-            "for the least state: difference between the collapse acceleration and the work of friction minus that of the "
-            "weight, per unit of work of the load"
-        ),
+        "for the least state: difference between the collapse acceleration and the work of friction minus that of the "
+        "weight, per unit of work of the load",
         "g",
     )
     equilibrium_residual: float | None = fact(
@@ -108,7 +106,7 @@ class SolidTilt(KindResults):
         "capacity). If there are any, the capacity is an upper bound (dilatant friction)"
     )
     collapse_acceleration_load_path_g: float = maybe(
-        ("design value of the collapse acceleration along the direction if contacts slide: the least of the load paths of elastic joints"),
+        "design value of the collapse acceleration along the direction if contacts slide: the least of the load paths of elastic joints",
         "g",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe(
@@ -126,10 +124,8 @@ class SolidTilt(KindResults):
     )
     non_associated_reason: str = maybe("reason why no state without dilatancy is given in addition to the upper bound")
     collapse_acceleration_face_law_g: float = maybe(
-        (
-            "upper bound along the direction by the face law: friction of whole faces under uniform pressure (torsion). The "
-            "corner law, which gives collapse_acceleration_g, allows the pressure to concentrate"
-        ),
+        "upper bound along the direction by the face law: friction of whole faces under uniform pressure (torsion). The "
+        "corner law, which gives collapse_acceleration_g, allows the pressure to concentrate",
         "g",
         source="after Orduna and Lourenco 2005",
     )

@@ -197,7 +197,7 @@ class OverLevels(Annual):
         "median ratio of the peak rotation to the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     peak_rotation_ratio_16: list[float | None] = fact(
-        ("16th percentile of the ratio of the peak rotation to the critical rotation, at each level; null if this percentile is collapse"),
+        "16th percentile of the ratio of the peak rotation to the critical rotation, at each level; null if this percentile is collapse",
         source="Vamvatsikos and Cornell 2002",
     )
     peak_rotation_ratio_50: list[float | None] = fact(
@@ -278,10 +278,8 @@ class OverLevels(Annual):
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
-                (
-                    f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}. No fragility "
-                    "curve could be fitted."
-                ),
+                f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}. No fragility "
+                "curve could be fitted.",
                 None,
                 None,
                 self.intensity_unit,
@@ -363,10 +361,8 @@ class Resonance(KindResults):
     least_cap_g: float | None = maybe("for a block: least acceleration cap at which the rotation grows; null if the two toes differ", "g")
     least_cap_ratio: float | None = maybe("ratio of the least acceleration cap to the uplift acceleration")
     least_cap_ratios: list[list[float]] = maybe(
-        (
-            "ratios of the least acceleration caps to the uplift acceleration, for each aspect ratio (rows) and each "
-            "initial ratio of the rotation (columns)"
-        ),
+        "ratios of the least acceleration caps to the uplift acceleration, for each aspect ratio (rows) and each "
+        "initial ratio of the rotation (columns)",
         source="thesis Fig. 6-3",
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
@@ -447,7 +443,7 @@ class HarmonicMap(KindResults):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all cells of the map")
     handed_over: int = maybe(
-        ("number of cells of the map that were decided with rigid contacts, because joints slide or hinges form at other joints"),
+        "number of cells of the map that were decided with rigid contacts, because joints slide or hinges form at other joints",
         source="Moreau 1988",
     )
 

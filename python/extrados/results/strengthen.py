@@ -52,10 +52,7 @@ class Intervention(ResultModel):
     start_m: list[float] = maybe("first end of a tie: [x, y], in space [x, y, z]; for a hoop, a point at its height", "m")
     via_m: list[list[float]] = maybe("points through which a chain runs", "m")
     stiffness_N_m: float = maybe(
-        (
-            "axial stiffness EA/L of the tie in the runs: that of the deck; if the deck gives none, that of a steel bar with "
-            "the least section"
-        ),
+        "axial stiffness EA/L of the tie in the runs: that of the deck; if the deck gives none, that of a steel bar with the least section",
         "N/m",
     )
     end_m: list[float] = maybe("second end of the tie; not given for a hoop", "m")

@@ -44,7 +44,7 @@ class DisplacementCheck(ResultModel):
     capacity_pga_g: float | None = fact("peak ground acceleration that is carried: a_g S times the factor; their ratio is alpha_PGA", "g")
     return_period_years: float | None = fact("return period of the seismic action; null if not known", "year")
     capacity_return_period_years: float | None = fact(
-        ("return period of the action that is carried, interpolated between the limit states of [code]; null outside their range"), "year"
+        "return period of the action that is carried, interpolated between the limit states of [code]; null outside their range", "year"
     )
     verdict: Literal["holds", "fails", ""] = fact("verdict of the check; empty without a demand or a capacity")
     clause: str = fact("clauses of demand and capacity")

@@ -61,7 +61,7 @@ class FloorBelow(Table):
     building_damping: float = key(0.05, "damping ratio of the building", gt=0, le=0.3)
     storeys: int | None = key(
         None,
-        ("number N of storeys of the building: gamma_1 = 3 N/(2 N + 1); default: one storey for each 3 m of its height, rounded up"),
+        "number N of storeys of the building: gamma_1 = 3 N/(2 N + 1); default: one storey for each 3 m of its height, rounded up",
         ge=1,
         le=50,
         source="Circ. 7/2019 [C7.2.10]",

@@ -37,11 +37,9 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "code-factors",
         other,
-        (
-            f"{name} of the code compares a demand of {check.demand:.3g} g with a capacity of {check.capacity:.3g} g. This "
-            f"capacity is the collapse acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}, which is "
-            f"{'1' if q == 1.0 else f'the behaviour factor q = {q:g}'} divided by the confidence factor FC = {fc:g}.{reserve}"
-        ),
+        f"{name} of the code compares a demand of {check.demand:.3g} g with a capacity of {check.capacity:.3g} g. This "
+        f"capacity is the collapse acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}, which is "
+        f"{'1' if q == 1.0 else f'the behaviour factor q = {q:g}'} divided by the confidence factor FC = {fc:g}.{reserve}",
         code_capacity=check.capacity,
         static_capacity=least,
         demand=check.demand,
@@ -84,10 +82,8 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "code-check",
         mine,
-        (
-            f"The governing check of the codes is {name} of {check.code}, demand {check.demand:.3g}, capacity "
-            f"{check.capacity:.3g} {check.unit}{moves}. The safety factor is {margin:.3g}. By {what} it would be {other:.3g}."
-        ),
+        f"The governing check of the codes is {name} of {check.code}, demand {check.demand:.3g}, capacity "
+        f"{check.capacity:.3g} {check.unit}{moves}. The safety factor is {margin:.3g}. By {what} it would be {other:.3g}.",
         governing_margin=margin,
         demand=check.demand,
         capacity=check.capacity,
@@ -109,12 +105,10 @@ def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "torn-off",
         mine,
-        (
-            f"The codes consider each wall separately from the transverse walls: wall {wall.wall} overturns out of its plane "
-            f"about the foot of storey {wall.storey} at alpha_0 = {wall.multiplier:.3g}. By the {facts.rows[weakest].label}, "
-            f"corners and floors hold the walls together. The whole building then carries {carried[weakest]:.3g} g, if the "
-            "walls are bonded and anchored."
-        ),
+        f"The codes consider each wall separately from the transverse walls: wall {wall.wall} overturns out of its plane "
+        f"about the foot of storey {wall.storey} at alpha_0 = {wall.multiplier:.3g}. By the {facts.rows[weakest].label}, "
+        f"corners and floors hold the walls together. The whole building then carries {carried[weakest]:.3g} g, if the "
+        "walls are bonded and anchored.",
         multiplier=wall.multiplier,
         whole_g=carried[weakest],
     )
@@ -133,11 +127,9 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "weaker-direction",
         mine,
-        (
-            f"Along the {weak.removeprefix('push-')} axis the cross-sectional area of the walls is "
-            f"{area[weak]:.3g} m^2, and along the {strong.removeprefix('push-')} axis "
-            f"{area[strong]:.3g} m^2."
-        ),
+        f"Along the {weak.removeprefix('push-')} axis the cross-sectional area of the walls is "
+        f"{area[weak]:.3g} m^2, and along the {strong.removeprefix('push-')} axis "
+        f"{area[strong]:.3g} m^2.",
         weak_m2=area[weak],
         strong_m2=area[strong],
     )
@@ -175,11 +167,9 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "frame-and-shells",
         mine,
-        (
-            f"{' '.join(told)} In the frame, sections carry no tension, piers slide or crack by the strengths of codes, and "
-            "flanges act only by the vertical shear at corners. The shells have the tensile strength of the masonry and also "
-            "bend out of plane. They slide only along joints that are drawn."
-        ),
+        f"{' '.join(told)} In the frame, sections carry no tension, piers slide or crack by the strengths of codes, and "
+        "flanges act only by the vertical shear at corners. The shells have the tensile strength of the masonry and also "
+        "bend out of plane. They slide only along joints that are drawn.",
         **numbers,
     )
 

@@ -26,12 +26,10 @@ def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "left-out",
         mine,
-        (
-            f"The restraints of the mechanism are {' and '.join(sorted(every))}. These are neglected by "
-            f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them the greatest "
-            f"rotation is {100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them "
-            f"{100 * r.peak_rotation_ratio:.3g} %."
-        ),
+        f"The restraints of the mechanism are {' and '.join(sorted(every))}. These are neglected by "
+        f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them the greatest "
+        f"rotation is {100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them "
+        f"{100 * r.peak_rotation_ratio:.3g} %.",
         rotation_ratio_without=other.peak_rotation_ratio,
         rotation_ratio=r.peak_rotation_ratio,
     )
@@ -55,10 +53,8 @@ def impact_rule(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "impact-rule",
         mine,
-        (
-            f"The energy loss at impacts decides the outcome: rocking collapses by {told(falls)} and recovers by "
-            f"{told(stands)}. Discrete elements lose energy by the damping of their contacts instead."
-        ),
+        f"The energy loss at impacts decides the outcome: rocking collapses by {told(falls)} and recovers by "
+        f"{told(stands)}. Discrete elements lose energy by the damping of their contacts instead.",
         **numbers,
     )
 
@@ -80,13 +76,11 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sine-for-record",
         mine,
-        (
-            f"The criterion replaces the motion by its strongest sine, {abs(a.primary_impulse.amplitude_g):.3g} g with a "
-            f"period of {a.primary_impulse.period_s:.3g} s (it explains {100 * a.primary_impulse.goodness_of_fit:.0f} % of "
-            "the squared acceleration over its duration). Under this sine alone the greatest rotation is "
-            f"{100 * sine.peak_rotation_ratio:.0f} % of the critical rotation. Under the whole motion it is "
-            f"{100 * whole.peak_rotation_ratio:.0f} %."
-        ),
+        f"The criterion replaces the motion by its strongest sine, {abs(a.primary_impulse.amplitude_g):.3g} g with a "
+        f"period of {a.primary_impulse.period_s:.3g} s (it explains {100 * a.primary_impulse.goodness_of_fit:.0f} % of "
+        "the squared acceleration over its duration). Under this sine alone the greatest rotation is "
+        f"{100 * sine.peak_rotation_ratio:.0f} % of the critical rotation. Under the whole motion it is "
+        f"{100 * whole.peak_rotation_ratio:.0f} %.",
         sine_amplitude_g=abs(a.primary_impulse.amplitude_g),
         sine_period_s=a.primary_impulse.period_s,
         sine_rotation_ratio=sine.peak_rotation_ratio,
@@ -104,10 +98,8 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "last-digits",
         mine,
-        (
-            "The rocking response to this motion is chaotic: perturbations of 1e-6 to 1e-4 change it strongly. One run is "
-            f"only one sample. Its greatest rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical rotation."
-        ),
+        "The rocking response to this motion is chaotic: perturbations of 1e-6 to 1e-4 change it strongly. One run is "
+        f"only one sample. Its greatest rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical rotation.",
         rotation_ratio=r.peak_rotation_ratio,
     )
 
@@ -141,10 +133,8 @@ def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "chance",
         mine,
-        (
-            f"Under the hazard itself, {100 * row.demand:.0f} % of the sample collapse ({row.parameters.split(' (coef')[0]}). "
-            "A single run of one building under one motion is one member of this sample."
-        ),
+        f"Under the hazard itself, {100 * row.demand:.0f} % of the sample collapse ({row.parameters.split(' (coef')[0]}). "
+        "A single run of one building under one motion is one member of this sample.",
         share=row.demand,
     )
 
@@ -186,12 +176,10 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        (
-            f"{text}, which a rocking mechanism excludes. Without sliding the discrete elements "
-            f"{'collapse' if other.outcome == 'collapse' else 'stand'}, with a displacement of "
-            f"{other.peak_displacement_m:.3g} m. With sliding "
-            f"{'they collapse' if dem.outcome == 'collapse' else f'the displacement is {dem.peak_displacement_m:.3g} m'}."
-        ),
+        f"{text}, which a rocking mechanism excludes. Without sliding the discrete elements "
+        f"{'collapse' if other.outcome == 'collapse' else 'stand'}, with a displacement of "
+        f"{other.peak_displacement_m:.3g} m. With sliding "
+        f"{'they collapse' if dem.outcome == 'collapse' else f'the displacement is {dem.peak_displacement_m:.3g} m'}.",
         **numbers,
     )
 
@@ -213,11 +201,9 @@ def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "hinges-elsewhere",
         mine,
-        (
-            f"The thrust line of the assumed mechanism passes outside the blocks in {100 * share:.0f} % of the rocking time, "
-            f"by up to {100 * float(out.max()):.0f} % of their thickness. Hinges then also form at other joints, which only "
-            "discrete elements represent."
-        ),
+        f"The thrust line of the assumed mechanism passes outside the blocks in {100 * share:.0f} % of the rocking time, "
+        f"by up to {100 * float(out.max()):.0f} % of their thickness. Hinges then also form at other joints, which only "
+        "discrete elements represent.",
         share_of_time=share,
         farthest_ratio=float(out.max()),
     )
@@ -239,11 +225,9 @@ def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "drums",
         mine,
-        (
-            f"Rocking treats the {stones} blocks as one body. If the discrete elements are joined into one body, they "
-            f"{'collapse' if one.results.outcome == 'collapse' else 'stand'} too, with a displacement of "
-            f"{one.results.peak_displacement_m:.3g} m. As separate blocks they move by {dem.peak_displacement_m:.3g} m."
-        ),
+        f"Rocking treats the {stones} blocks as one body. If the discrete elements are joined into one body, they "
+        f"{'collapse' if one.results.outcome == 'collapse' else 'stand'} too, with a displacement of "
+        f"{one.results.peak_displacement_m:.3g} m. As separate blocks they move by {dem.peak_displacement_m:.3g} m.",
         displacement_of_one_body_m=one.results.peak_displacement_m,
         displacement_m=dem.peak_displacement_m,
     )

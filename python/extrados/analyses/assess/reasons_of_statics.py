@@ -95,10 +95,8 @@ def _by_passages(facts: Facts, mine: list[Pair], text: str, level: float, factor
     return reason(
         "static-peak",
         mine,
-        (
-            f"{text}. These times are too short for collapse: the most dangerous has a mean of {mean:.3g} g over {length:.3g} "
-            f"s, and a constant horizontal acceleration of {mean:.3g} g must act for {needed:.3g} s to cause collapse."
-        ),
+        f"{text}. These times are too short for collapse: the most dangerous has a mean of {mean:.3g} g over {length:.3g} "
+        f"s, and a constant horizontal acceleration of {mean:.3g} g must act for {needed:.3g} s to cause collapse.",
         **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
     )
 
@@ -116,11 +114,9 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "crack",
         mine,
-        (
-            f"Limit analysis considers a crack in the leeward buttress. The collapse acceleration is {cracked:.3g} g with the "
-            f"crack and {whole:.3g} g with monolithic buttresses, which exceeds the peak of {facts.peak_g:.3g} g. The other "
-            "strategies do not consider this crack."
-        ),
+        f"Limit analysis considers a crack in the leeward buttress. The collapse acceleration is {cracked:.3g} g with the "
+        f"crack and {whole:.3g} g with monolithic buttresses, which exceeds the peak of {facts.peak_g:.3g} g. The other "
+        "strategies do not consider this crack.",
         cracked=cracked,
         whole=whole,
         peak=facts.peak_g,
@@ -139,10 +135,8 @@ def ties_of_statics(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "left-out",
         mine,
-        (
-            f"Limit analysis includes the ties, and the finite elements do not. The capacity is {tilt.capacity:.3g} g by "
-            f"limit analysis with ties, {bare:.3g} g without ties, and {sla.capacity:.3g} g by the finite elements."
-        ),
+        f"Limit analysis includes the ties, and the finite elements do not. The capacity is {tilt.capacity:.3g} g by "
+        f"limit analysis with ties, {bare:.3g} g without ties, and {sla.capacity:.3g} g by the finite elements.",
         with_ties=tilt.capacity,
         without_ties=bare,
         elements=sla.capacity,
@@ -164,10 +158,8 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "sliding",
         mine,
-        (
-            f"Limit analysis counts sliding as collapse, from {least:.3g} g upwards. Under the motion the blocks slide by "
-            f"{1e3 * dem.peak_slip_m:.3g} mm and do not collapse."
-        ),
+        f"Limit analysis counts sliding as collapse, from {least:.3g} g upwards. Under the motion the blocks slide by "
+        f"{1e3 * dem.peak_slip_m:.3g} mm and do not collapse.",
         static_capacity=least,
         slip_m=dem.peak_slip_m,
     )
@@ -188,11 +180,9 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
             return reason(
                 "membrane-without-sliding",
                 mine,
-                (
-                    f"The wall of finite elements cannot slide along its joints. Limit analysis gives {least:.3g} g with friction "
-                    f"{facts.building.joints.friction} and {stuck:.3g} g without sliding; the finite elements give {sla.capacity:.3g} "
-                    f"g{', and they also have a tensile strength' if strength and sla.capacity > 1.05 * stuck else ''}."
-                ),
+                f"The wall of finite elements cannot slide along its joints. Limit analysis gives {least:.3g} g with friction "
+                f"{facts.building.joints.friction} and {stuck:.3g} g without sliding; the finite elements give {sla.capacity:.3g} "
+                f"g{', and they also have a tensile strength' if strength and sla.capacity > 1.05 * stuck else ''}.",
                 with_sliding=least,
                 without_sliding=stuck,
                 elements=sla.capacity,
@@ -201,10 +191,8 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return reason(
             "tension",
             mine,
-            (
-                f"The finite elements have a tensile strength of {strength / 1e6:.3g} MPa, and dry joints have none. The "
-                f"capacities are {sla.capacity:.3g} g and {least:.3g} g."
-            ),
+            f"The finite elements have a tensile strength of {strength / 1e6:.3g} MPa, and dry joints have none. The "
+            f"capacities are {sla.capacity:.3g} g and {least:.3g} g.",
             tensile_strength=strength,
             elements=sla.capacity,
             stones=least,
@@ -222,10 +210,8 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "mortar",
         mine,
-        (
-            f"The mortar has a tensile strength of {joints.tension / 1e6:.3g} MPa and a cohesion of "
-            f"{joints.cohesion / 1e6:.3g} MPa until it breaks. Limit analysis and rocking neglect both."
-        ),
+        f"The mortar has a tensile strength of {joints.tension / 1e6:.3g} MPa and a cohesion of "
+        f"{joints.cohesion / 1e6:.3g} MPa until it breaks. Limit analysis and rocking neglect both.",
         tension=joints.tension,
         cohesion=joints.cohesion,
     )

@@ -151,10 +151,8 @@ def _probability(asked: Asked) -> Choice:
     told = ", ".join(f"{name} {100 * v:g} %" for name, v in uncertain.items())
     return Choice(
         {"count": count, "seed": 1, "uncertain": uncertain},
-        (
-            f"{count} samples of the building with uncertain {told} (coefficients of variation); the number is limited to "
-            f"{100 * SHARES['probability']:g} % of the budget"
-        ),
+        f"{count} samples of the building with uncertain {told} (coefficients of variation); the number is limited to "
+        f"{100 * SHARES['probability']:g} % of the budget",
     )
 
 
@@ -200,7 +198,7 @@ def _frame(asked: Asked) -> Choice:
     # walls out of their planes are a strategy of their own
     return Choice(
         {"out_of_plane": False, **_action(asked)},
-        ("both directions and both senses; forces in proportion to the masses, and to the masses times height; eccentricity 0 and 5 %"),
+        "both directions and both senses; forces in proportion to the masses, and to the masses times height; eccentricity 0 and 5 %",
     )
 
 
@@ -248,10 +246,8 @@ def _sla(asked: Asked) -> Choice:
         keys["mesh"] = {"size": max(size) / ELEMENTS}
     return Choice(
         keys,
-        (
-            f"{ELEMENTS} elements along the longer side, loaded towards +x until the load has decreased to {FALLEN:g} of its "
-            f"peak, at most {keys['events']} events"
-        ),
+        f"{ELEMENTS} elements along the longer side, loaded towards +x until the load has decreased to {FALLEN:g} of its "
+        f"peak, at most {keys['events']} events",
     )
 
 
@@ -304,11 +300,9 @@ def _dem(asked: Asked) -> Choice:
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
         keys,
-        (
-            f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the run fits into "
-            f"{100 * SHARES['dem']:g} % of the budget (E divided by the block length gives "
-            f"{engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} is sufficient)"
-        ),
+        f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the run fits into "
+        f"{100 * SHARES['dem']:g} % of the budget (E divided by the block length gives "
+        f"{engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} is sufficient)",
         taken,
     )
 

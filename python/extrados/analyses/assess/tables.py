@@ -34,25 +34,21 @@ class Assess(Analysis):
     starter: ClassVar = {"budget": "20"}
     budget: float = key(
         60.0,
-        (
-            "time limit in s. The sizes of the expensive strategies are chosen so that their estimated time, on one "
-            "core of a computer of 2024, fits into this limit. Steps that still run after it are stopped and reported"
-        ),
+        "time limit in s. The sizes of the expensive strategies are chosen so that their estimated time, on one "
+        "core of a computer of 2024, fits into this limit. Steps that still run after it are stopped and reported",
         ge=5,
         le=1e6,
     )
     strategies: list[Strategy] = key(
         list(STRATEGIES),
-        (
-            "strategies to run, if they apply; `probability` means `fragility` with uncertain sizes, or with the motions of "
-            "a set; `push-x` and `push-y` mean `pushover`, `frame` means `frame-pushover` of a building in plan"
-        ),
+        "strategies to run, if they apply; `probability` means `fragility` with uncertain sizes, or with the motions of "
+        "a set; `push-x` and `push-y` mean `pushover`, `frame` means `frame-pushover` of a building in plan",
         min_length=1,
         max_length=len(STRATEGIES),
     )
     thin: float = key(
         1.5,
-        ("critical scale factors between the inverse of this value and this value count as close to 1; further runs then follow"),
+        "critical scale factors between the inverse of this value and this value count as close to 1; further runs then follow",
         gt=1,
         le=10,
     )
@@ -61,16 +57,13 @@ class Assess(Analysis):
     )
     acceptable_probability: float = key(
         0.05,
-        ('greatest probability of collapse at which `probability` gives the verdict "stands"; above 0.5 the verdict is "collapses"'),
+        'greatest probability of collapse at which `probability` gives the verdict "stands"; above 0.5 the verdict is "collapses"',
         gt=0,
         lt=0.5,
     )
     uncertain: dict[str, float] | None = key(
         None,
-        (
-            "coefficients of variation for `probability`, as in `fragility`; default: 0.05 for restitution and for the sizes "
-            "of the structure"
-        ),
+        "coefficients of variation for `probability`, as in `fragility`; default: 0.05 for restitution and for the sizes of the structure",
     )
     motions: Annotated[int, Field(ge=2, le=10000)] | None = key(
         None, "number of motions of a set; default: the whole suite, 40 generated motions or 10 compatible motions"
@@ -80,25 +73,20 @@ class Assess(Analysis):
     )
     sensitivity: bool = key(
         False,
-        (
-            "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and rocking give new "
-            "safety factors, and the value at which each verdict changes. With discrete elements, the joint stiffness "
-            "varies and a support moves. This takes 25 % of the budget"
-        ),
+        "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and rocking give new "
+        "safety factors, and the value at which each verdict changes. With discrete elements, the joint stiffness "
+        "varies and a support moves. This takes 25 % of the budget",
     )
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
         None, 'keys that are varied instead of these, each with its relative change: { "structure.thickness" = 0.1 }'
     )
     advise: bool = key(
         True,
-        (
-            'if at least one strategy does not give the verdict "stands": also find the least tie force and the least '
-            "thickness with which the building carries the peak of the hazard as a sustained load"
-        ),
+        'if at least one strategy does not give the verdict "stands": also find the least tie force and the least '
+        "thickness with which the building carries the peak of the hazard as a sustained load",
     )
     options: dict[Strategy, dict[str, Any]] = key(
-        {},
-        ("keys of the table of a strategy, such as `dem = { joints.normal_stiffness = 2e10 }`; they replace the values set by the rules"),
+        {}, "keys of the table of a strategy, such as `dem = { joints.normal_stiffness = 2e10 }`; they replace the values set by the rules"
     )
 
     @property

@@ -146,10 +146,8 @@ def _refuse_fallen(turning: _Turning) -> None:
         return
     work = "" if turning.body is None else f": these do a work of {-turning.body.work() / 1e3:.3g} kNm per radian, without resistance"
     raise CannotStand(
-        (
-            f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; certificate: weights and thrusts move "
-            f"the mechanism{work}"
-        ),
+        f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; certificate: weights and thrusts move "
+        f"the mechanism{work}",
         neglects=(),
     )
 

@@ -57,10 +57,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
         for k, floor in enumerate(options.floors):
             if floor.height < float(options.height or 0.0) or floor.pushing or floor.thrust:
                 raise Refused(
-                    (
-                        "vertical bending includes the load of the floors on top of the wall, and these floors restrain the top: give "
-                        "height at the top, and load"
-                    ),
+                    "vertical bending includes the load of the floors on top of the wall, and these floors restrain the top: give "
+                    "height at the top, and load",
                     ("analysis", "floors", k),
                 )
         load = sum(f.load for f in options.floors)
@@ -71,10 +69,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     if options.abutment_force is None:
         if strength is None:
             raise Refused(
-                (
-                    "horizontal bending requires abutment_force, the force that each side wall resists. If the side walls do not "
-                    "move, give the compressive_strength of [material] instead, which then limits the thrust"
-                ),
+                "horizontal bending requires abutment_force, the force that each side wall resists. If the side walls do not "
+                "move, give the compressive_strength of [material] instead, which then limits the thrust",
                 ("analysis",),
             )
         # H (t - a) with H = f h a is greatest at a = t/2
@@ -85,10 +81,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     depth = 0.0 if strength is None else force / (strength * height)
     if depth >= 0.5 * thickness:
         raise Refused(
-            (
-                f"the strip cannot carry this thrust: its compressed depth is {depth:.3g} m of a thickness of {thickness:g} m, "
-                "and at most half is possible"
-            ),
+            f"the strip cannot carry this thrust: its compressed depth is {depth:.3g} m of a thickness of {thickness:g} m, "
+            "and at most half is possible",
             ("analysis", "abutment_force"),
         )
     return HorizontalBending(width, thickness, weight + sway, force, thrust, depth)
@@ -127,10 +121,8 @@ def _refuse_sizes(options: LocalMechanism) -> None:
             )
     if options.interlocking is not None and options.side_walls is not None:
         raise Refused(
-            (
-                "interlocking is for a facade that separates from its side walls, and side_walls for a facade that moves with "
-                "parts of them: remove one of the two keys"
-            ),
+            "interlocking is for a facade that separates from its side walls, and side_walls for a facade that moves with "
+            "parts of them: remove one of the two keys",
             ("analysis", "interlocking"),
         )
     if options.interlocking is not None and options.interlocking.unit_height > top - options.hinge_height:
@@ -187,19 +179,15 @@ def set_back(weights: list[Weight], strength: float, width: float, thickness: fl
     weight, most = sum(w.weight for w in weights if w.rests), strength * width * thickness
     if weight > most:
         raise CannotStand(
-            (
-                f"the wall crushes at the hinge under its weight; certificate: the load is {weight / 1e3:.3g} kN, and the section "
-                f"carries at most {most / 1e3:.3g} kN"
-            ),
+            f"the wall crushes at the hinge under its weight; certificate: the load is {weight / 1e3:.3g} kN, and the section "
+            f"carries at most {most / 1e3:.3g} kN",
             neglects=(),
         )
     setback = 2.0 * weight / (3.0 * strength * width)
     if setback >= thickness / 2.0:
         raise Refused(
-            (
-                "the triangle of compressive stress under the weight is wider than the wall at the hinge: the stress exceeds "
-                "0.75 of the compressive strength"
-            ),
+            "the triangle of compressive stress under the weight is wider than the wall at the hinge: the stress exceeds "
+            "0.75 of the compressive strength",
             ("material", "compressive_strength"),
         )
     return [replace(w, arm=w.arm - setback) for w in weights]

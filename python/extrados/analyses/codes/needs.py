@@ -75,10 +75,8 @@ def _read_walls(building: Building) -> None:
 
 def _refuse_unheld(what: str, key: Key) -> None:
     raise Refused(
-        (
-            f'local-mechanism can include {what} only for blocks with mechanism = "building". Remove it, or give the '
-            "restraint of a wall as `ties` of this table"
-        ),
+        f'local-mechanism can include {what} only for blocks with mechanism = "building". Remove it, or give the '
+        "restraint of a wall as `ties` of this table",
         key,
     )
 
@@ -93,10 +91,8 @@ def _refuse_elsewhere(context: Context, options: LocalMechanism) -> None:
     for name in ("one_second_acceleration", "storey"):
         if name in options.model_fields_set and own != "ASCE41":
             raise Refused(
-                (
-                    f"{name} is a key of the checks by ASCE 41, but the checks are by {own}. Remove the key, or give [code] "
-                    f'jurisdiction = "ASCE41"'
-                ),
+                f"{name} is a key of the checks by ASCE 41, but the checks are by {own}. Remove the key, or give [code] "
+                f'jurisdiction = "ASCE41"',
                 ("analysis", name),
             )
 

@@ -233,10 +233,7 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
             q * found.a0 / GRAVITY,
             demand,
             "g",
-            (
-                "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z (at the ground a_Z = a_g S); [C8.7.1.8], "
-                "[C8.7.1.9], [C7.2.8]"
-            ),
+            "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z (at the ground a_Z = a_g S); [C8.7.1.8], [C8.7.1.9], [C7.2.8]",
             f"{note}, q {q:g}",
             CODE,
             scope=f"{SCOPE}; rigid until the mechanism starts; without a displacement check",

@@ -92,9 +92,7 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
             "EN 1998-3",
             state=state,
             scope="masonry walls in their plane",
-            barred=(
-                "Annex C of the 2005 edition has only rules for in-plane failure of walls. It has no rules for out-of-plane mechanisms"
-            ),
+            barred="Annex C of the 2005 edition has only rules for in-plane failure of walls. It has no rules for out-of-plane mechanisms",
         ),
     ]
 

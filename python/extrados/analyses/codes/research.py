@@ -57,10 +57,8 @@ def asce43(width: float, height: float, sa: Callable[[float, float], float] | No
             "g",
             source,
             scope=scope,
-            barred=(
-                f"the block of b/h = {ratio:.3g} does not rock: its coefficient of restitution by Housner is {c_r:.3g}, which "
-                "gives no equivalent damping"
-            ),
+            barred=f"the block of b/h = {ratio:.3g} does not rock: its coefficient of restitution by Housner is {c_r:.3g}, which "
+            "gives no equivalent damping",
         )
     gamma = -2.0 * np.log(c_r)
     damping = float(gamma / np.sqrt(4.0 * np.pi**2 + gamma**2))

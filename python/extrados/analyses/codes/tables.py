@@ -30,10 +30,8 @@ class CodeChecks(BuildingAnalysis):
     pulse_period: Time | None = key(None, "period of the sine whose half cycle is used in the formula of Housner; adds this check", gt=0)
     behaviour_factor: float | None = key(
         None,
-        (
-            "behaviour factor q of the linear check of a mechanism, and of the demand on a pier (for ASCE 41: its m factor); "
-            "default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)"
-        ),
+        "behaviour factor q of the linear check of a mechanism, and of the demand on a pier (for ASCE 41: its m factor); "
+        "default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)",
         ge=1,
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
@@ -77,32 +75,28 @@ class Verification(Table):
     peak_acceleration: ClassVar = None
     method: Literal["N2", "capacity-spectrum", "coefficient"] | None = key(
         None,
-        (
-            "method for the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); capacity-spectrum: "
-            "capacity spectrum method; coefficient: coefficient method of ASCE 41. Default: coefficient (ASCE41), N2 "
-            "(others)"
-        ),
+        "method for the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); capacity-spectrum: "
+        "capacity spectrum method; coefficient: coefficient method of ASCE 41. Default: coefficient (ASCE41), N2 "
+        "(others)",
     )
     secant: float = key(
         0.7,
-        ("share of the greatest base shear at which the bilinear curve takes its stiffness; 0.6 is the general rule of C7.3.4.2"),
+        "share of the greatest base shear at which the bilinear curve takes its stiffness; 0.6 is the general rule of C7.3.4.2",
         ge=0.5,
         le=0.9,
         source="NTC 2018 7.8.1.6",
     )
     quality: float = key(
         0.33,
-        ("factor k on the hysteretic damping in the capacity spectrum method: 1, 0.66 or 0.33 for high, moderate or low dissipation"),
+        "factor k on the hysteretic damping in the capacity spectrum method: 1, 0.66 or 0.33 for high, moderate or low dissipation",
         ge=0,
         le=1,
         source="Circ. 7/2019 [C7.3.10]",
     )
     shape: Literal["displaced", "mode"] = key(
         "displaced",
-        (
-            "shape phi for the equivalent mass. displaced: elastic displacement under the horizontal forces; mode: "
-            "mode with the greatest participating mass in the direction (with flexible floors this mass can be small)"
-        ),
+        "shape phi for the equivalent mass. displaced: elastic displacement under the horizontal forces; mode: "
+        "mode with the greatest participating mass in the direction (with flexible floors this mass can be small)",
         source="Circ. 7/2019 C7.3.4.2: first mode",
     )
     spectrum: CodeSpectrum | None = key(
@@ -112,7 +106,7 @@ class Verification(Table):
 
     motions: int | None = key(
         None,
-        ("number of motions of the set in [motion] from which N2 calculates a fragility curve, record by record; default: none"),
+        "number of motions of the set in [motion] from which N2 calculates a fragility curve, record by record; default: none",
         ge=2,
         le=10_000,
     )
@@ -131,10 +125,8 @@ class Floor(Table):
     load: Force = key(0.0, "weight of the load that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
     pushing: Force = key(
         0.0,
-        (
-            "weight whose mass pushes the wall but which does not rest on it (Q): the mass drives the mechanism, and the "
-            "weight does not stabilise it"
-        ),
+        "weight whose mass pushes the wall but which does not rest on it (Q): the mass drives the mechanism, and the "
+        "weight does not stabilise it",
         ge=0,
         source="Circ. 7/2019 [C8.7.1.1]",
     )
@@ -211,12 +203,10 @@ class LocalMechanism(BuildingAnalysis):
     mechanism: Literal[
         "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building"
     ] = key(
-        about=(
-            "kind of mechanism: facade, corner of two walls, gable, parapet or chimney on a building, free-standing wall, "
-            "tower as one body; wall that bends vertically between floors, or horizontally between side walls; or "
-            "`building`: the collapse mechanism of the [structure] of the deck (triumphal arches, bridges, vaults), or the "
-            "walls of a building in plan"
-        )
+        about="kind of mechanism: facade, corner of two walls, gable, parapet or chimney on a building, free-standing wall, "
+        "tower as one body; wall that bends vertically between floors, or horizontally between side walls; or "
+        "`building`: the collapse mechanism of the [structure] of the deck (triumphal arches, bridges, vaults), or the "
+        "walls of a building in plan"
     )
     height: Length | None = key(None, "top of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
@@ -229,11 +219,9 @@ class LocalMechanism(BuildingAnalysis):
     wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
     abutment_force: Force | None = key(
         None,
-        (
-            "for horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip. "
-            "Default: side walls that do not move (for instance between further walls); the strip then crushes at [material] "
-            "compressive_strength"
-        ),
+        "for horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip. "
+        "Default: side walls that do not move (for instance between further walls); the strip then crushes at [material] "
+        "compressive_strength",
         gt=0,
     )
     interlocking: Interlocking | None = key(
@@ -265,21 +253,19 @@ class LocalMechanism(BuildingAnalysis):
     )
     base_height: Length | None = key(
         None,
-        (
-            "height z of the mechanism above the foundation; if z is above 0, the building amplifies the motion. Default "
-            "from the geometry: the lowest hinge between moving and fixed parts; for a table, `hinge_height`"
-        ),
+        "height z of the mechanism above the foundation; if z is above 0, the building amplifies the motion. Default "
+        "from the geometry: the lowest hinge between moving and fixed parts; for a table, `hinge_height`",
         ge=0,
     )
     building_height: Length | None = key(
         None,
-        ("height H of the building, required if z is above 0. Default from the geometry: the top of all parts; for a table, `height`"),
+        "height H of the building, required if z is above 0. Default from the geometry: the top of all parts; for a table, `height`",
         gt=0,
     )
     building_period: Time | None = key(None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6")
     storeys: int | None = key(
         None,
-        ("number N of storeys of the building, for the modal participation; default: one storey for each 3 m of its height, rounded up"),
+        "number N of storeys of the building, for the modal participation; default: one storey for each 3 m of its height, rounded up",
         ge=1,
         le=50,
     )

@@ -131,7 +131,7 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             seen.state,
             ("time", "joint"),
             "",
-            ("0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open"),
+            "0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open",
         ),
         "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints (intrados of an arch)"),
         "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends of the joints (extrados of an arch)"),

@@ -121,14 +121,10 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
             "step": f"the time step exceeds the critical time step, {run.critical_step:.3g} s",
             "overlap": f"{' and '.join(names)} overlap at the start",
             "unsettled": f"the structure does not stand under its own weight: {first} falls",
-            "restless": (
-                f"the structure does not come to rest under its own weight in {run.settling_steps} steps ({first} moves most), so "
-                f"discrete elements do not show whether it stands{wedged}"
-            ),
-            "blow-up": (
-                f"the error of the energy balance is too large: the run was stopped at step {run.steps} ({run.stop_time:.4g} s), "
-                f"and {first} is the fastest block. Try a smaller time step"
-            ),
+            "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps ({first} moves most), so "
+            f"discrete elements do not show whether it stands{wedged}",
+            "blow-up": f"the error of the energy balance is too large: the run was stopped at step {run.steps} ({run.stop_time:.4g} s), "
+            f"and {first} is the fastest block. Try a smaller time step",
         }.get(run.reason, f"stopped: {run.reason} ({first})")
     )
 

@@ -60,10 +60,8 @@ def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
     most = SHARE * room.total() / (8.0 * values)
     if options.end_time / options.output_step > most:
         raise Refused(
-            (
-                f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: give an "
-                f"output_step of at least {options.end_time / most:.2g} s"
-            ),
+            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: give an "
+            f"output_step of at least {options.end_time / most:.2g} s",
             ("analysis", "output_step"),
         )
 
@@ -91,7 +89,7 @@ def _refuse_springs(building: Building) -> None:
 def _refuse_restitution(building: Building) -> None:
     if not isinstance(building.blocks(), BlockAssembly):
         raise Refused(
-            ('damping = "restitution" applies only to a single block: give damping = "edge", and repeat the run with other damping ratios'),
+            'damping = "restitution" applies only to a single block: give damping = "edge", and repeat the run with other damping ratios',
             ("joints", "damping"),
         )
 

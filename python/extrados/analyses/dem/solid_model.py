@@ -169,10 +169,8 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
     for part, owner in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         if (most := max(map(len, part.faces))) > dem3.MOST_CORNERS:
             raise Refused(
-                (
-                    f"{assembly.block_names[owner]} has a face with {most} corners, and dem of solids allows up to "
-                    f"{dem3.MOST_CORNERS}: divide the face, or draw it with fewer corners"
-                ),
+                f"{assembly.block_names[owner]} has a face with {most} corners, and dem of solids allows up to "
+                f"{dem3.MOST_CORNERS}: divide the face, or draw it with fewer corners",
                 ("structure",),
             )
     if rigid:

@@ -77,42 +77,33 @@ class DemTable(BuildingAnalysis):
     )
     solver: Literal["compliant", "nonsmooth"] = key(
         "compliant",
-        (
-            "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap or "
-            "tension (Moreau 1988, Jean 1999). Rigid contacts need no stiffness and no damping, and allow large time "
-            "steps. Each solver can check the "
-            "other"
-        ),
+        "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap or "
+        "tension (Moreau 1988, Jean 1999). Rigid contacts need no stiffness and no damping, and allow large time "
+        "steps. Each solver can check the "
+        "other",
     )
     rebound: float = key(
         0.0,
-        (
-            'for solver = "nonsmooth": Newton\'s coefficient of restitution at each contact point; 0 gives the energy loss of '
-            "Housner's block"
-        ),
+        "for solver = \"nonsmooth\": Newton's coefficient of restitution at each contact point; 0 gives the energy loss of Housner's block",
         ge=0,
         le=1,
     )
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
     merge: Literal["none", "three-bars"] = key(
-        "none", ("three-bars: join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism")
+        "none", "three-bars: join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism"
     )
     fraction: float = key(0.3, "ratio of the time step to the critical time step", gt=0, le=0.9)
     time_step: Time | None = key(
         None,
-        (
-            "time step. Default: the given fraction of the critical time step; for "
-            'solver = "nonsmooth", 1/500 of the time of a free '
-            "fall over the size of the smallest block"
-        ),
+        "time step. Default: the given fraction of the critical time step; for "
+        'solver = "nonsmooth", 1/500 of the time of a free '
+        "fall over the size of the smallest block",
         gt=0,
     )
     floor: Length | None = key(
         None,
-        (
-            "height of a level floor on which detached blocks land and slide. Default: no floor, but a footing under each "
-            "joint to the ground, a quarter wider than the joint on both sides"
-        ),
+        "height of a level floor on which detached blocks land and slide. Default: no floor, but a footing under each "
+        "joint to the ground, a quarter wider than the joint on both sides",
     )
 
     @property
@@ -147,10 +138,8 @@ class SpatialDem(DemTable):
     solid: ClassVar = True
     direction: Angle | None = key(
         None,
-        (
-            "direction of the horizontal motion or load in plan: angle from +x towards +y. With this key, and for structures "
-            "without a plane section, the blocks are solids"
-        ),
+        "direction of the horizontal motion or load in plan: angle from +x towards +y. With this key, and for structures "
+        "without a plane section, the blocks are solids",
         ge=-360,
         le=360,
     )
@@ -168,49 +157,40 @@ class Dem(SpatialDem, Animated):
     starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
     quasi_static: bool = key(
-        False,
-        ('for solver = "nonsmooth": neglect inertia, so that moving supports are followed through large displacements up to collapse'),
+        False, 'for solver = "nonsmooth": neglect inertia, so that moving supports are followed through large displacements up to collapse'
     )
     test: Literal["motion", "tilt"] = key(
         "motion", "type of the test. motion: apply the motion; tilt: find the constant acceleration that causes collapse"
     )
     end_time: Time | None = key(
         None,
-        (
-            "end of the run. Default: the end of the motion plus the time to come to rest or to collapse; the run ends "
-            "earlier if all blocks are at rest"
-        ),
+        "end of the run. Default: the end of the motion plus the time to come to rest or to collapse; the run ends "
+        "earlier if all blocks are at rest",
         gt=0,
     )
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
     base: Literal["body-force", "moving"] = key(
         "body-force",
-        (
-            "representation of the ground motion. body-force: inertia forces on the blocks; moving: the ground moves. Both "
-            "give the same result"
-        ),
+        "representation of the ground motion. body-force: inertia forces on the blocks; moving: the ground moves. Both "
+        "give the same result",
     )
     collapse_displacement: Length | None = key(
         None,
-        (
-            "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, "
-            "also if it slides. Default: 1/5 of the size of the structure; in a tilt test 1/20"
-        ),
+        "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, "
+        "also if it slides. Default: 1/5 of the size of the structure; in a tilt test 1/20",
         gt=0,
     )
     domain: float = key(
         10.0,
-        ("greatest distance of a block from the structure, in multiples of the size of the structure; the run ends beyond it"),
+        "greatest distance of a block from the structure, in multiples of the size of the structure; the run ends beyond it",
         gt=1,
         le=1000,
     )
     stop_at_collapse: bool = key(True, "end the run when a block has moved by the collapse displacement")
     perturbed: bool = key(
         True,
-        (
-            "also run the motion times 1 + 1e-6, to find whether the response is chaotic. This doubles the time of the run; "
-            "if the perturbation grows a thousandfold, the time is ten times as long"
-        ),
+        "also run the motion times 1 + 1e-6, to find whether the response is chaotic. This doubles the time of the run; "
+        "if the perturbation grows a thousandfold, the time is ten times as long",
     )
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
@@ -246,26 +226,20 @@ class DemDomain(SpatialDem):
     settle: Time | None = key(None, "time after the pulse in which the structure must come to rest or collapse", gt=0)
     collapse_displacement: Length | None = key(
         None,
-        (
-            "displacement of a block that counts as collapse, if the block also rotates or loses height; default: 1/5 of the "
-            "size of the structure"
-        ),
+        "displacement of a block that counts as collapse, if the block also rotates or loses height; default: 1/5 of the "
+        "size of the structure",
         gt=0,
     )
     mode_II: bool = key(
         False,
-        (
-            "also calculate the shortest pulses that cause collapse in the first swing, before any impact. With merge = "
-            '"three-bars" the four-hinge curve of the same name is given for comparison'
-        ),
+        "also calculate the shortest pulses that cause collapse in the first swing, before any impact. With merge = "
+        '"three-bars" the four-hinge curve of the same name is given for comparison',
         source="thesis Fig. 7-11",
     )
     cross_check: bool = key(
         False,
-        (
-            "also calculate with the other solver: its failure curve, and the share of the cells of all amplitudes and "
-            "durations in which both solvers give the same outcome"
-        ),
+        "also calculate with the other solver: its failure curve, and the share of the cells of all amplitudes and "
+        "durations in which both solvers give the same outcome",
     )
     vary_damping: list[Positive] = key([], "further failure curves with beta multiplied by each of these factors", max_length=20)
     vary_stiffness: list[Positive] = key(
@@ -273,7 +247,7 @@ class DemDomain(SpatialDem):
     )
     vary_friction: list[Positive] = key(
         [],
-        ("further failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]"),
+        "further failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]",
         max_length=20,
     )
 

@@ -89,7 +89,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
             state,
             ("time", "joint"),
             "",
-            ("0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open"),
+            "0 closed, -1 hinge at the first end (intrados of an arch), 1 hinge at the second end (extrados), 2 open",
         ),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
         **segment_arrays(model.ties, 2),
@@ -177,10 +177,7 @@ def capacities(context: Context, options: Dem, job: Callable[[list[float]], Any]
     for sense, run in zip(SENSES, last, strict=True):
         if run is None:
             raise Refused(
-                (
-                    f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {'+x' if sense > 0 else '-x'}: increase "
-                    "tilt_limit"
-                ),
+                f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {'+x' if sense > 0 else '-x'}: increase tilt_limit",
                 ("analysis", "tilt_limit"),
             )
     while True:

@@ -28,14 +28,11 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
             np.array([s.part for s in frame.strips]),
             ("element", "box"),
             "m",
-            ("deformable part of each element: start and end along the wall, lower and upper height"),
+            "deformable part of each element: start and end along the wall, lower and upper height",
         ),
         "element_wall": Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0"),
         "element_storey": Array(
-            np.array([s.storey for s in frame.strips]),
-            ("element",),
-            "",
-            ("storey of a pier; for a spandrel or ring beam, the storey below"),
+            np.array([s.storey for s in frame.strips]), ("element",), "", "storey of a pier; for a spandrel or ring beam, the storey below"
         ),
         "element_kind": Array(
             np.array([KINDS[s.kind] for s in frame.strips]), ("element",), "", ", ".join(f"{n}: {word}" for word, n in KINDS.items())
@@ -49,7 +46,7 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
             np.array(holes).reshape(-1, 5),
             ("opening", "box"),
             "m",
-            ("number of the wall, start and end along the wall, lower and upper height"),
+            "number of the wall, start and end along the wall, lower and upper height",
         ),
         "gable": Array(
             np.array([(w, s, z) for w, wall in enumerate(plan.walls) for s, z in wall.gable_outline[1:2]]).reshape(-1, 3),

@@ -45,7 +45,7 @@ def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
         return core.at_rest()
     except CoreError as error:
         raise NoEquilibrium(
-            (f"the frame has no equilibrium under its own weight ({error}): a pier carries no load, or a wall is not connected to others"),
+            f"the frame has no equilibrium under its own weight ({error}): a pier carries no load, or a wall is not connected to others",
             ("structure", "walls"),
         ) from None
 

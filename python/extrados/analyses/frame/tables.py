@@ -79,10 +79,8 @@ class FramePushover(FrameAnalysis):
     senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of each direction", min_length=1, max_length=2)
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
-        (
-            "patterns of the horizontal forces. uniform: in proportion to the masses; static: to the masses times "
-            "their height; modal: to the masses times the mode of greatest participating mass"
-        ),
+        "patterns of the horizontal forces. uniform: in proportion to the masses; static: to the masses times "
+        "their height; modal: to the masses times the mode of greatest participating mass",
         min_length=1,
         max_length=3,
         source="NTC 2018, 7.3.4.2",
@@ -97,17 +95,13 @@ class FramePushover(FrameAnalysis):
     verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
     out_of_plane: bool = key(
         True,
-        (
-            "with a seismic action: check every wall, above the foot of each storey, for out-of-plane failure by "
-            "`local-mechanism`. The floor spectrum uses the period of the frame"
-        ),
+        "with a seismic action: check every wall, above the foot of each storey, for out-of-plane failure by "
+        "`local-mechanism`. The floor spectrum uses the period of the frame",
     )
     control_level: int | None = key(
         None,
-        (
-            "number of the control storey: the control displacement is the mean displacement, weighted by the masses, at the top "
-            "of this storey; default: the highest storey with masses"
-        ),
+        "number of the control storey: the control displacement is the mean displacement, weighted by the masses, at the top "
+        "of this storey; default: the highest storey with masses",
         ge=1,
     )
     target_drift: float = key(0.02, "ratio of the greatest control displacement to the height of the control level", gt=0, le=0.2)
@@ -134,7 +128,7 @@ class FrameMotion(FrameAnalysis):
     damping_ratio: float = key(0.03, "damping ratio of the Rayleigh damping at its two frequencies", ge=0, le=0.5)
     damping_frequencies: list[Annotated[float, Field(gt=0)]] | None = key(
         None,
-        ("two frequencies in Hz with this damping ratio; default: the first frequency of the direction, and three times this value"),
+        "two frequencies in Hz with this damping ratio; default: the first frequency of the direction, and three times this value",
         min_length=2,
         max_length=2,
     )
@@ -155,10 +149,8 @@ class FrameFragility(FrameMotion):
     starter_motion: ClassVar = "generated"
     by: Literal["history", "pushover"] = key(
         "history",
-        (
-            "method. history: the motion of the frame under every record; pushover: N2 with the spectrum of every record, "
-            "for the capacity curves of both senses"
-        ),
+        "method. history: the motion of the frame under every record; pushover: N2 with the spectrum of every record, "
+        "for the capacity curves of both senses",
         source="Fajfar 2000",
     )
     patterns: list[Literal["uniform", "static", "modal"]] = key(

@@ -108,10 +108,8 @@ def sections_of(context: Context, options: Survey) -> tuple[list[str], list[list
     for name in header:
         if structure is not None and name != "name" and name.split(".")[0] not in type(structure).model_fields:
             raise Refused(
-                (
-                    f"{options.file}:1: [structure] of kind '{structure.kind}' has no key '{name}'; its keys are "
-                    f"{', '.join(k for k in type(structure).model_fields if k != 'kind')} and 'name'"
-                ),
+                f"{options.file}:1: [structure] of kind '{structure.kind}' has no key '{name}'; its keys are "
+                f"{', '.join(k for k in type(structure).model_fields if k != 'kind')} and 'name'",
                 key,
             )
     return header, rows
@@ -154,10 +152,8 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     shortest = float(extent.min())
     if 4.0 * deviation > shortest:
         raise Refused(
-            (
-                f"a deviation of {1e3 * deviation:.3g} mm is more than 1/4 of the {'shortest' if plane else 'narrowest'} joint, "
-                f"'{stones.joint_names[int(extent.argmin())]}' ({1e3 * shortest:.3g} mm)"
-            ),
+            f"a deviation of {1e3 * deviation:.3g} mm is more than 1/4 of the {'shortest' if plane else 'narrowest'} joint, "
+            f"'{stones.joint_names[int(extent.argmin())]}' ({1e3 * shortest:.3g} mm)",
             ("analysis", "deviation"),
         )
     return float(deviation)
@@ -285,9 +281,7 @@ def refuse_unruled(building: Building) -> None:
     """Refused where no rule makes the blocks."""
     if not partitions_of(building):
         raise Refused(
-            (
-                "block_size: the blocks of this structure have no key for their size. Divide the blocks in the file, and compare "
-                "both capacities"
-            ),
+            "block_size: the blocks of this structure have no key for their size. Divide the blocks in the file, and compare "
+            "both capacities",
             ("analysis", "block_size"),
         )

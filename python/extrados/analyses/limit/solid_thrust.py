@@ -131,7 +131,7 @@ def _arrays(
         centre = np.array([nothing if one is None else one.centre for one in states]).reshape(-1, *nothing.shape)
         dims = ("section", "contact", "axis3")
         arrays[f"{name}_force"] = Array(
-            force, dims, "N", (f"force on the first of the two blocks of each contact in the state of {name} thrust")
+            force, dims, "N", f"force on the first of the two blocks of each contact in the state of {name} thrust"
         )
         arrays[f"{name}_centre"] = Array(centre, dims, "m", f"centre of the compression in the state of {name} thrust")
     if central is not None:

@@ -159,7 +159,7 @@ def _arrays(assembly: SolidAssembly, there: Programme, pose: np.ndarray) -> dict
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
         "contact_normal": Array(
-            assembly.normal, ("contact", "axis3"), "", ("normals of the contacts, pointing into the first of the two blocks")
+            assembly.normal, ("contact", "axis3"), "", "normals of the contacts, pointing into the first of the two blocks"
         ),
         "collapse_force": Array(
             there.force,

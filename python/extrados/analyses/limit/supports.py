@@ -142,10 +142,8 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            (
-                "the structure has only one support, whose movement moves all of it. Give [[initial.movements]] for the joints "
-                "on the ground that move"
-            ),
+            "the structure has only one support, whose movement moves all of it. Give [[initial.movements]] for the joints "
+            "on the ground that move",
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -206,7 +204,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
             motion,
             ("joint", "component"),
             "m",
-            ("opening at the first end (intrados of an arch) and at the second end (extrados) of each joint, and slip"),
+            "opening at the first end (intrados of an arch) and at the second end (extrados) of each joint, and slip",
         ),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }

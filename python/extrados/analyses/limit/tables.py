@@ -16,10 +16,8 @@ class AppliedLoad(Table):
     """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
     x: Length = key(
-        about=(
-            "x of the load. The load acts on the highest block below, or on the block at y. In the fill of a bridge, a load "
-            "without y spreads its weight"
-        )
+        about="x of the load. The load acts on the highest block below, or on the block at y. In the fill of a bridge, a load "
+        "without y spreads its weight"
     )
     force: Force = key(0.0, "vertical force, downward; for a distributed load, its total")
     horizontal: Force = key(0.0, "horizontal force, towards +x; for a distributed load, its total")
@@ -46,10 +44,8 @@ class LimitAnalysisTable(BuildingAnalysis):
     considers: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
-        (
-            'rule for sliding joints. "associated": sliding dilates, and the result is an upper bound; "non-associated": '
-            "sliding does not dilate, and of many possible states the least is searched"
-        ),
+        'rule for sliding joints. "associated": sliding dilates, and the result is an upper bound; "non-associated": '
+        "sliding does not dilate, and of many possible states the least is searched",
         source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
     starts: int = key(
@@ -69,10 +65,8 @@ class SpatialLimit(LimitAnalysisTable):
     )
     direction: Angle | None = key(
         None,
-        (
-            "direction of the horizontal load in plan: angle from +x towards +y, which is across a section. With this key, "
-            "and for structures without a plane section, the blocks are analysed as solids"
-        ),
+        "direction of the horizontal load in plan: angle from +x towards +y, which is across a section. With this key, "
+        "and for structures without a plane section, the blocks are analysed as solids",
         ge=-360,
         le=360,
     )
@@ -85,37 +79,29 @@ class Tilt(SpatialLimit, Animated):
     fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     rose: int | None = key(
         None,
-        (
-            "for solids: number of directions all around in which the capacity is searched; default 16 up to 300 blocks; "
-            "above that, only the given direction"
-        ),
+        "for solids: number of directions all around in which the capacity is searched; default 16 up to 300 blocks; "
+        "above that, only the given direction",
         ge=4,
         le=720,
     )
     mortar: Literal["neglected", "ductile"] = key(
         "neglected",
-        (
-            'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints keep both until '
-            "collapse. Mortar is brittle, so this result is an upper bound; the result for dry joints is given too"
-        ),
+        'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints keep both until '
+        "collapse. Mortar is brittle, so this result is an upper bound; the result for dry joints is given too",
     )
     face_law: bool | None = key(
         None,
-        (
-            "for solids: also calculate the capacity with uniform pressure on contact faces, which gives less resistance to "
-            "torsion; default: if up to 80 contacts slide"
-        ),
+        "for solids: also calculate the capacity with uniform pressure on contact faces, which gives less resistance to "
+        "torsion; default: if up to 80 contacts slide",
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
-        None, ("for solids: also calculate the capacity with blocks of half the length in each direction, and with the other bond")
+        None, "for solids: also calculate the capacity with blocks of half the length in each direction, and with the other bond"
     )
     pyramids: int | None = key(
         None,
-        (
-            "for solids: also bound the capacity by friction pyramids with this number of sides, inscribed in and "
-            "circumscribed about the friction cones"
-        ),
+        "for solids: also bound the capacity by friction pyramids with this number of sides, inscribed in and "
+        "circumscribed about the friction cones",
         ge=3,
         le=64,
     )
@@ -138,11 +124,9 @@ class Section(Table):
     )
     toward: Angle | None = key(
         None,
-        (
-            "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, "
-            "or on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
-            "middle of the structure"
-        ),
+        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, "
+        "or on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
+        "middle of the structure",
         ge=-360,
         le=360,
     )
@@ -176,12 +160,10 @@ class Sweep(SpatialLimit):
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
-        about=(
-            "key to vary. A key of [structure] is given without its table, for instance buttress_width, "
-            "right.buttress_width or spans.0.rise; any other key with its table, for instance joints.friction, "
-            "material.compressive_strength or ties.0.yield_force. For solids also `direction`, the direction of the "
-            "load"
-        )
+        about="key to vary. A key of [structure] is given without its table, for instance buttress_width, "
+        "right.buttress_width or spans.0.rise; any other key with its table, for instance joints.friction, "
+        "material.compressive_strength or ties.0.yield_force. For solids also `direction`, the direction of the "
+        "load"
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
     stop: float | str | None = key(None, "last value")
@@ -207,10 +189,8 @@ class Survey(SpatialLimit):
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
     file: str = key(
-        about=(
-            "CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or "
-            "one file of solids"
-        )
+        about="CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or "
+        "one file of solids"
     )
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
 
@@ -321,10 +301,8 @@ class MovingLoad(LimitAnalysisTable):
     )
     train: TrainName | None = key(
         None,
-        (
-            "load model that replaces axles and loads: EN 1991-2, a special vehicle of its UK annex, an axle or bogie of CS "
-            "454, or a tracked vehicle of a military class"
-        ),
+        "load model that replaces axles and loads: EN 1991-2, a special vehicle of its UK annex, an axle or bogie of CS "
+        "454, or a tracked vehicle of a military class",
         source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause); CS 454 7.3.1; STANAG 2021 (verify)",
     )
     gap: Length | None = key(None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0)
@@ -334,7 +312,7 @@ class MovingLoad(LimitAnalysisTable):
     axle_loads: list[Force] | None = key(None, "load of each axle; replaces shares and force", max_length=200)
     uniform: list[UniformLoad] = key([], "uniform loads along the train; these require axle_loads, or axles = []", max_length=50)
     adverse: bool = key(
-        True, ("true: distributed loads act only over adverse lengths, on which they drive the mechanism; false: over their whole length")
+        True, "true: distributed loads act only over adverse lengths, on which they drive the mechanism; false: over their whole length"
     )
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "number of notional lanes that LM1 loads; default: all that fit into the width", ge=1, le=20)
@@ -343,10 +321,8 @@ class MovingLoad(LimitAnalysisTable):
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     serviceability: Serviceability | None = key(
         None,
-        (
-            "permissible limit state: multiple of the train up to which a thrust line exists with stresses below a share of "
-            "the compressive strength; requires compressive_strength"
-        ),
+        "permissible limit state: multiple of the train up to which a thrust line exists with stresses below a share of "
+        "the compressive strength; requires compressive_strength",
     )
     both_ways: bool = key(False, "whether the train also crosses towards the left, with its first axle in front")
     count: int = key(

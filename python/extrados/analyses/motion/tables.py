@@ -56,9 +56,7 @@ class ShakeTable(Analysis):
     low_cut: Frequency = key(0.1, "corner frequency of the high-pass filter that removes drift from the drive signal", gt=0)
     keep: Literal["amplitude", "time"] = key(
         "amplitude",
-        (
-            "how a motion that exceeds the limits is fitted: by compressing time (amplitude kept), or by scaling the "
-            "amplitude down (time kept)"
-        ),
+        "how a motion that exceeds the limits is fitted: by compressing time (amplitude kept), or by scaling the "
+        "amplitude down (time kept)",
         source="thesis 5.3.2",
     )

@@ -495,11 +495,9 @@ def _over_uplift(durations: np.ndarray, pocket: np.ndarray, model: Rocker) -> di
     return {
         "frequency_ratio": 2.0 * np.pi / durations * model.time_unit,
         "pocket_begins_ratio": pocket / model.unit_acceleration,
-        "mode_names": (
-            "mode_I: lowest amplitude that causes collapse, with or without an impact. mode_II: lowest amplitude that causes "
-            "collapse without an impact (mode 2 of Zhang and Makris). If mode_I is lower than mode_II, the block overturns "
-            "after an impact (mode 1 of Zhang and Makris 2001)"
-        ),
+        "mode_names": "mode_I: lowest amplitude that causes collapse, with or without an impact. mode_II: lowest amplitude that causes "
+        "collapse without an impact (mode 2 of Zhang and Makris). If mode_I is lower than mode_II, the block overturns "
+        "after an impact (mode 1 of Zhang and Makris 2001)",
     }
 
 

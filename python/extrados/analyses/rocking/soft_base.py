@@ -138,10 +138,7 @@ def _result(
         "rate": Array(r.rate, ("time",), "rad/s"),
         "sinking": Array(r.sinking, ("time",), "m", "settlement of the base below the centre of the block"),
         "pressed": Array(
-            pressed,
-            ("time", "end"),
-            "m",
-            ("ends of the part of the base in contact, measured from the point below the centre of the block"),
+            pressed, ("time", "end"), "m", "ends of the part of the base in contact, measured from the point below the centre of the block"
         ),
     }
     return result

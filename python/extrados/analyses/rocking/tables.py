@@ -21,10 +21,8 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        (
-            "limit on the number of cells of the map in which joints slide or hinges form at other joints: up to this "
-            "number, these cells are decided with rigid contacts; 0: never"
-        ),
+        "limit on the number of cells of the map in which joints slide or hinges form at other joints: up to this "
+        "number, these cells are decided with rigid contacts; 0: never",
         ge=0,
         le=1_000_000,
         source="Moreau 1988",
@@ -88,10 +86,8 @@ class Rocking(RockingTable, Animated):
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
     hand_over: bool = key(
         True,
-        (
-            "if joints slide or hinges form at other joints, continue the run with rigid contacts from that state; false "
-            "leaves the outcome open"
-        ),
+        "if joints slide or hinges form at other joints, continue the run with rigid contacts from that state; false "
+        "leaves the outcome open",
         source="Moreau 1988",
     )
     thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key(
@@ -132,7 +128,7 @@ class FailureCurves(RockingTable):
     soft_base: ClassVar = True
     variants: list[dict[str, int | float | str]] = key(
         [],
-        ("changes of [structure], with one failure curve for each, such as `{ radius = 5.0 }`; default: only the structure of the deck"),
+        "changes of [structure], with one failure curve for each, such as `{ radius = 5.0 }`; default: only the structure of the deck",
         max_length=24,
     )
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(

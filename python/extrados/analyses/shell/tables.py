@@ -31,17 +31,15 @@ class Settlement(Table):
     wall: str | None = key(None, "name of the wall above the support that moves", min_length=1, max_length=40)
     foot: str | None = key(
         None,
-        (
-            "for a vault: the side of the support (left or right, springing of a dome, north-east and so on of a groin "
-            "vault, a support of a mesh file, or all)"
-        ),
+        "for a vault: the side of the support (left or right, springing of a dome, north-east and so on of a groin "
+        "vault, a support of a mesh file, or all)",
         min_length=1,
         max_length=200,
     )
     x: Range | None = key(None, "[from, to] along the wall; default: the whole wall")
     down: Length = key(0.0, "downward displacement; a negative value is a heave")
     out: Length = key(
-        0.0, ("outward displacement; for a wall: perpendicular to the wall, away from the middle of the plan; for a dome: radial")
+        0.0, "outward displacement; for a wall: perpendicular to the wall, away from the middle of the plan; for a dome: radial"
     )
 
     @model_validator(mode="after")
@@ -70,10 +68,8 @@ class PushStage(Table):
     sense: Literal["+", "-"] = key("+", "of the push")
     base_shear: Force | None = key(
         None,
-        (
-            "base shear at which the stage ends, in its direction and sense; the loads that remain from earlier stages are "
-            "included, so 0 removes an earlier load in the other sense"
-        ),
+        "base shear at which the stage ends, in its direction and sense; the loads that remain from earlier stages are "
+        "included, so 0 removes an earlier load in the other sense",
     )
     target_displacement: Length | None = key(None, "control displacement at which the stage ends, counted from the building without loads")
     stop_fraction: float = key(0.0, "stop when the load drops below this share of the peak of the stage", ge=0, lt=1)
@@ -112,7 +108,7 @@ class FrameRules(Table):
     compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
         "double",
-        ("ends of the piers that are fixed against rotation. double: both ends (between stiff spandrels); single: only the lower end"),
+        "ends of the piers that are fixed against rotation. double: both ends (between stiff spandrels); single: only the lower end",
     )
 
 
@@ -141,48 +137,38 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     directions: list[Literal["+", "-"]] = key(["+"], "senses of the load; each run begins from the same start", min_length=1, max_length=2)
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
-        (
-            "distribution of the horizontal forces. mass: in proportion to the masses; triangular: to the masses times "
-            "their height; modal: to the masses times the first mode in this direction"
-        ),
+        "distribution of the horizontal forces. mass: in proportion to the masses; triangular: to the masses times "
+        "their height; modal: to the masses times the first mode in this direction",
     )
     drives: list[Drive] = key(
         [],
-        ("imposed displacements that replace the pattern: the tops of storeys of walls move by given ratios of one displacement"),
+        "imposed displacements that replace the pattern: the tops of storeys of walls move by given ratios of one displacement",
         max_length=100,
     )
     control: Drive | None = key(
         None,
-        (
-            "place whose mean displacement in the direction is the control displacement; default: all walls on the highest "
-            "level, or all masses if this level is propped"
-        ),
+        "place whose mean displacement in the direction is the control displacement; default: all walls on the highest "
+        "level, or all masses if this level is propped",
     )
     settlements: list[Settlement] = key([], "settlements that increase together with the weight, [[analysis.settlements]]", max_length=100)
     stages: list[PushStage] = key(
         [],
-        (
-            "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either sense, or "
-            "settlements. Each stage keeps the damage of the stages before. The weight is applied first, together with "
-            "`settlements`"
-        ),
+        "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either sense, or "
+        "settlements. Each stage keeps the damage of the stages before. The weight is applied first, together with "
+        "`settlements`",
         min_length=1,
         max_length=50,
     )
     main_stage: str | None = key(
         None,
-        (
-            "name of the stage whose results are reported as the results of the analysis; default: the last stage with a "
-            "horizontal load, otherwise the last stage"
-        ),
+        "name of the stage whose results are reported as the results of the analysis; default: the last stage with a "
+        "horizontal load, otherwise the last stage",
     )
     mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
     constant_damage: bool = key(
         True,
-        (
-            "true: the weight increases from 0 to 1 and causes damage before the horizontal load; false: the horizontal load "
-            "acts on undamaged walls"
-        ),
+        "true: the weight increases from 0 to 1 and causes damage before the horizontal load; false: the horizontal load "
+        "acts on undamaged walls",
         source="thesis 4.3.1",
     )
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
@@ -194,15 +180,13 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "stop when the compliance has increased by this factor")
     crack_closure: bool | None = key(
         None,
-        ("cracks that close regain their stiffness; default: true for rotating cracks followed by equilibrium iterations, otherwise false"),
+        "cracks that close regain their stiffness; default: true for rotating cracks followed by equilibrium iterations, otherwise false",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        (
-            'method if no load is admissible at all points (see sla). "continue": equilibrium iterations in displacement '
-            'control (for rotating cracks, and for joints that slide from the first load on). "load-unload": loads A remain, '
-            "and the greatest lower limit decides; this is the default with stages"
-        ),
+        'method if no load is admissible at all points (see sla). "continue": equilibrium iterations in displacement '
+        'control (for rotating cracks, and for joints that slide from the first load on). "load-unload": loads A remain, '
+        "and the greatest lower limit decides; this is the default with stages",
         source="thesis 4.3.1",
     )
     continuation: Literal["newton", "implicit-explicit"] = key("newton", "equilibrium iterations, see sla")

@@ -204,10 +204,8 @@ def run_curves(
     """
     if model.slides and (options.solution == "incremental" or options.without_equilibrium not in ("continue", "load-unload")):
         raise Refused(
-            (
-                "neither an incremental solution nor other variants can follow joints that slide. Give the joints friction = "
-                '"no-sliding", or use events with load-unload'
-            ),
+            "neither an incremental solution nor other variants can follow joints that slide. Give the joints friction = "
+            '"no-sliding", or use events with load-unload',
             ("joints", "friction"),
         )
     curves = []
@@ -217,10 +215,8 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    (
-                        f"resume_from: the earlier wall has {damage.shape[1]} integration points with its bars, and this wall has "
-                        f"{core_model.points}"
-                    ),
+                    f"resume_from: the earlier wall has {damage.shape[1]} integration points with its bars, and this wall has "
+                    f"{core_model.points}",
                     ("analysis", "resume_from"),
                 )
             core_model.set_damage(damage)
@@ -294,11 +290,9 @@ def bring_on_constant_loads(
         far = float(np.abs(core_model.displacement(0.0)[:, : model.place.shape[1]]).max())
         if not far <= FAR * model.extent:
             raise NotCarried(
-                (
-                    f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
-                    f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and "
-                    "cracks"
-                ),
+                f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
+                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and "
+                "cracks",
                 WHOLE,
             )
     return found, rubs
@@ -474,10 +468,8 @@ class _Run:
             if error.status != status_code("beyond_strength"):
                 raise
             raise Refused(
-                (
-                    "the constant loads alone exceed the strength, and no multiplier of the reference load relieves them. Reduce "
-                    "them, or apply them with damage: constant_damage = true"
-                ),
+                "the constant loads alone exceed the strength, and no multiplier of the reference load relieves them. Reduce "
+                "them, or apply them with damage: constant_damage = true",
                 WHOLE,
             ) from None
         if self.model.driven and not part.steps.any():  # as of a force that moves them

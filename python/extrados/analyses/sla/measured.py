@@ -50,7 +50,7 @@ def read_measured(context: Context, file: str) -> Measured:
     wanted = ("displacement", "load") if "load" in names else ("displacement", "least", "greatest")
     if sorted(names) != sorted(wanted):
         raise Refused(
-            (f"{file}: the columns are {', '.join(names)}; expected displacement with load, or displacement with least and greatest"), KEY
+            f"{file}: the columns are {', '.join(names)}; expected displacement with load, or displacement with least and greatest", KEY
         )
     values = np.empty((len(rows) - 1, len(names)))
     for k, row in enumerate(rows[1:]):

@@ -89,7 +89,7 @@ def _refuse_other(there: Makeup | None, here: Makeup) -> None:
     other = [words[name] for name in words if getattr(there, name) != getattr(here, name)]
     if other:
         raise Refused(
-            (f"resume_from: the earlier wall has different {' and different '.join(other)}, so its damage does not apply to this wall"),
+            f"resume_from: the earlier wall has different {' and different '.join(other)}, so its damage does not apply to this wall",
             RESUME,
         )
 
@@ -112,10 +112,8 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         there, here = get["point_xy"], model.point_xy
         if len(there) != len(here):
             raise Refused(
-                (
-                    f"resume_from: the earlier wall has {len(there)} integration points, and this wall has {len(here)}; the mesh must "
-                    "be the same"
-                ),
+                f"resume_from: the earlier wall has {len(there)} integration points, and this wall has {len(here)}; the mesh must "
+                "be the same",
                 RESUME,
             )
         apart = float(np.abs(there - here).max())
@@ -127,7 +125,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
             raise Refused("resume_from: the earlier run was incremental and has no events from which to continue", RESUME)
         if stored["sla"].get("stages"):
             raise Refused(
-                ("resume_from: the earlier run was in stages, whose supports and loads are not saved: add a stage to that run instead"),
+                "resume_from: the earlier run was in stages, whose supports and loads are not saved: add a stage to that run instead",
                 RESUME,
             )
         _refuse_other(stored["sla"].get("makeup"), makeup(model))
@@ -139,10 +137,8 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         if event >= 1 and "event_step" in get and get["event_step"][event - 1]:
             first = int(np.argmax(get["event_step"])) + 1
             raise Refused(
-                (
-                    f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth. The last event "
-                    f"before these steps is {first - 1}"
-                ),
+                f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth. The last event "
+                f"before these steps is {first - 1}",
                 ("analysis", "resume_event"),
             )
         earlier = None
@@ -170,10 +166,8 @@ def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) ->
         return get["damage_end"].T
     if traceless is not None:
         raise Refused(
-            (
-                f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, because of "
-                f"{traceless}. Saved events: {', '.join(str(e) for e in kept)}. Give others in `states` of the earlier run"
-            ),
+            f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, because of "
+            f"{traceless}. Saved events: {', '.join(str(e) for e in kept)}. Give others in `states` of the earlier run",
             ("analysis", "resume_event"),
         )
     return damage_before(get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1])

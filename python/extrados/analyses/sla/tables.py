@@ -27,11 +27,9 @@ class Load(Table):
     """One load; which keys it takes depends on its kind."""
 
     kind: Literal["gravity", "pressure", "line", "point", "spread", "displacement"] = key(
-        about=(
-            "kind of load. gravity: self-weight; pressure: pressure on boundary edges; line: force per length on "
-            "boundary edges; point: force on the nearest node, or on all nodes of a place in equal parts; spread: "
-            "force spread evenly along an edge; displacement: imposed displacement with ratios"
-        )
+        about="kind of load. gravity: self-weight; pressure: pressure on boundary edges; line: force per length on "
+        "boundary edges; point: force on the nearest node, or on all nodes of a place in equal parts; spread: "
+        "force spread evenly along an edge; displacement: imposed displacement with ratios"
     )
     edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
     x: Range | None = key(None, "x of the place, or its range [from, to]")
@@ -95,23 +93,19 @@ class Stage(Table):
     hold: list[Hold] = key([], "places that are held from the start of this stage on, at the positions that they have then", max_length=100)
     free: list[Hold] = key(
         [],
-        (
-            "supports that are removed in this stage, either supports of the building or of an earlier stage. Their "
-            "reactions are reduced to zero in proportion"
-        ),
+        "supports that are removed in this stage, either supports of the building or of an earlier stage. Their "
+        "reactions are reduced to zero in proportion",
         max_length=100,
     )
     reference: list[Load] = key(
         [],
-        (
-            "loads B of this stage, multiplied by lambda. Or one imposed displacement: places (also supports) move from "
-            "their present positions, and remain held at the end"
-        ),
+        "loads B of this stage, multiplied by lambda. Or one imposed displacement: places (also supports) move from "
+        "their present positions, and remain held at the end",
         max_length=100,
     )
     control: list[Watch] = key(
         [],
-        ("control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under loads B"),
+        "control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under loads B",
         max_length=50,
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
@@ -183,10 +177,7 @@ class CrackOptions(Table):
     )
     ripple: float = key(
         0.05,
-        (
-            "ratio p of the half-width of the teeth to the strength; the load is overestimated by up to about p/2. The "
-            "thesis uses 0.1 and 0.2"
-        ),
+        "ratio p of the half-width of the teeth to the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
@@ -195,18 +186,14 @@ class CrackOptions(Table):
     crack_band: Length | None = key(None, "width h of the crack band; default: by crack_band_rule", gt=0)
     crack_band_rule: Literal["projected", "area"] = key(
         "projected",
-        (
-            "rule for the width of the crack band. projected: the width of the element across its crack; area: the "
-            "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A"
-        ),
+        "rule for the width of the crack band. projected: the width of the element across its crack; area: the "
+        "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A",
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
-        (
-            "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed "
-            "direction from their first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); "
-            "isotropic: isotropic damage"
-        ),
+        "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed "
+        "direction from their first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); "
+        "isotropic: isotropic damage",
         source="Eq. 4.10",
     )
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
@@ -314,10 +301,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     directions: list[Literal["+", "-"]] = key(["+"], "senses of loads B; each run begins from the same start", min_length=1, max_length=2)
     stages: list[Stage] = key(
         [],
-        (
-            "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own supports, loads and "
-            "end, and keeps the damage of the stages before; `constant` is applied first"
-        ),
+        "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own supports, loads and "
+        "end, and keeps the damage of the stages before; `constant` is applied first",
         min_length=1,
         max_length=50,
     )
@@ -339,48 +324,40 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     friction_ripple: float = key(
         0.02,
-        ("ripple p of friction: a joint that slides sticks again after a reverse slip of 4 p times the elastic slip of its friction"),
+        "ripple p of friction: a joint that slides sticks again after a reverse slip of 4 p times the elastic slip of its friction",
         ge=0.001,
         le=0.1,
     )
     crack_closure: bool | None = key(
         None,
-        (
-            "cracks that close regain their stiffness; default true, except for walls with fixed or isotropic cracks, and "
-            "for walls under a single increasing load without constant loads or stages"
-        ),
+        "cracks that close regain their stiffness; default true, except for walls with fixed or isotropic cracks, and "
+        "for walls under a single increasing load without constant loads or stages",
     )
     solution: Literal["events", "incremental"] = key(
         "events",
-        (
-            "solution method. events: one integration point after the other; incremental, for comparison: steps of arc "
-            "length with a secant iteration, in which all overloaded points lose teeth together (the key `events` then "
-            "limits the number of these steps)"
-        ),
+        "solution method. events: one integration point after the other; incremental, for comparison: steps of arc "
+        "length with a secant iteration, in which all overloaded points lose teeth together (the key `events` then "
+        "limits the number of these steps)",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        (
-            'method if no multiplier of loads B is admissible at all points. "continue": equilibrium iterations in displacement '
-            'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": '
-            'loads A remain, and the greatest lower limit decides. "proportional": all loads of the last equilibrium '
-            "state are "
-            'reduced together (intermittent proportional loading). "force-release": the force that a tooth releases acts on '
-            "the other points before the load increases again"
-        ),
+        'method if no multiplier of loads B is admissible at all points. "continue": equilibrium iterations in displacement '
+        'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": '
+        'loads A remain, and the greatest lower limit decides. "proportional": all loads of the last equilibrium '
+        "state are "
+        'reduced together (intermittent proportional loading). "force-release": the force that a tooth releases acts on '
+        "the other points before the load increases again",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
     continuation: Literal["newton", "implicit-explicit"] = key(
         "newton",
-        (
-            "equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
-            "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster "
-            "and less accurate)"
-        ),
+        "equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
+        "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster "
+        "and less accurate)",
         source="Oliver, Huespe and Cante 2008",
     )
     algorithm: Literal["update", "refactor"] = key(
-        "update", ("matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again")
+        "update", "matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again"
     )
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of events whose state is saved, in addition to the peak and the last event", max_length=200
@@ -388,13 +365,11 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     probes: list[Length] = key([], "report the load of the envelope at these displacements", max_length=100)
     measured: str | None = key(
         None,
-        (
-            "CSV file of a test, drawn with the curve and compared with it. Columns: 'displacement (mm)' and 'load (N)', or "
-            "'least (N)' and 'greatest (N)' of several tests; lines that begin with # give the source"
-        ),
+        "CSV file of a test, drawn with the curve and compared with it. Columns: 'displacement (mm)' and 'load (N)', or "
+        "'least (N)' and 'greatest (N)' of several tests; lines that begin with # give the source",
     )
     section_x: list[Length] = key(
-        [], ("draw the admissible ranges of lambda, the multiplier of loads B, along these vertical sections of the wall"), max_length=10
+        [], "draw the admissible ranges of lambda, the multiplier of loads B, along these vertical sections of the wall", max_length=10
     )
     seeds: list[int] = key([], "repeat the analysis with these seeds of the random mesh and strength, for a scatter band", max_length=200)
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
@@ -402,14 +377,11 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
     verification: Verification = key(
         Verification(),
-        (
-            "displacement-based verification of a wall that is loaded by the horizontal forces of its own masses towards +x, "
-            "[analysis.verification]"
-        ),
+        "displacement-based verification of a wall that is loaded by the horizontal forces of its own masses towards +x, "
+        "[analysis.verification]",
     )
     resume_from: str | None = key(
-        None,
-        ("results folder of an earlier run of the same wall, from which this run continues; inside the folder of the deck, or absolute"),
+        None, "results folder of an earlier run of the same wall, from which this run continues; inside the folder of the deck, or absolute"
     )
     resume_event: int | None = key(None, "number of the event of that run before which this run continues; default: the last event", ge=1)
 

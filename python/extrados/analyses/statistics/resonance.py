@@ -236,13 +236,13 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             by_period,
             ("impulse_period_ratio", "impulse_start"),
             "",
-            ("ratio of the supplied energy to the energy at the start, for a start at a quarter of the critical rotation"),
+            "ratio of the supplied energy to the energy at the start, for a start at a quarter of the critical rotation",
         ),
         "energy_by_rotation": Array(
             by_rotation,
             ("impulse_rotation", "impulse_start"),
             "",
-            ("ratio of the supplied energy to the energy at the start, for an impulse of half the natural period (T_p = T_n/2)"),
+            "ratio of the supplied energy to the energy at the start, for an impulse of half the natural period (T_p = T_n/2)",
         ),
     }
     numbers |= {

@@ -39,7 +39,7 @@ class Hazard(Table):
     )
     annual_rates: list[Rate] | None = key(
         None,
-        ("mean annual rates at which these intensities are exceeded, in decreasing order; interpolated linearly between logarithms"),
+        "mean annual rates at which these intensities are exceeded, in decreasing order; interpolated linearly between logarithms",
         min_length=2,
         max_length=1000,
     )
@@ -85,11 +85,9 @@ class Fragility(RockingTable):
     )
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
         "pga",
-        (
-            "intensity measure of the keys levels, cloud and hazard. pga: PGA [g]; pga-ratio: PGA/(g tan alpha); "
-            "pgv-ratio: p PGV/(g tan alpha); sa: SA(sa_period) [g]; arias: Arias intensity [m/s]; scale: the scale "
-            "factor itself. alpha: slenderness angle, p: frequency parameter"
-        ),
+        "intensity measure of the keys levels, cloud and hazard. pga: PGA [g]; pga-ratio: PGA/(g tan alpha); "
+        "pgv-ratio: p PGV/(g tan alpha); sa: SA(sa_period) [g]; arias: Arias intensity [m/s]; scale: the scale "
+        "factor itself. alpha: slenderness angle, p: frequency parameter",
         source="Dimitrakopoulos and Paraskeva 2015",
     )
     levels: list[Level] | None = key(
@@ -108,19 +106,15 @@ class Fragility(RockingTable):
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
         {},
-        (
-            "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; "
-            "of the `density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of "
-            "a compliant base. `imperfection`: deviation of corners and joints of blocks, divided by the shortest joint. "
-            "Sampled by a Sobol sequence"
-        ),
+        "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; "
+        "of the `density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of "
+        "a compliant base. `imperfection`: deviation of corners and joints of blocks, divided by the shortest joint. "
+        "Sampled by a Sobol sequence",
     )
     sensitivity: int | None = key(
         None,
-        (
-            "number of samples (a power of 2) for Sobol indices of `uncertain` values and of the motion; this requires "
-            "samples times (values + 2) runs"
-        ),
+        "number of samples (a power of 2) for Sobol indices of `uncertain` values and of the motion; this requires "
+        "samples times (values + 2) runs",
         ge=16,
         le=2**20,
         source="Saltelli and others 2010",
@@ -133,10 +127,8 @@ class Fragility(RockingTable):
     )
     hand_over: bool = key(
         False,
-        (
-            "if joints slide or hinges form at other joints, decide this run with rigid contacts; false gives the share of "
-            "these runs as a warning"
-        ),
+        "if joints slide or hinges form at other joints, decide this run with rigid contacts; false gives the share of "
+        "these runs as a warning",
         source="Moreau 1988",
     )
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
@@ -265,10 +257,8 @@ class HarmonicMap(RockingTable):
     starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(
         None,
-        (
-            "frequencies in Hz; default: 40 values of omega/p from 1 to 12 (p: frequency parameter of rocking, omega: 2 pi "
-            "times the frequency)"
-        ),
+        "frequencies in Hz; default: 40 values of omega/p from 1 to 12 (p: frequency parameter of rocking, omega: 2 pi "
+        "times the frequency)",
         min_length=1,
         max_length=1000,
     )

@@ -126,17 +126,15 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
         key = ("analysis", "uncertain", name)
         if name == "density" and what == "block" and name not in known:
             raise Refused(
-                ("the densities of blocks cannot vary, because the structure is modelled as one rigid block: remove uncertain.density"), key
+                "the densities of blocks cannot vary, because the structure is modelled as one rigid block: remove uncertain.density", key
             )
         sized = name not in (*STONES, *BASE, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
             raise Refused(f"this {structure.word} has no such value; its values are {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
-            (
-                "uncertain blocks make an arch unsymmetric, and the momentum balance of the thesis does not cover this: give "
-                "another joints.restitution"
-            ),
+            "uncertain blocks make an arch unsymmetric, and the momentum balance of the thesis does not cover this: give "
+            "another joints.restitution",
             ("analysis", "uncertain"),
         )
     if "friction" in names and (building.joints.coefficient is None or any(t.friction is not None for t in building.joints.types)):

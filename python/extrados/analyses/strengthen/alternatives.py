@@ -248,7 +248,7 @@ def _change(context: Context, options: Strengthen, k: int, one: Change) -> Chang
         base, unit = _option(options.options, way), unit_at(kinds.load(kinds.ANALYSES[options.by].table), way)
         if base is None and one.start is None:
             raise Refused(
-                (f"{one.vary}: this key of the options has no plain number. Give it as a number in SI units, or give the key start"),
+                f"{one.vary}: this key of the options has no plain number. Give it as a number in SI units, or give the key start",
                 (*at, "vary"),
             )
         start = base if one.start is None else number_of(one.start, unit, (*at, "start"))

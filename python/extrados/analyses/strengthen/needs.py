@@ -28,7 +28,7 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
         if is_spatial(building):
             if "[supports] abutting_wall" in building.special_keys:
                 yield partial(
-                    _refuse, ("limit analysis in space neglects an abutting wall: remove abutting_wall"), ("supports", "abutting_wall")
+                    _refuse, "limit analysis in space neglects an abutting wall: remove abutting_wall", ("supports", "abutting_wall")
                 )
             yield partial(refuse_in_space, context, options)
             yield lambda: building.refuse_weightless(building.solids())

@@ -34,10 +34,8 @@ def arrays_of(context: Context, before: Worth, sized: list[Sized]) -> dict[str, 
             "range",
             places,
             3,
-            (
-                "x, y of the middle of each tie at each possible place [m], and required force [N]; infinite: no force is "
-                "sufficient at this place"
-            ),
+            "x, y of the middle of each tie at each possible place [m], and required force [N]; infinite: no force is "
+            "sufficient at this place",
         ),
         **packed("stones", rest, "m", "blocks of the existing building (0/block) and of each alternative (number/block)"),
         **packed("stones_moved", moved, "m", "the same blocks, moved by the governing mechanism"),

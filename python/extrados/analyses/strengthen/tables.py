@@ -72,10 +72,8 @@ class TieOption(Tie):
     anchorage: Anchorage | None = key(None, "strengths of bar and anchorage, from which their checks are calculated")
     beam_weight: Force | None = key(
         None,
-        (
-            "weight of a ring beam along the tie, which is accelerated with the tie: half of the weight acts on the block at "
-            "each end; for a hoop, the weight is uniform along the hoop"
-        ),
+        "weight of a ring beam along the tie, which is accelerated with the tie: half of the weight acts on the block at "
+        "each end; for a hoop, the weight is uniform along the hoop",
         gt=0,
     )
 
@@ -121,10 +119,8 @@ class Change(Table):
 
     name: str | None = key(None, "name of the intervention; default: the key", max_length=80)
     vary: str = key(
-        about=(
-            "key of the deck with its table, for instance structure.buttress_width, material.compressive_strength, "
-            "joints.friction or dampers.0.damping; for a key of the options below, begin with `options.`"
-        )
+        about="key of the deck with its table, for instance structure.buttress_width, material.compressive_strength, "
+        "joints.friction or dampers.0.damping; for a key of the options below, begin with `options.`"
     )
     start: float | str | None = key(None, "value without the intervention; default: that of the deck")
     stop: float | str = key(about='greatest change considered, in the unit of the key or as text such as "40 cm"')
@@ -154,10 +150,8 @@ class Strengthen(LimitAnalysisTable):
     acceleration: Acceleration | None = key(None, "target: constant horizontal acceleration that the building must carry", gt=0)
     safety_factor: float | None = key(
         None,
-        (
-            "target: ratio of capacity to demand. By limit analysis, demand is the peak of [motion]; by a code, the ratio is "
-            "its safety index (zeta_E, %NBS / 100)"
-        ),
+        "target: ratio of capacity to demand. By limit analysis, demand is the peak of [motion]; by a code, the ratio is "
+        "its safety index (zeta_E, %NBS / 100)",
         gt=0,
         le=100,
     )

@@ -117,10 +117,8 @@ class LayerTable(Table):
     name: str = key(about="name of the layer, in upper or lower case", max_length=255)
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
-        (
-            "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines "
-            "along joints, which [[joints.types]] can then name by this layer; left-out: this layer is not read"
-        ),
+        "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines "
+        "along joints, which [[joints.types]] can then name by this layer; left-out: this layer is not read",
     )
     material: str | None = key(None, "name in [materials] of the material of the blocks on this layer")
 
@@ -146,7 +144,7 @@ class Blocks(Structure):
         None, "unit of a file that gives none (DXF without $INSUNITS, COMPAS, OBJ, STL)"
     )
     up: Literal["y", "z"] | None = key(
-        None, ("axis that points up in a file of solids; default z. With y, the x axis remains and the z axis of the file becomes -y")
+        None, "axis that points up in a file of solids; default z. With y, the x axis remains and the z axis of the file becomes -y"
     )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
     layer: list[LayerTable] = key([], "layers of the drawing with a material or another meaning, [[structure.layer]]", max_length=200)
@@ -157,29 +155,23 @@ class Blocks(Structure):
     block: list[BlockTable] | None = key(None, "blocks of the structure, if no file is given", max_length=20000)
     ground: list[list[Length]] | None = key(
         None,
-        (
-            "segments [x1, y1, x2, y2] that support the structure, in the coordinates of the blocks; default: the ground of "
-            "the file, otherwise the lowest level"
-        ),
+        "segments [x1, y1, x2, y2] that support the structure, in the coordinates of the blocks; default: the ground of "
+        "the file, otherwise the lowest level",
         max_length=2000,
     )
     foundation_levels: list[Length] | None = key(
         None,
-        (
-            "heights, in the coordinates of the blocks, at which horizontal soles without a block below are supports "
-            "(foundations at different levels)"
-        ),
+        "heights, in the coordinates of the blocks, at which horizontal soles without a block below are supports "
+        "(foundations at different levels)",
         min_length=1,
         max_length=100,
     )
     contact_tolerance: Length = key(
         1e-4,
-        (
-            "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value "
-            "are ignored; contacts of solids that are narrower than this value carry no force. `check` reports the "
-            "tolerance that would close each gap. The default for solids is at most 1/10000 of "
-            "their size"
-        ),
+        "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value "
+        "are ignored; contacts of solids that are narrower than this value carry no force. `check` reports the "
+        "tolerance that would close each gap. The default for solids is at most 1/10000 of "
+        "their size",
         gt=0,
         le=0.1,
     )

@@ -29,14 +29,12 @@ class Span(Table):
 
     shape: Literal["segmental", "three-centred", "pointed", "elliptical", "parabolic", "surveyed"] = key(
         "segmental",
-        ("shape of the intrados; a segmental arch with a rise of half the span is a semicircle; for a surveyed shape, give `intrados`"),
+        "shape of the intrados; a segmental arch with a rise of half the span is a semicircle; for a surveyed shape, give `intrados`",
     )
     intrados: list[list[Length]] | None = key(
         None,
-        (
-            'measured points [x, y] of the intrados from springing to springing (both at y = 0), for shape = "surveyed"; the '
-            "points then give span and rise"
-        ),
+        'measured points [x, y] of the intrados from springing to springing (both at y = 0), for shape = "surveyed"; the '
+        "points then give span and rise",
         min_length=4,
         max_length=2000,
     )

@@ -58,7 +58,7 @@ class Chimney(Spatial):
     rings: int = key(about="number of rings from the ground to the top", ge=1, le=400)
     blocks: int = key(
         1,
-        ("number of blocks in a ring; every other ring is offset by half a block. 1: each ring is one body, for instance if bands tie it"),
+        "number of blocks in a ring; every other ring is offset by half a block. 1: each ring is one body, for instance if bands tie it",
         ge=1,
         le=100,
     )

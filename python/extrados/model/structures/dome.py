@@ -75,10 +75,8 @@ class Dome(Spatial):
     lunes: int = key(about="stones in a ring", ge=4, le=400)
     bond: Literal["lunes", "running"] = key(
         "lunes",
-        (
-            "position of the head joints. lunes: above each other, as between the lunes of a cracked dome; running: "
-            "offset by half a block in every other ring"
-        ),
+        "position of the head joints. lunes: above each other, as between the lunes of a cracked dome; running: "
+        "offset by half a block in every other ring",
     )
     thickness_factor: float = key(1.0, "ratio of effective to real thickness; 0.8 for worn corners", gt=0, le=1)
 

@@ -20,7 +20,7 @@ class Fill(Table):
     cohesion: Stress = key(0.0, "cohesion of the soil, which increases the passive pressure", ge=0)
     passive: float = key(
         0.0,
-        ("share of the passive pressure by Rankine that acts on blocks moving into the fill; programs for arch bridges use 0.5"),
+        "share of the passive pressure by Rankine that acts on blocks moving into the fill; programs for arch bridges use 0.5",
         source="Gilbert and Melbourne 1994",
         ge=0,
         le=1,

@@ -79,10 +79,8 @@ class Column(Structure):
     )
     dowel_reach: Length | None = key(
         None,
-        (
-            "for `dem`: length of each dowel in the drum above. A dowel is lost if the drums separate by more than this "
-            "length; default: never lost"
-        ),
+        "for `dem`: length of each dowel in the drum above. A dowel is lost if the drums separate by more than this "
+        "length; default: never lost",
         gt=0,
     )
 

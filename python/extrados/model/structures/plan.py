@@ -110,12 +110,10 @@ class Corner(Table):
 
     walls: list[str] = key(about="names of the two walls; the wall named second abuts on the wall named first", min_length=2, max_length=2)
     bond: Literal["bonded", "weak", "joint", "open"] = key(
-        about=(
-            "connection of the two walls. bonded: one masonry; weak: the elements of the wall named second have a "
-            "lower strength beside the other wall; joint: a joint of [joints] between the walls, which opens, slides "
-            "up and down, and crushes; "
-            "open: connected only by floors"
-        )
+        about="connection of the two walls. bonded: one masonry; weak: the elements of the wall named second have a "
+        "lower strength beside the other wall; joint: a joint of [joints] between the walls, which opens, slides "
+        "up and down, and crushes; "
+        "open: connected only by floors"
     )
     strength: float = key(0.5, "for a weak corner: ratio of its tensile strength to that of the wall", gt=0, le=1)
 
@@ -141,11 +139,9 @@ class StoreyFloor(Table):
     storey: int = key(about="number of the storey below the floor", ge=1)
     kind: Literal["rigid", "flexible", "joists", "none"] = key(
         "flexible",
-        (
-            "kind of floor. flexible: membrane with a stiffness of young times thickness; rigid: as a concrete slab of 30 "
-            "GPa and 0.2 m, practically rigid; joists: bars across the floor in one direction; none: only the load of the "
-            "floor"
-        ),
+        "kind of floor. flexible: membrane with a stiffness of young times thickness; rigid: as a concrete slab of 30 "
+        "GPa and 0.2 m, practically rigid; joists: bars across the floor in one direction; none: only the load of the "
+        "floor",
     )
     walls: list[str] | None = key(
         None, "names of the walls around the floor, in order; default: all walls of the storey, if they form one ring", min_length=3
@@ -159,11 +155,9 @@ class StoreyFloor(Table):
     pitch: Angle | None = key(None, "slope of a roof from the horizontal", gt=0, le=75)
     roof: Literal["rafters", "trusses", "purlins"] | None = key(
         None,
-        (
-            "structure of a roof with a pitch. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and "
-            "push them apart, because nothing ties them; trusses: rafters with ties, without thrust; purlins: beams along the ridge "
-            "between the two walls of `bears_on`, without thrust"
-        ),
+        "structure of a roof with a pitch. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and "
+        "push them apart, because nothing ties them; trusses: rafters with ties, without thrust; purlins: beams along the ridge "
+        "between the two walls of `bears_on`, without thrust",
     )
     bears_on: list[str] = key(
         [], "walls that carry the load, in proportion to their length; default: all walls around the floor", max_length=100
@@ -288,9 +282,7 @@ class Plan(Structure):
     { name = "back", start = [6, 5], end = [0, 5], thickness = 0.3 },
     { name = "left", start = [0, 5], end = [0, 0], thickness = 0.3 },
 ]""",
-        "floors": (
-            '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]'
-        ),
+        "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
     }
     storeys: list[Length] = key(about="height of each storey, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)

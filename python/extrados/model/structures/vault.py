@@ -94,7 +94,7 @@ class Vault(PresetStructure):
     word: ClassVar = "vault on its buttresses"
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
-        None, ("all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; other keys overrule them")
+        None, "all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; other keys overrule them"
     )
     radius: Length = key(about="radius of the centre line of the vault", gt=0)
     thickness: Length = key(about="thickness of the vault", gt=0)

@@ -186,7 +186,7 @@ class MeshFile(MeshedWall):
     )
     groups: list[MeshGroup] = key(
         [],
-        ("for shells in space: properties of the groups of the file, [[structure.groups]]; a later group overrides an earlier one"),
+        "for shells in space: properties of the groups of the file, [[structure.groups]]; a later group overrides an earlier one",
         max_length=1000,
     )
     scale: float = key(1.0, "length in metres of one unit of the file", gt=0, le=1e6)

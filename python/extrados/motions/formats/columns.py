@@ -77,10 +77,8 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
     else:
         raise text.error(
             rows[0][0],
-            (
-                f"the row has {width} columns, and the first is not a time with equal steps. If each column is a component, give "
-                f'channel = 1 to {width}. If the numbers of a row follow one another, give columns = "series"'
-            ),
+            f"the row has {width} columns, and the first is not a time with equal steps. If each column is a component, give "
+            f'channel = 1 to {width}. If the numbers of a row follow one another, give columns = "series"',
         )
     if not timed or columns == "series":
         _refuse_header_numbers(text, rows, data)
@@ -171,10 +169,8 @@ def _refuse_factor(text: Lines, said: str) -> None:
     if found and float(found[1]) != 1.0:
         raise text.error(
             0,
-            (
-                f"the header states '{found[0].strip()}', but the program does not apply a factor from a header: multiply the "
-                "values by this factor and delete these words"
-            ),
+            f"the header states '{found[0].strip()}', but the program does not apply a factor from a header: multiply the "
+            "values by this factor and delete these words",
         )
 
 
@@ -188,10 +184,8 @@ def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data:
         at = rows[digits.index(True)][0]
         raise text.error(
             at,
-            (
-                f"'{text[at].strip()[:40]}' contains whole numbers, but the samples have decimals, so this line seems to belong "
-                f"to a header; {hint}"
-            ),
+            f"'{text[at].strip()[:40]}' contains whole numbers, but the samples have decimals, so this line seems to belong "
+            f"to a header; {hint}",
         )
     left = sum(len(row) for _, row in rows)
     for k, (at, row) in enumerate(rows[:HEAD]):
@@ -199,10 +193,8 @@ def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data:
         if any(re.fullmatch(r"\d{2,9}", token) and int(token) in (left, left + len(row) - 1, len(rows) - k - 1) for token in row):
             raise text.error(
                 at,
-                (
-                    f"'{text[at].strip()[:40]}' contains a number equal to the count of the values that follow, so this line seems to "
-                    f"belong to a header; {hint}"
-                ),
+                f"'{text[at].strip()[:40]}' contains a number equal to the count of the values that follow, so this line seems to "
+                f"belong to a header; {hint}",
             )
     per = max(1, data.size // max(len(rows), 1)) if data.shape[1] == 1 else 1
     if len(data) >= 6 * HEAD * per:
@@ -211,10 +203,8 @@ def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data:
             at = rows[int(peaks[0].argmax()) // per][0]
             raise text.error(
                 at,
-                (
-                    f"'{text[at].strip()[:40]}' exceeds twice the greatest value below the first {HEAD} rows, so this line seems to "
-                    f"belong to a header; {hint}"
-                ),
+                f"'{text[at].strip()[:40]}' exceeds twice the greatest value below the first {HEAD} rows, so this line seems to "
+                f"belong to a header; {hint}",
             )
 
 
@@ -316,10 +306,8 @@ def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, roun
     if not SHORTEST_STEP <= step < LONGEST_STEP:
         raise text.error(
             rows[0][0],
-            (
-                f"the time step is {step:g} s, which is not plausible for an accelerogram. If the times are in milliseconds, name "
-                "their column time_ms. If the column contains sample numbers, delete the column"
-            ),
+            f"the time step is {step:g} s, which is not plausible for an accelerogram. If the times are in milliseconds, name "
+            "their column time_ms. If the column contains sample numbers, delete the column",
         )
     return float(np.round(step, 9)), uneven
 

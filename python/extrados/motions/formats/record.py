@@ -128,10 +128,8 @@ class Lines:
         if len(decimals) == 1 and len(last.partition(".")[2]) < max(decimals):
             raise self.error(
                 at,
-                (
-                    f"the last number '{last[:30]}' has fewer decimals than the numbers above, so the file is cut off there: complete "
-                    "this number, or delete the last line"
-                ),
+                f"the last number '{last[:30]}' has fewer decimals than the numbers above, so the file is cut off there: complete "
+                "this number, or delete the last line",
             )
 
     def blanks(self, start: int) -> list[tuple[int, list[str]]]:

@@ -11,19 +11,15 @@ class FrameOptions(Table):
 
     heights: Literal["dolce", "lagomarsino"] = key(
         "dolce",
-        (
-            "deformable height of piers. dolce: effective height by Dolce; lagomarsino: mean height of the adjacent "
-            "openings (for outer piers: mean of opening and storey)"
-        ),
+        "deformable height of piers. dolce: effective height by Dolce; lagomarsino: mean height of the adjacent "
+        "openings (for outer piers: mean of opening and storey)",
         source="Dolce 1991; Lagomarsino and others 2013",
     )
     shear: Literal["least", "mohr-coulomb", "turnsek-cacovic", "reversed", "damage", "none"] = key(
         "least",
-        (
-            "shear strength of piers. mohr-coulomb: on the compressed part; turnsek-cacovic; least: the lesser of both; "
-            "reversed: as least, with cohesion only on the part that opens in neither sense; damage: friction with damage "
-            "and softening; none: flexure only"
-        ),
+        "shear strength of piers. mohr-coulomb: on the compressed part; turnsek-cacovic; least: the lesser of both; "
+        "reversed: as least, with cohesion only on the part that opens in neither sense; damage: friction with damage "
+        "and softening; none: flexure only",
         source="NTC 2018, 7.8.2.2; Circ. 7/2019, C8.7.1.3.1; Gambarotta and Lagomarsino 1997",
     )
     cohesion: Stress | None = key(None, "shear strength f_v0 of bed joints without compression; default: that of [joints]", gt=0)
@@ -76,10 +72,8 @@ class FrameOptions(Table):
     )
     flanges: Literal["effective", "whole", "none"] = key(
         "effective",
-        (
-            "flanges at corners. effective: a wall lifts at most the weight on the effective width of the other wall; "
-            "whole: the weight on the whole pier of the other wall; none: corners transfer no vertical force"
-        ),
+        "flanges at corners. effective: a wall lifts at most the weight on the effective width of the other wall; "
+        "whole: the weight on the whole pier of the other wall; none: corners transfer no vertical force",
         source="after EN 1996-1-1, 5.5.3",
     )
     softening: float = key(0.5, 'beta of shear = "damage": exponent of the resistance beyond the peak', gt=0, lt=2)

@@ -174,10 +174,8 @@ class _Maker(Division):
         if any(sign < 0.0 for sign in self.turned.values()):
             w = next(w for w, sign in self.turned.items() if sign < 0.0)
             raise BadGeometry(
-                (
-                    f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line with opposite directions: give "
-                    "both the same direction"
-                ),
+                f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line with opposite directions: give "
+                "both the same direction",
                 ("structure", "walls", w),
             )
         count = 0

@@ -23,31 +23,25 @@ class MeshOptions(Table):
     """Kind, size and pattern of the elements."""
 
     size: Length | None = key(
-        None, ("required size of the elements; default: 1/20 of the lesser side of the wall, or 1/8 of the median joint for blocks"), gt=0
+        None, "required size of the elements; default: 1/20 of the lesser side of the wall, or 1/8 of the median joint for blocks", gt=0
     )
     joints: Literal["interfaces", "rows"] | None = key(
         None,
-        (
-            "for blocks: joints without thickness (interfaces), which open and slide, or thin rows of elements, which only "
-            "open; default: interfaces. A panel is divided into blocks if this key and its unit are given"
-        ),
+        "for blocks: joints without thickness (interfaces), which open and slide, or thin rows of elements, which only "
+        "open; default: interfaces. A panel is divided into blocks if this key and its unit are given",
     )
     joint_thickness: Length | None = key(
         None,
-        (
-            "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, and at most 1/5 of "
-            "the shortest element along a joint. By default, interfaces have the stiffness of the block material over this "
-            "thickness"
-        ),
+        "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, and at most 1/5 of "
+        "the shortest element along a joint. By default, interfaces have the stiffness of the block material over this "
+        "thickness",
         gt=0,
     )
     element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; blocks also get triangles where quadrilaterals do not fit")
     pattern: Literal["structured", "random"] = key(
         "structured",
-        (
-            "pattern of the mesh. structured: structured grid; random: triangles on randomly moved points (without mesh "
-            "lines that cracks could follow)"
-        ),
+        "pattern of the mesh. structured: structured grid; random: triangles on randomly moved points (without mesh "
+        "lines that cracks could follow)",
     )
     seed: int = key(1, "of the random pattern", ge=0, le=2**31 - 1)
     refine: list[Refinement] = key([], "ranges with smaller elements", max_length=100)

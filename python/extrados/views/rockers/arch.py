@@ -116,10 +116,8 @@ class ArchModel:
             least = minimum_thickness(float(np.degrees(a.embrace)), a.voussoirs)
             proof = without_restraints(cannot_stand(self.limit))
             raise CannotStand(
-                (
-                    f"the effective thickness is {a.thickness:.4g} m (t/R {a.thickness / a.radius:.4f}). The least thickness for "
-                    f"{np.degrees(a.embrace):g} deg and {a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f}); {proof}"
-                ),
+                f"the effective thickness is {a.thickness:.4g} m (t/R {a.thickness / a.radius:.4f}). The least thickness for "
+                f"{np.degrees(a.embrace):g} deg and {a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f}); {proof}",
                 proof.motion,
                 proof.neglects,
             )
@@ -163,10 +161,8 @@ class ArchModel:
         value = self.impacts.by_rule[self.rule]
         if value < 0.0:
             raise NoView(
-                (
-                    f'the impact rule "{self.rule}" gives c_v = {value:.3f}, with which the mirrored mechanism would have to close '
-                    f'further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}'
-                ),
+                f'the impact rule "{self.rule}" gives c_v = {value:.3f}, with which the mirrored mechanism would have to close '
+                f'further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}',
                 ("joints", "restitution"),
             )
         return min(value, 1.0)

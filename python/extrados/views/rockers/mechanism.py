@@ -110,10 +110,8 @@ class MechanismModel:
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
                 raise NoView(
-                    (
-                        f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis gives "
-                        f"{state.gamma:.6g} g: a load on the structure is not part of its mass"
-                    ),
+                    f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis gives "
+                    f"{state.gamma:.6g} g: a load on the structure is not part of its mass",
                     WHOLE,
                 )
             made.append(table)
@@ -184,10 +182,8 @@ class MechanismModel:
         if rule == "inelastic":
             if self.energy_kept is None:
                 raise NoView(
-                    (
-                        f'the impact rule "inelastic" is limited to {MOST_BLOCKS} blocks; give [joints] restitution = "energy-safe" or a '
-                        "number"
-                    ),
+                    f'the impact rule "inelastic" is limited to {MOST_BLOCKS} blocks; give [joints] restitution = "energy-safe" or a '
+                    "number",
                     ("joints", "restitution"),
                 )
             right, left = np.sqrt(self.energy_kept)

@@ -17,19 +17,15 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
     assert building.structure is not None
     if building.structure.rocks_as == "stack":
         raise NoView(
-            (
-                "two stacked blocks rock in two coordinates. Only `rocking`, `fragility`, `failure-domain`, `failure-curves`, "
-                "`harmonic-map` and `dem` can follow them"
-            ),
+            "two stacked blocks rock in two coordinates. Only `rocking`, `fragility`, `failure-domain`, `failure-curves`, "
+            "`harmonic-map` and `dem` can follow them",
             ("structure", "kind"),
         )
     if building.supports.stiffness is not None:
         raise NoView(
-            (
-                "on a compliant base a building moves in more than one coordinate. Only `rocking`, `fragility`, "
-                "`failure-domain`, `failure-curves` and `harmonic-map` (of one block, column or wall) and `dem` can follow it. "
-                "Remove the stiffness, or give it only to these analyses ([analysis.supports] below them)"
-            ),
+            "on a compliant base a building moves in more than one coordinate. Only `rocking`, `fragility`, "
+            "`failure-domain`, `failure-curves` and `harmonic-map` (of one block, column or wall) and `dem` can follow it. "
+            "Remove the stiffness, or give it only to these analyses ([analysis.supports] below them)",
             ("supports", "stiffness"),
         )
     block = rocks_as_block(building)
@@ -53,10 +49,8 @@ def refuse_soft_base(building: Masonry) -> None:
     key = ("supports", "stiffness")
     if not rocks_as_block(building):
         raise NoView(
-            (
-                "rocking can follow a compliant base only under one block, column or wall. Remove the stiffness, or give it only "
-                "to the analysis `dem` ([analysis.supports] below it), which follows a compliant base under any blocks"
-            ),
+            "rocking can follow a compliant base only under one block, column or wall. Remove the stiffness, or give it only "
+            "to the analysis `dem` ([analysis.supports] below it), which follows a compliant base under any blocks",
             key,
         )
     if building.restraints or building.supports.abutting_wall is not None:
@@ -64,10 +58,8 @@ def refuse_soft_base(building: Masonry) -> None:
     if building.joints.energy_ratio is not None or "restitution" in building.joints.model_fields_set:
         name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
         raise NoView(
-            (
-                "on a compliant base, springs and dashpots determine the impacts: remove restitution and energy_ratio, and give "
-                "[supports] damping_ratio"
-            ),
+            "on a compliant base, springs and dashpots determine the impacts: remove restitution and energy_ratio, and give "
+            "[supports] damping_ratio",
             ("joints", name),
         )
 
@@ -78,10 +70,8 @@ def refuse_stack(building: Masonry, linear: bool = False) -> None:
         raise NoView("rocking of two stacked blocks allows no ties, dampers, hinges or wall: remove them", key)
     if building.supports.stiffness is not None:
         raise NoView(
-            (
-                "two stacked blocks rock on rigid ground here: remove the stiffness, or use `dem`, which follows a compliant "
-                "base under any blocks"
-            ),
+            "two stacked blocks rock on rigid ground here: remove the stiffness, or use `dem`, which follows a compliant "
+            "base under any blocks",
             ("supports", "stiffness"),
         )
     if linear:

@@ -167,10 +167,8 @@ def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], joints: lis
         if len(loose):
             x, y, z = xyz[loose].mean(axis=(0, 1))
             raise BadGeometry(
-                (
-                    f"wall '{part.name}': the part around x {x:.3g}, y {y:.3g}, z {z:.3g} m is not supported, because no masonry "
-                    "connects it with the ground"
-                ),
+                f"wall '{part.name}': the part around x {x:.3g}, y {y:.3g}, z {z:.3g} m is not supported, because no masonry "
+                "connects it with the ground",
                 ("structure", "walls", part.wall),
             )
     piece = pieces(len(xyz), parts, bars, joints)
@@ -436,10 +434,8 @@ def _strength(plan: Plan, building: Description, name: str, size: float) -> dict
         raise BadGeometry(f"joint '{name}': compressive_strength and crushing_energy require each other", ("joints",))
     if not own["tension"] > 0.0:
         raise BadGeometry(
-            (
-                f"joint '{name}' has no tension. A joint between shells must hold until it opens: give a tension, however small, "
-                "with a fracture_energy"
-            ),
+            f"joint '{name}' has no tension. A joint between shells must hold until it opens: give a tension, however small, "
+            "with a fracture_energy",
             ("joints", "tension"),
         )
     if own["friction"] == NO_SLIDING:
@@ -470,10 +466,8 @@ def _between(
     key = ("structure", "corners", plan.corners.index(corner))
     if MEETS < t < wall.length - MEETS:
         raise BadGeometry(
-            (
-                f"walls: wall '{wall.name}' passes through wall '{names[one]}'. A joint requires that wall '{wall.name}' "
-                f"ends on wall '{names[one]}'"
-            ),
+            f"walls: wall '{wall.name}' passes through wall '{names[one]}'. A joint requires that wall '{wall.name}' "
+            f"ends on wall '{names[one]}'",
             key,
         )
     first = t <= MEETS  # it begins there
