@@ -344,7 +344,7 @@ def failure_of_state(wall: Wall, answer: dict[str, Any], arrays: dict[str, Any])
     at = int(np.flatnonzero(arrays["state_event"] == answer["greatest_load_event"])[0])
     node, moved = arrays["node"], arrays["state_displacement"][at]
     levels = np.round(node[:, 1], 6)
-    heights = np.unique(levels)
+    heights = np.array([z for z in np.unique(levels) if np.ptp(node[levels == z, 0]) > 0.5 * wall.length])
     turns = np.array([np.polyfit(node[levels == z, 0], moved[levels == z, 1], 1)[0] for z in heights])
     rotation = -float(0.5 * (turns[1:] + turns[:-1]) @ np.diff(heights))
     slips: dict[float, list[float]] = {}

@@ -66,27 +66,18 @@ contains
    !> Supports that move
    subroutine moves(handle, nmove, body, move, status)
       use common_handles, only : handle_leave
-      use common_status, only : status_ok, status_out_of_memory
-      use dem_plane_handle, only : built_blocks, blocks_take, set_moves
-      use dem_loading, only : support_move
+      use common_status, only : status_ok
+      use dem_plane_handle, only : built_blocks, blocks_take
+      use dem_loading, only : accept_moves
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nmove
       integer(c_int), intent(in) :: body(nmove)               !! support that moves
       real(c_double), intent(in) :: move(5, nmove)            !! dx, dy [m], turn [rad], start, duration [s]
       integer(c_int), intent(out) :: status
       type(built_blocks), pointer :: built
-      type(support_move), allocatable :: given(:)
-      integer :: k, failed
       call blocks_take(handle, built, status)
       if (status /= status_ok) return
-      allocate (given(nmove), stat=failed)
-      status = status_out_of_memory
-      if (failed == 0) then
-         do k = 1, nmove
-            given(k) = support_move(int(body(k)), move(1:3, k), move(4, k), move(5, k))
-         end do
-         call set_moves(built, given, status)
-      end if
+      call accept_moves(built%load, body, move, built%set%item%fixed, status)
       call handle_leave(handle)
    end subroutine moves
 

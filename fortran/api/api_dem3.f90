@@ -1,13 +1,13 @@
 !> Discrete elements in space: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws (api_dem_run), joints, dowels if any, surroundings; then the run (api_dem_run); then bodies, attitudes,
+!> create, laws (api_dem_run), joints, moves and dowels if any, surroundings; then the run (api_dem_run); then bodies, attitudes,
 !> slips.
 !> Body numbers are 1-based; mass 0 marks a support.
 module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, joints, dowels, surroundings, bodies, attitudes, slips
+   public :: create, joints, moves, dowels, surroundings, bodies, attitudes, slips
 
 contains
 
@@ -48,6 +48,23 @@ contains
       call set_joints(built, joint, status)
       call handle_leave(handle)
    end subroutine joints
+
+   !> Supports that move, without rotation
+   subroutine moves(handle, nmove, body, move, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem3_handle, only : built_solids, set_moves, solids_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nmove
+      integer(c_int), intent(in) :: body(nmove)               !! support that moves
+      real(c_double), intent(in) :: move(5, nmove)            !! dx, dy, dz [m], start, duration [s]
+      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: built
+      call solids_take(handle, built, status)
+      if (status /= status_ok) return
+      call set_moves(built, body, move, status)
+      call handle_leave(handle)
+   end subroutine moves
 
    !> Dowels across joints
    subroutine dowels(handle, n, body, place, axis, value, status)

@@ -2,14 +2,16 @@
 module dem_loading
    use common_kinds, only : wp, pi
    use common_signal, only : signal
+   use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_out_of_memory
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: loading, support_move, mean_acceleration, move_rate, movement_end
+   public :: loading, support_move, accept_moves, mean_acceleration, move_rate, movement_end
 
-   !> A support moves by (dx, dy, turn) between two times, starting and ending at rest
+   !> A support moves by (dx, dy, turn), in space by (dx, dy, dz), between two times, starting and ending at rest
    type :: support_move
       integer :: body = 0
-      real(wp) :: shift(3) = 0.0_wp        !! [m, m, rad]
+      real(wp) :: shift(3) = 0.0_wp        !! [m, m, rad], in space [m]
       real(wp) :: start = 0.0_wp           !! [s]
       real(wp) :: duration = 1.0_wp        !! [s]
    end type support_move
@@ -22,6 +24,30 @@ module dem_loading
    end type loading
 
 contains
+
+   !> Take over movements of supports: bodies that are `fixed`
+   subroutine accept_moves(load, body, value, fixed, status)
+      type(loading), intent(inout) :: load
+      integer(c_int), intent(in) :: body(:)   !! (moves), 1-based
+      real(wp), intent(in) :: value(:, :)     !! (5, moves) shift, see support_move; start, duration [s]
+      logical, intent(in) :: fixed(:)         !! (bodies)
+      integer(c_int), intent(out) :: status
+      type(support_move), allocatable :: move(:)
+      integer :: k, failed
+      status = status_bad_index
+      if (any(body < 1) .or. any(body > size(fixed))) return
+      if (.not. all(fixed(body))) return
+      status = status_invalid_argument
+      if (.not. all(value(5, :) > 0.0_wp)) return
+      status = status_out_of_memory
+      allocate (move(size(body)), stat=failed)
+      if (failed /= 0) return
+      do k = 1, size(body)
+         move(k) = support_move(int(body(k)), value(1:3, k), value(4, k), value(5, k))
+      end do
+      call move_alloc(move, load%move)
+      status = status_ok
+   end subroutine accept_moves
 
    !> Mean ground acceleration between two times: exact across jumps, so that a pulse gives its velocity
    pure subroutine mean_acceleration(ground, segment, t0, t1, mean)

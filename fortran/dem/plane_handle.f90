@@ -7,7 +7,7 @@ module dem_plane_handle
    use dem_bodies, only : body_set, body_set_new, body_turn
    use dem_contacts, only : overlap, measure_overlap
    use dem_handle, only : built_model, count_ties, model_register, model_take
-   use dem_loading, only : loading, support_move
+   use dem_loading, only : loading
    use dem_model, only : block_model
    use dem_plane_run, only : block_simulation
    use dem_rigid, only : set_rigid
@@ -16,7 +16,7 @@ module dem_plane_handle
    implicit none
    private
    public :: built_blocks, blocks_new, blocks_take, blocks_run_take
-   public :: set_joints, set_start, set_moves, closed_contacts
+   public :: set_joints, set_start, closed_contacts
 
    type, extends(built_model) :: built_blocks
       type(body_set) :: set
@@ -153,28 +153,6 @@ contains
       built%set%item%vy = rate(2, :)
       built%set%item%spin = rate(3, :)
    end subroutine set_start
-
-   !> Supports that move
-   subroutine set_moves(built, move, status)
-      type(built_blocks), intent(inout) :: built
-      type(support_move), intent(in) :: move(:)
-      integer(c_int), intent(out) :: status
-      type(support_move), allocatable :: copy(:)
-      integer :: k, failed
-      do k = 1, size(move)
-         status = status_bad_index
-         if (move(k)%body < 1 .or. move(k)%body > size(built%set%item)) return
-         if (.not. built%set%item(move(k)%body)%fixed) return
-         status = status_invalid_argument
-         if (.not. move(k)%duration > 0.0_wp) return
-      end do
-      status = status_out_of_memory
-      allocate (copy(size(move)), stat=failed)
-      if (failed /= 0) return
-      copy(:) = move
-      call move_alloc(copy, built%load%move)
-      status = status_ok
-   end subroutine set_moves
 
    !> A run of a copy of what was built, at rest before its first step
    subroutine new_run(built, wanted, status)

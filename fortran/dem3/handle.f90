@@ -5,6 +5,7 @@ module dem3_handle
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
       status_out_of_memory, status_wrong_handle
    use dem_handle, only : built_model, count_ties, model_register, model_take
+   use dem_loading, only : accept_moves, loading
    use dem_rigid, only : set_rigid
    use dem_simulation, only : run_record_new
    use dem3_bodies, only : body_set, body_set_new, copy_bodies
@@ -13,11 +14,12 @@ module dem3_handle
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: built_solids, solids_new, solids_take, solids_run_take, set_joints, set_dowels, set_surroundings
+   public :: built_solids, solids_new, solids_take, solids_run_take, set_joints, set_moves, set_dowels, set_surroundings
 
    type, extends(built_model) :: built_solids
       type(body_set) :: set
       integer, allocatable :: law_of(:, :)            !! (3, joints): bodies, the lower first, and law
+      type(loading) :: load                           !! without the ground; supports move along x, y, z
       type(dowel), allocatable :: dowels(:)           !! not allocated: none
       real(wp), allocatable :: rate(:, :)             !! (6, bodies) velocity and spin at the start
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
@@ -119,6 +121,15 @@ contains
       status = status_ok
    end subroutine set_joints
 
+   !> Supports that move, without rotation
+   subroutine set_moves(built, body, value, status)
+      type(built_solids), intent(inout) :: built
+      integer(c_int), intent(in) :: body(:)           !! (moves), 1-based
+      real(wp), intent(in) :: value(:, :)             !! (5, moves) dx, dy, dz [m], start, duration [s]
+      integer(c_int), intent(out) :: status
+      call accept_moves(built%load, body, value, built%set%item%fixed, status)
+   end subroutine set_moves
+
    !> Dowels across joints, from where they stand in space
    subroutine set_dowels(built, body, place, axis, value, status)
       type(built_solids), intent(inout) :: built
@@ -206,6 +217,12 @@ contains
          model%law(:) = built%law
          model%law_of(:, :) = built%law_of
          model%joint_loss = 0.0_wp
+         if (allocated(built%load%move)) then
+            allocate (model%load%move(size(built%load%move)), stat=failed)
+            if (failed /= 0) status = status_out_of_memory
+            if (failed /= 0) return
+            model%load%move(:) = built%load%move
+         end if
          model%gravity = built%gravity
          model%way = built%way
          call set_rigid(model%rigid, model%model_clock, built%rigid, norm2(model%gravity), model%set%size, &

@@ -5,6 +5,7 @@ module dem3_model
    use dem_clock, only : begin_step, end_step
    use dem_energy, only : energy_terms
    use dem_joint, only : joint_law
+   use dem_loading, only : move_rate
    use dem_jointed, only : jointed_model
    use dem_ties, only : add_tie_stiffness, stretch_ties, tie_dash_loss, tie_energy, tie_loss, trace_ties
    use dem3_bodies, only : body, body_set, cross, place_part, spin_of, turn_freely
@@ -462,7 +463,24 @@ contains
       model%pull_before = model%pull
       model%pull = model%gravity - ground(1) * model%way - [0.0_wp, 0.0_wp, ground(2)] &
          - ground(3) * [-model%way(2), model%way(1), 0.0_wp]
+      call prescribe_supports(model)
    end subroutine prepare_step
+
+   !> Velocities of supports in the coming half step
+   pure subroutine prescribe_supports(model)
+      type(solid_model), intent(inout) :: model
+      integer :: k
+      if (.not. allocated(model%load%move)) return
+      do k = 1, size(model%load%move)
+         model%set%item(model%load%move(k)%body)%p = 0.0_wp
+      end do
+      if (.not. model%shaking .or. model%waits > 0) return
+      do k = 1, size(model%load%move)
+         associate (b => model%set%item(model%load%move(k)%body))
+            b%p = b%p + move_rate(model%load%move(k), model%t + 0.5_wp * model%step)
+         end associate
+      end do
+   end subroutine prescribe_supports
 
    !> Velocity that follows from the forces of the last step; clears the forces
    pure subroutine predict_velocity(model, b)
@@ -485,16 +503,21 @@ contains
       type(solid_model), intent(in) :: model
       type(body), intent(inout) :: b
       logical, intent(inout) :: stale
-      if (b%fixed) return
-      b%v = b%v + model%kick * (b%force * b%inverse_mass + model%pull)
-      b%swing = b%swing + model%kick * b%moment
-      b%x = b%x + model%step * b%v
-      call turn_freely(b, model%step)
-      if (.not. b%touched) then
-         b%airborne = b%airborne + model%step
-         if (b%touching) b%bounces = b%bounces + 1
+      if (b%fixed) then
+         if (.not. any(abs(b%v) + abs(b%p) > 0.0_wp)) return
+         b%v = b%p
+         b%x = b%x + model%step * b%v
+      else
+         b%v = b%v + model%kick * (b%force * b%inverse_mass + model%pull)
+         b%swing = b%swing + model%kick * b%moment
+         b%x = b%x + model%step * b%v
+         call turn_freely(b, model%step)
+         if (.not. b%touched) then
+            b%airborne = b%airborne + model%step
+            if (b%touching) b%bounces = b%bounces + 1
+         end if
+         b%touching = b%touched
       end if
-      b%touching = b%touched
       if (norm2(b%x - b%marked) + b%radius * norm2(b%turn - b%marked_turn) < model%wander) return
       b%marks = b%marks + 1
       b%marked = b%x

@@ -110,8 +110,8 @@ contains
          do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
                model%ahead(k) = b
+               model%ahead(k)%x = b%x + model%step * merge(b%p, b%v, b%fixed)
                if (b%fixed) cycle
-               model%ahead(k)%x = b%x + model%step * b%v
                call turn_freely(model%ahead(k), model%step)
                call set_rate(problem, rigid%node(k), b, model%kick, model%pull)
             end associate
@@ -175,7 +175,7 @@ contains
       type(solid_model), intent(inout) :: model
       type(contact_pair), intent(in) :: pair
       integer, intent(out) :: number(:)             !! (points) of each in the problem, 0 where it cannot press
-      real(wp) :: normal(3), frame(3, in_space), gap, next_gap, at(3), next_at(3), arm(3, 2), lever(3), u_n
+      real(wp) :: normal(3), frame(3, in_space), gap, next_gap, at(3), next_at(3), arm(3, 2), lever(3), u_n, still(3)
       integer :: i, n, d, side, who(2)
 
       number = 0
@@ -195,6 +195,7 @@ contains
             arm(:, 2) = at - b%x
             problem%node(:, n) = rigid%node(who)
             u_n = 0.0_wp
+            still = 0.0_wp
             do side = 1, 2
                associate (c => model%set%item(who(side)), sense => merge(-1.0_wp, 1.0_wp, side == 1))
                   do d = 1, in_space
@@ -202,13 +203,18 @@ contains
                      problem%row(1:3, side, d, n) = sense * frame(:, d)
                      problem%row(4:6, side, d, n) = sense * matmul(lever, c%turn)
                   end do
-                  if (c%fixed) cycle
+                  if (c%fixed) then   ! supports move as in the next step
+                     still = still + sense * c%p
+                     cycle
+                  end if
                   lever = cross(arm(:, side), normal)
                   u_n = u_n + sense * (dot_product(normal, c%v) + dot_product(lever, c%spin))
                end associate
             end do
-            problem%shift(along_normal, n) = parting(rigid, model%step, gap, next_gap, u_n)
-            problem%shift(along_tangent:, n) = 0.0_wp
+            still = matmul(still, frame)
+            problem%shift(along_normal, n) = still(along_normal) &
+               + parting(rigid, model%step, gap, next_gap, u_n + still(along_normal))
+            problem%shift(along_tangent:, n) = still(along_tangent:)
             problem%friction(n) = model%law(pair%law)%friction
             problem%impulse(:, n) = model%kick * matmul(pair%point(i)%force, frame)
          end do
@@ -241,6 +247,8 @@ contains
                by_normal = dot_product(both, normal) * dot_product(u, normal)
                pair%damping_loss = pair%damping_loss - 0.5_wp * model%drift * by_normal
                pair%friction_loss = pair%friction_loss - 0.5_wp * model%drift * (dot_product(both, u) - by_normal)
+               if (a%fixed) pair%support_work = pair%support_work + 0.5_wp * model%drift * dot_product(both, a%v)
+               if (b%fixed) pair%support_work = pair%support_work - 0.5_wp * model%drift * dot_product(both, b%v)
                point%force = force
                if (.not. point%closed) cycle
                if (.not. a%fixed) then
@@ -266,8 +274,6 @@ contains
       real(wp), intent(in) :: at(3)                 !! [m]
       real(wp) :: v(3)
       real(wp) :: arm(3)
-      v = 0.0_wp
-      if (b%fixed) return
       arm = at - b%x
       v = b%v + cross(b%spin, arm)
    end function velocity

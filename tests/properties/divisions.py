@@ -97,6 +97,27 @@ def links_are_blocks_of_their_own(deck: Deck, lean: float, near_limit: float, wi
     )
 
 
+# ----- courses beside openings
+
+
+@relation(
+    "tilt", st.tuples(st.integers(1, 3), st.integers(4, 6), number(-0.024, 0.024, 12), number(-0.024, 0.024, 12), st.booleans()), 1e-9
+)
+def bed_joints_move_to_the_edges_of_openings(low: int, high: int, sill: float, head: float, lintels: bool, within: float) -> None:
+    """An edge of an opening nearer to a bed joint than a quarter of a course takes this bed joint with it; all others stay."""
+    height = 0.2
+    levels = [k * height for k in range(9)]
+    levels[low], levels[high] = low * height + sill, high * height + head
+    structure = {"kind": "brickwork", "unit_length": 0.4, "unit_height": height, "units": 6, "courses": 8, "lintels": lintels}
+    deck = {"structure": {**structure, "openings": [{"x": [0.8, 1.6], "y": [levels[low], levels[high]]}]}}
+    found = np.unique(np.round(np.concatenate(building(deck).blocks().outlines)[:, 1], 12))
+    if lintels:  # the top of the lintel, a course above its foot, is an edge too
+        levels[high + 1] = levels[high] + height
+    want = np.array(levels)
+    must(all(np.abs(want - y).min() <= within for y in found), f"levels {found.tolist()} of {want.tolist()}")
+    must(all(np.abs(found - y).min() <= within for y in want), f"levels {found.tolist()} of {levels}")
+
+
 # ----- sections of solids
 
 
@@ -270,6 +291,26 @@ def surveys_deviate_by_a_quarter_of_a_joint_at_most(deck: Deck, share: float, wi
     must(answer.status != "refused" or "deviation" not in answer.said, answer.said)
     none = ask(deck, "imperfections", count=10)
     must(none.status == "refused" and "deviation" in none.said, f"without a deviation {none.outcome} {none.said}")
+
+
+# ----- senses of a tilt test
+
+
+@relation("dem", st.tuples(decks("block", friction=st.just(2.0)), number(0.03, 0.06, 6), number(0.1, 0.9, 8)), 1e-9, share=0.3)
+def the_weaker_sense_of_a_tilt_of_elements_decides(deck: Deck, lean: float, share: float, within: float) -> None:
+    """Of a leaning block the lesser of both collapse accelerations is compared with a peak between them: it collapses."""
+    bare = leaning(deck, lean)
+    keys = {"test": "tilt", "solver": "nonsmooth", "tilt_accuracy": 0.02, "time_step": 4e-3}
+    first = ask(bare, "dem", **keys)
+    ok(first)
+    less, more = sorted(first.capacity.tolist())
+    if more < 1.1 * less:
+        reject()
+    motion = {"kind": "sine-pulse", "amplitude": f"{less + share * (more - less)!r} g", "period": 0.5}
+    answer = ask(changed(bare, motion=motion), "dem", **keys)
+    ok(answer)
+    near("the capacity that decides", answer.verdict.capacity, less, within)
+    must(answer.outcome in ("collapses", "open"), f"{answer.outcome} between {less} and {more} g")
 
 
 # ----- chaos of two blocks

@@ -125,7 +125,10 @@ def test_a_folder_is_all_of_its_decks_and_nothing_else(names: set[str], common: 
             (Path(place) / f"{name}.expect.toml").write_text("no deck")
         if common:
             (Path(place) / "common.toml").write_text(motion)
+        tables = '[[analysis]]\nkind = "tilt"\n[[analysis]]\nkind = "assess"\nbudget = 7.0\n[[analysis]]\nkind = "assess"\nbudget = 9.0\n'
+        (Path(place) / "several.toml").write_text(structure + motion + tables)
         (Path(place) / "notes.txt").write_text("no deck")
         found = decks_of(Path(place))
-    assert list(found) == sorted(names)
-    assert all("sine-pulse" in text and 'kind = "assess"' in text for text in found.values())
+    assert list(found) == sorted([*names, "several"])
+    assert all("sine-pulse" in text and text.count('kind = "assess"') == 1 and '"tilt"' not in text for text in found.values())
+    assert "budget = 7" in found["several"]  # the first of its assessments

@@ -77,6 +77,7 @@ SLOW = {
     "solids-through-compas",
     "statics-of-another-density",
     "strength-of-barrels",
+    "supports-that-move-in-space",
     "stouter",
     "translation-of-a-section",
 }

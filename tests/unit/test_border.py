@@ -199,9 +199,9 @@ ABUSES = {
     "part of a body that is not there": ("dem.run(bodies(owner=[0, 2]), short)", "IndexError"),
     "part of two corners": ("dem.run(bodies(parts=[box[:2], box], outer=[np.ones(2, bool), np.ones(4, bool)]), short)", "CoreError"),
     "edges of another part": ("dem.run(bodies(outer=[np.ones(3, bool)] * 2), short)", "ValueError"),
-    "move of a block": ("dem.run(bodies(), short, moves=(dem.SupportMove(0, 1, 0, 0, 0, 1),))", "CoreIndexError"),
-    "move of nobody": ("dem.run(bodies(), short, moves=(dem.SupportMove(-1, 1, 0, 0, 0, 1),))", "IndexError"),
-    "move in no time": ("dem.run(bodies(), short, moves=(dem.SupportMove(1, 1, 0, 0, 0, 0),))", "CoreError"),
+    "move of a block": ("dem.run(bodies(), short, moves=(dem.SupportMove(0, (1, 0, 0), 0, 1),))", "CoreIndexError"),
+    "move of nobody": ("dem.run(bodies(), short, moves=(dem.SupportMove(-1, (1, 0, 0), 0, 1),))", "IndexError"),
+    "move in no time": ("dem.run(bodies(), short, moves=(dem.SupportMove(1, (1, 0, 0), 0, 0),))", "CoreError"),
     "times backwards": ("dem.run(bodies(), short, times=np.array([0.01, 0.0]))", "ValueError"),
     "motion that is not in the set": ("dem.Model(bodies(), short).run(MotionSet([one]), 1)", "IndexError"),
     "hinge in a joint that is not there": (

@@ -285,9 +285,9 @@ WRONG = {
         'amplitudes = ["0.5 g"]\ndurations = [0.1, 0.2]\n',
     ),
     "movements of rigid solids": (
-        "dem of solids cannot include [[initial.movements]]",
+        "dem of solids cannot include turn of a support",
         ARCH
-        + "[[initial.movements]] # here\njoint = 'joint 1'\ndx = 0.1\n"
+        + "[[initial.movements]]\njoint = 'joint 0'\nturn = 1 # here\n"
         + DEM
         + 'solver = "nonsmooth"\nquasi_static = true\ndirection = 10\n',
     ),

@@ -218,7 +218,7 @@ def test_mortar_must_carry_the_weight_at_rest_after_settling(share: float) -> No
 
 def test_support_settles() -> None:
     bodies = block_on_floor(1.0, 1.0, STIFF)
-    run = dem.run(bodies, dem.Options(1.5, 0.1), moves=(dem.SupportMove(1, 0.0, -0.05, 0.0, 0.1, 1.0),))
+    run = dem.run(bodies, dem.Options(1.5, 0.1), moves=(dem.SupportMove(1, (0.0, -0.05, 0.0), 0.1, 1.0),))
     assert run.place[-1, 0, 1] - run.settled[0, 1] == pytest.approx(-0.05, abs=1e-5)
     assert run.residual < 0.01
     phase = np.clip((run.time - 0.1) / 1.0, 0.0, 1.0)

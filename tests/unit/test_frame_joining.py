@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from extrados.core.frame import Frame, Link, MacroElement
-from extrados.decks.reader import make_deck
+from extrados.decks.reader import DeckError, make_deck
+from extrados.model.errors import BadGeometry
+from extrados.model.structures.plan import Reinforcement
 from extrados.schema.constants import GRAVITY
 from extrados.views.frame.flanges import side_width
 from extrados.views.frame.options import FrameOptions
@@ -13,7 +15,7 @@ from extrados.views.frame.spandrels import flexural_strength, shear_strength, st
 STIFF = {"density": 1800, "young": 2e10, "poisson": 0.2}
 
 
-def building(walls, material=STIFF, cohesion=1e6, **more):
+def building(walls, material=STIFF, cohesion=1e6, materials=None, **more):
     """One storey of 3 m of masonry that does not crush."""
     structure = {"kind": "building", "storeys": [3.0], "walls": walls} | more
     steel = {"density": 7850, "young": 210e9, "poisson": 0.3, "tensile_strength": 250e6, "fracture_energy": 1e6}
@@ -21,7 +23,7 @@ def building(walls, material=STIFF, cohesion=1e6, **more):
         {
             "structure": structure,
             "material": material,
-            "materials": {"steel": steel, "concrete": {"density": 1800, "young": 30e9, "poisson": 0.2}},
+            "materials": {"steel": steel, "concrete": {"density": 1800, "young": 30e9, "poisson": 0.2}} | (materials or {}),
             "joints": {"cohesion": cohesion},
             "analysis": [{"kind": "frame-modes"}],
         }
@@ -173,6 +175,61 @@ def test_an_elastic_ring_beam_makes_piers_rock_at_both_ends():
     height = frame.elements[0].length
     shear = strength(frame, 0, target=0.03)
     assert shear == pytest.approx(load * 2.0 / height, rel=2e-2)
+
+
+BARS = {"area": 4e-4, "yield_strength": 400e6, "cover": 0.04}
+
+
+def test_plastic_moment_of_a_ring_beam_by_hand():
+    """80 kN of bars at 0.26 m; the block is 80 kN/(0.85 20 MPa 0.3 m) = 15.7 mm high."""
+    bars = Reinforcement(**BARS)
+    assert bars.tension == pytest.approx(160e3)
+    assert bars.plastic_moment(0.3, 0.3, 20e6) == pytest.approx(80e3 * (0.26 - 0.5 * 80 / 5100), rel=1e-6)
+
+
+def test_a_portal_of_piers_and_a_reinforced_ring_beam_is_a_mechanism_by_hand():
+    """Piers rock about their toes and the hinges of the beam yield: V H = sum N L/2 + 2 M_p, at most V of the elastic beam."""
+    high = [{"storey": 1, "x": [2.0, 3.0], "z": [0, 2.7]}]
+    beam = {"storey": 1, "depth": 0.3, "material": "strong", "walls": ["wall"]}
+    walls = [{"name": "wall", "start": [0, 0], "end": [5, 0], "thickness": 0.3, "openings": high}]
+    shears = []
+    for area in (None, 2e-5, 4e-5, 4e-3):
+        bars = {} if area is None else {"reinforcement": BARS | {"area": area}}
+        made = building(
+            walls, ring_beams=[beam | bars], materials={"strong": {"young": 30e9, "poisson": 0.2, "compressive_strength": 20e6}}
+        )
+        frame = made.frame(FREE.model_copy(update={"drift_flexure": 0.1}))
+        (moment,) = (e.moment for e in frame.elements if not e.pier)
+        if area:
+            assert moment == pytest.approx(Reinforcement(**BARS | {"area": area}).plastic_moment(0.3, 0.3, 20e6))
+        assert any("remain elastic" in remark for remark in frame.remarks) == (area is None)
+        shears.append((moment, strength(frame, 0, target=0.03)))
+    elastic, (m1, v1), (m2, v2), strong = shears
+    # piers turn about their toes by an angle, the beam by 2 m/1 m of it, its two hinges by 3 times the angle
+    assert (v2 - v1) / (m2 - m1) == pytest.approx(2.0 * 3.0 / 3.0, rel=0.02)
+    assert v1 < v2 < strong[1] == pytest.approx(elastic[1], rel=1e-3)
+
+
+def test_a_strut_takes_moment_from_the_ring_beam():
+    """A spandrel of 1 m above a door of 1.7 m, H_p = 0.4 f_h h t of it: M_p (1 - H_p/T)."""
+    low = [{"storey": 1, "x": [2.0, 3.0], "z": [0, 1.7]}]
+    walls = [{"name": "wall", "start": [0, 0], "end": [5, 0], "thickness": 0.3, "openings": low}]
+    beam = {"storey": 1, "depth": 0.3, "material": "strong", "reinforcement": BARS}
+    strong = {"strong": {"young": 30e9, "poisson": 0.2, "compressive_strength": 20e6}}
+    made = building(walls, ring_beams=[beam], materials=strong)
+    frame = made.frame(FREE.model_copy(update={"horizontal_strength": 0.5e6}))
+    found = {s.kind: e.moment for s, e in zip(frame.strips, frame.elements, strict=True) if not e.pier}
+    strut = 0.4 * 0.5e6 * 1.0 * 0.3
+    assert found["ring beam"] == pytest.approx(Reinforcement(**BARS).plastic_moment(0.3, 0.3, 20e6) * (1 - strut / 160e3))
+
+
+def test_reinforcement_needs_the_strength_of_concrete_and_room():
+    walls = [{"name": "wall", "start": [0, 0], "end": [5, 0], "thickness": 0.3, "openings": [DOOR]}]
+    beam = {"storey": 1, "depth": 0.3, "material": "concrete", "reinforcement": BARS}
+    with pytest.raises(BadGeometry, match=r"requires a compressive_strength in \[materials.concrete\]"):
+        building(walls, ring_beams=[beam]).frame(FREE)
+    with pytest.raises(DeckError, match="does not fit in a beam with a depth of"):
+        building(walls, ring_beams=[beam | {"reinforcement": BARS | {"cover": 0.15}}])
 
 
 def test_a_ring_beam_is_no_masonry_of_a_spandrel_below_a_door():

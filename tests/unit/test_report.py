@@ -13,12 +13,14 @@ from extrados.decks.reader import DeckError, make_deck, read_deck
 from extrados.model.dimensions import dimensions
 from extrados.results import validity
 from extrados.results.store import StoreError
+from extrados.results.verdict import SHARES
 from extrados.show import html, typeset
 from extrados.show.building import heading
 from extrados.show.document import Code, Document, Heading, Table, Words
 from extrados.show.elevation import seen_from_right
 from extrados.show.language import Language
 from extrados.show.report import write_report
+from extrados.show.sources import clause_of
 from extrados.show.telling import _flowing
 from extrados.show.template import read_template
 
@@ -386,6 +388,28 @@ def test_backing_over_the_haunches_does_not_shorten_the_span_of_a_surveyed_arch(
     made = read_deck(CASES / "bridge/surveyed.toml").structure.assembly(2000.0, CASES / "bridge")
     found = {d.name: d.length for d in dimensions(made)}
     assert found == pytest.approx({"clear span": 9.6, "rise": 2.875, "thickness at the crown": 0.6, "total height": 4.046}, abs=3e-3)
+
+
+def test_section_and_elevation_of_a_bridge_show_the_same_height() -> None:
+    """Masonry up to the crown, and to the surface of the road over it, which the elevation shows."""
+    table = {"kind": "bridge", "spans": [{"span": 6.0, "rise": 2.0, "thickness": 0.5}], "abutments": {"width": 1.5, "height": 1.5}}
+    deck = make_deck({"structure": {**table, "fill": {"cover": 0.4}, "surfacing": {"thickness": 0.1}}, "analysis": {"kind": "tilt"}})
+    made = deck.building.blocks()
+    found = {d.name: d.length for d in dimensions(made)}
+    assert found["total height"] == pytest.approx(made.earth.road - min(outline[:, 1].min() for outline in made.outlines))
+    assert found["total height"] - found["height of the masonry"] == pytest.approx(0.5)
+
+
+def test_a_bibliography_names_clauses_without_their_formulas() -> None:
+    assert clause_of("NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_SLV = 0.4 d_0; [C8.7.1.12]") == "NTC 2018, Circ. 7/2019 C8.7.1.2.1.8"
+    assert clause_of("EN 1998-1 4.3.5: F_a; Table 4.4 (verify clause)") == "EN 1998-1 4.3.5 (verify clause)"
+    assert clause_of("ASCE 41-13 11.3.3.3 Table 11-5 (verify clause)") == "ASCE 41-13 11.3.3.3 Table 11-5 (verify clause)"
+
+
+def test_verdicts_of_shares_have_units_in_words() -> None:
+    deck = {"structure": ARCH, "analysis": [{"kind": "thrust"}, {"kind": "moving-load", "train": "LM1", "width": 1.0}]}
+    units = [one.verdict.unit for one in extrados.run(deck).results]
+    assert units == ["of the joint", "times the train"] and set(units) <= set(SHARES)
 
 
 def test_an_arch_is_not_carried_on_into_the_pier_and_the_next_arch() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, Ties
+from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, SupportMove, Ties
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
@@ -33,18 +33,6 @@ class Bodies:
     laws: list[Law]
     joints: dict[tuple[int, int], int] = field(default_factory=dict)
     ties: Ties | None = None
-
-
-@dataclass(frozen=True)
-class SupportMove:
-    """A support that moves by dx, dy [m] and turns [rad] between start and start + duration [s]."""
-
-    body: int
-    dx: float
-    dy: float
-    turn: float
-    start: float
-    duration: float
 
 
 @dataclass(frozen=True)
@@ -124,7 +112,7 @@ class Model(BodyModel[Run]):
                 )
                 check(status, "initial displacements")
             self._put_ties(bodies.ties, lambda place, body: place[:, :2] - bodies.centroid[body])
-            self._put_moves(moves)
+            self._put_moves(moves, _core.api_dem.moves)
             self._put_surroundings()
             self._put_options(settle=shift is None and rate is None)
         except BaseException:
@@ -151,17 +139,6 @@ class Model(BodyModel[Run]):
             law = indices("joints", [law for *_, law in listed], len(bodies.laws), (None,))
             check(_core.api_dem.joints(self.handle, joints, law), "joints")
             self._joints = np.array([pair for *pair, _ in listed])
-
-    def _put_moves(self, moves: Sequence[SupportMove]) -> None:
-        if not moves:
-            return
-        values = [[m.dx, m.dy, m.turn, m.start, m.duration] for m in moves]
-        status = _core.api_dem.moves(
-            self.handle,
-            indices("support moves", [m.body for m in moves], self.count, (None,)),
-            real("support moves", np.transpose(values), (5, None)),
-        )
-        check(status, "moving support: the body is not a support, or the duration is not positive")
 
     def _put_surroundings(self) -> None:
         o = self.options

@@ -1,12 +1,13 @@
 """Discrete elements in space in the core (fortran/dem3): rigid polyhedra, their joints, and what a run leaves of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, Ties
+from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, SupportMove, Ties
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
@@ -87,7 +88,7 @@ class Model(BodyModel[Run]):
     rates, values, in_space = 6, 18, True
     options: Options
 
-    def __init__(self, solids: Solids, options: Options, *, rate: np.ndarray | None = None):
+    def __init__(self, solids: Solids, options: Options, *, rate: np.ndarray | None = None, moves: Sequence[SupportMove] = ()):
         if not solids.laws or any(not 0 <= k < len(solids.laws) for k in solids.joints.values()):
             raise ValueError("a joint has the number of a law that does not exist")
         if options.rigid and any(max(law.cohesion, law.tension) > 0.0 for law in solids.laws):
@@ -125,6 +126,7 @@ class Model(BodyModel[Run]):
             status = _core.api_dem3.joints(self.handle, np.asfortranarray(joints + 1, dtype=np.int32))
             check(status, "joints")
             self._joints = joints[:2].T
+            self._put_moves(moves, _core.api_dem3.moves)
             self._put_dowels(solids.dowels)
             self._put_ties(solids.ties, lambda place, body: np.einsum("ni,nij->nj", place - solids.centroid[body], axes[body]))
             status = _core.api_dem3.surroundings(
@@ -191,13 +193,14 @@ def run(
     across: Ground | None = None,
     scale: float = 1.0,
     rate: np.ndarray | None = None,
+    moves: Sequence[SupportMove] = (),
     times: np.ndarray | None = None,
 ) -> Run:
     """One run of a model that is made for it; see Model and Model.run. No ground: it stands still.
 
     across: its other horizontal component, along z x way. rate (n, 6): velocities [m/s] and spins [rad/s] of the bodies at
-    the start; times (frames): of output [s].
+    the start; moves: supports that move; times (frames): of output [s].
     """
     grounds = [ground or STILL, *([] if across is None else [across])]
-    with Model(solids, options, rate=rate) as model, as_motion_set(grounds) as motions:
+    with Model(solids, options, rate=rate, moves=moves) as model, as_motion_set(grounds) as motions:
         return model.run(motions, across=None if across is None else 1, scale=scale, times=times)

@@ -5,7 +5,7 @@ import hashlib
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from extrados import _core
 from extrados.core import lists
-from extrados.core.calls import integers, interruptible, long_call, real, room_for, thread_count
+from extrados.core.calls import indices, integers, interruptible, long_call, real, room_for, thread_count
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
 from extrados.core.handles import Owner
@@ -47,6 +47,27 @@ class Law:
             raise ValueError(f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0")
         if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
             raise ValueError("friction, cohesion, tension and damping of a joint must be 0 or above")
+
+
+@dataclass(frozen=True)
+class SupportMove:
+    """A support that moves by `shift` between start and start + duration [s]: in the plane dx, dy [m] and rotation [rad], in space
+    dx, dy, dz [m]."""
+
+    body: int
+    shift: tuple[float, float, float]
+    start: float
+    duration: float
+
+    def times(self, factor: float) -> "SupportMove":
+        """The same movement, larger by a factor."""
+        x, y, z = self.shift
+        return replace(self, shift=(factor * x, factor * y, factor * z))
+
+    @property
+    def values(self) -> list[float]:
+        """As the core takes it."""
+        return [*self.shift, self.start, self.duration]
 
 
 @dataclass(frozen=True)
@@ -227,6 +248,14 @@ class BodyModel(Owner, ABC, Generic[Found]):
             status, "ties: the stiffness or damping must be above 0, and the prestress must lie between the least and the greatest tension"
         )
         self._ties = n
+
+    def _put_moves(self, moves: Sequence[SupportMove], put: Callable[..., int]) -> None:
+        """Movements of supports, by the routine `put` of the core."""
+        if not moves:
+            return
+        body = indices("support moves", [m.body for m in moves], self.count, (None,))
+        status = put(self.handle, body, real("support moves", np.transpose([move.values for move in moves]), (5, None)))
+        check(status, "moving support: the body is not a support, or the duration is not positive")
 
     def _put_laws(self, laws: Sequence[Law]) -> None:
         status = _core.api_dem_run.laws(

@@ -89,7 +89,7 @@ class BlocksRun(KindResults):
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
     stop_time_s: float = fact("when it ended", "s")
-    still_moving: bool = fact("whether the governing block still moved at the end of the run")
+    still_moving: bool = fact("whether blocks still moved in the last twentieth of the run")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse (not applied to a block that only slides)", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its position at rest under self-weight", "m")

@@ -174,6 +174,9 @@ class Masonry(Description):
 
     def moved(self) -> list[int]:
         """The joints that [[initial.movements]] name, in their order; BadGeometry where one is not on the ground."""
+        for k, one in enumerate(self.initial.movements):
+            if one.dz:
+                raise BadGeometry("dz is only for blocks in space: in a plane section dy is upward", ("initial", "movements", k, "dz"))
         return moved_joints(self.blocks(), [one.joint for one in self.initial.movements])
 
     @property

@@ -81,7 +81,7 @@ def blocks(
         quasi_static=quasi,
         rebound=rebound,
     )
-    moves = (dem.SupportMove(mover, travel, 0.0, 0.0, begin, lasts),)
+    moves = (dem.SupportMove(mover, (travel, 0.0, 0.0), begin, lasts),)
     with dem.Model(bodies, options, shift=shift, rate=rate, moves=moves) as model, MotionSet([Ground(samples=samples, step=dt)]) as motions:
         run = model.run(motions, number, scale=scale, times=times)
         states = []

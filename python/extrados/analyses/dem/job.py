@@ -41,7 +41,7 @@ class Task:
     scale: float = 1.0
     shift: np.ndarray | None = None
     rate: np.ndarray | None = None
-    moves: tuple[dem.SupportMove, ...] = ()
+    moves: tuple[dem_run.SupportMove, ...] = ()
 
     @property
     def times(self) -> np.ndarray:
@@ -104,13 +104,14 @@ class Runs(Job[dem.Run]):
 
 @dataclass(frozen=True)
 class SolidTask:
-    """One run of blocks in space: options, and how the ground moves along their way and, horizontally, across it, each times
-    `scale`."""
+    """One run of blocks in space: options, how the ground moves along their way and, horizontally, across it, each times
+    `scale`, and supports that move."""
 
     options: dem3.Options
     ground: Ground | None = None
     across: Ground | None = None
     scale: float = 1.0
+    moves: tuple[dem_run.SupportMove, ...] = ()
 
     @property
     def times(self) -> np.ndarray:
@@ -132,7 +133,7 @@ class SolidRuns(Job[dem3.Run]):
         task = self.tasks[k]
         options = replace(task.options, threads=threads if len(self.bodies.mass) >= SOLIDS_FOR_THREADS else 1)
         with (
-            dem3.Model(self.bodies, options) as model,
+            dem3.Model(self.bodies, options, moves=task.moves) as model,
             as_motion_set([task.ground or dem_run.STILL, task.across or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)

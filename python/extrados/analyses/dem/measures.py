@@ -23,6 +23,8 @@ OPEN = 5e-4
 SLIDES = 0.01
 #: Of the highest swing before an impact: lower ones say little of the restitution.
 STRONG = 0.04
+#: The last part of a run, in which blocks still move or do not, is one of so many.
+LAST_PART = 20
 #: Blocks whose rotation is reported where none are named.
 MOST_TRACKED = 24
 
@@ -245,10 +247,11 @@ def peak_displacement(run: dem_run.FoundRun, farthest: float, limit: float) -> f
 
 
 def moving(run: dem_run.FoundRun, model: Model | SolidModel) -> bool:
-    """Is there motion worth the name at the end: beside the most there was, and beside the weight times the size?"""
+    """Whether the kinetic energy in the last part of the run, at whose end a swing may reverse, exceeds a share of the greatest and of the
+    weight times the size."""
     kinetic = run.energy["kinetic"]
     noise = 1e-6 * float(model.mass.sum()) * GRAVITY * model.size
-    return bool(len(kinetic) and kinetic[-1] > max(1e-3 * kinetic.max(), noise))
+    return bool(len(kinetic) and kinetic[-max(1, len(kinetic) // LAST_PART) :].max() > max(1e-3 * kinetic.max(), noise))
 
 
 def restitution(run: dem.Run, state: np.ndarray, ground: np.ndarray) -> float | None:

@@ -10,6 +10,7 @@ from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, re
 from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.model.errors import BadGeometry, Key
+from extrados.model.geometry.anchors import moved_joints
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.structures.arch import ArchAssembly
@@ -109,6 +110,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     yield lambda: damper_strands(building)
     if not isinstance(options, tables.Dem):
         return
+    yield lambda: moved_joints(stones, [one.joint for one in building.initial.movements])
     yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))
     if context.deck.motion is not None and options.test == "motion":
         yield context.refuse_motion

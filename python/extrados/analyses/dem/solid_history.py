@@ -14,7 +14,7 @@ from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.perturbed import probe_chaos
 from extrados.analyses.dem.seen import begun_result, doubts_of_run, numbers_of
 from extrados.analyses.dem.solid_measures import SolidsSeen
-from extrados.analyses.dem.solid_model import SolidModel
+from extrados.analyses.dem.solid_model import SolidModel, moves_of
 from extrados.analyses.dem.solid_settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.ties import segment_arrays, tie_arrays, tie_columns
@@ -30,7 +30,8 @@ from extrados.schema.quantities import three_figures
 
 def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Options:
     """Options of the core for a run of this deck."""
-    quiet = context.motion.end if context.deck.motion else 0.0
+    moved = [one.start + one.duration for one in context.building.initial.movements]
+    quiet = max([context.motion.end if context.deck.motion else 0.0, *moved])
     return dem3.Options(
         end_time=options.end_time or quiet + dem_model.settle_time(model),
         output_step=options.output_step,
@@ -52,9 +53,12 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     """The run of a deck on blocks in space."""
     moved = context.motion.ground if context.deck.motion else None
     across = context.motion.across if context.deck.motion else None
+    moves = moves_of(context.building, model)
+    idle = moved is None and not moves
 
     def job_of(factor: float) -> SolidRuns:
-        return SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved, across, factor)])
+        larger = tuple(move.times(factor) for move in moves)
+        return SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved, across, factor, larger)])
 
     collapse, job = Collapse.of(options.collapse_displacement, model.size), job_of(1.0)
     found = dem_model.checked(watched(context, "dem-solids", job, "discrete elements"), model)
@@ -65,7 +69,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     def outcome_of(one: dem3.Run) -> str:
         return solid_measures.look(model, one, options.floor is not None).fate(collapse).outcome
 
-    chaos = probe_chaos(context, job_of if options.perturbed else None, moved is None, found, model.count, collapse, outcome_of, result)
+    chaos = probe_chaos(context, job_of if options.perturbed else None, idle, found, model.count, collapse, outcome_of, result)
     numbers = _numbers(options, seen, collapse) | chaos
     result.results = r = SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
     _store(options, seen, ground, result)
@@ -76,9 +80,9 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     if seen.slides:
         result.warnings.append(f"contacts slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
     result.warnings += doubts_of_run(found, chaos["violated"], r.still_moving)
-    if moved is None:
-        result.warnings.append("nothing moves it: add [motion]")
-    result.answer = solid_answer(r, moved is None)
+    if idle:
+        result.warnings.append("no motion acts on the structure: add [motion] or [[initial.movements]]")
+    result.answer = solid_answer(r, idle)
     return result
 
 

@@ -88,7 +88,8 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
     opening, slip, state = np.zeros(shape), np.zeros(shape), np.full(shape, CLOSED)
     for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
         corners = one.polygon[j]
-        (moved, normal), (other, back) = (_carried(run, k, corners, one.normal[j]) for k in (a, b))
+        bodies = (model.count + int(model.supports.of_joint[j]) if k == GROUND else k for k in (a, b))
+        (moved, normal), (other, back) = (_carried(run, k, corners, one.normal[j]) for k in bodies)
         mean = normal + back
         mean /= np.linalg.norm(mean, axis=1)[:, None]
         apart = moved - other
@@ -104,10 +105,7 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
 
 
 def _carried(run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body from its settled state; the ground stays."""
-    if body == GROUND:
-        count = len(run.time)
-        return np.broadcast_to(points, (count, *points.shape)), np.broadcast_to(normal, (count, 3))
+    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body, or a support, from its settled state."""
     turn = run.turn[:, body] @ run.settled_turn[body].T
     arm = points - run.settled[body]
     return run.place[:, None, body] + np.einsum("txy,ky->tkx", turn, arm), turn @ normal

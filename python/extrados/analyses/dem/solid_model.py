@@ -10,8 +10,9 @@ from extrados.analyses.dem.impact_rules import ContactValues
 from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
 from extrados.analyses.dem.ties import NO_TIES, ElementTies, element_ties
 from extrados.core import dem3
-from extrados.core.dem_run import Law
+from extrados.core.dem_run import Law, SupportMove
 from extrados.model.errors import Key
+from extrados.model.geometry.anchors import moved_joints
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.views.building import Building
@@ -116,14 +117,27 @@ def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties)
 
 
+def moves_of(building: Building, model: SolidModel) -> tuple[SupportMove, ...]:
+    """Movements of the footings below contacts that [[initial.movements]] name."""
+    movements = building.initial.movements
+    joints = moved_joints(model.assembly, [one.joint for one in movements])
+    return tuple(
+        SupportMove(model.count + int(model.supports.of_joint[j]), (one.dx, one.dy, one.dz), one.start, one.duration)
+        for j, one in zip(joints, movements, strict=True)
+    )
+
+
 def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
     """What discrete elements in space cannot take into account, and the key that asks for it."""
     given, joints = options.model_fields_set, building.joints
+    moves = isinstance(options, Dem) and options.test == "motion"
     asked: list[tuple[str, bool, Key]] = [
         ("mass_damping", options.mass_damping > 0.0, ("analysis", "mass_damping")),
         ('merge = "three-bars"', options.merge != "none", ("analysis", "merge")),
         *((key, key in given, ("analysis", key)) for key in ("vary_damping", "vary_stiffness", "vary_friction")),
-        ("[[initial.movements]]", bool(building.initial.movements), ("initial", "movements")),
+        ("[[initial.movements]] of a tilt test or of a map", bool(building.initial.movements) and not moves, ("initial", "movements")),
+        ("[[initial.movements]] with a floor", bool(building.initial.movements) and options.floor is not None, ("initial", "movements")),
+        *(("turn of a support", bool(one.turn), ("initial", "movements", k, "turn")) for k, one in enumerate(building.initial.movements)),
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),

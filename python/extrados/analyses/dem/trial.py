@@ -14,6 +14,7 @@ from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
 from extrados.core import dem
+from extrados.core.dem_run import SupportMove
 from extrados.core.ground import Ground
 from extrados.model.errors import NoView
 from extrados.model.structures.block import BlockAssembly
@@ -58,14 +59,14 @@ def core_options(context: Context, options: Dem, model: Model, begin: float = 0.
     )
 
 
-def _moves(context: Context, model: Model) -> tuple[dem.SupportMove, ...]:
+def _moves(context: Context, model: Model) -> tuple[SupportMove, ...]:
     """Movements of supports, by the names of joints on them."""
     found = []
     for k, (j, one) in enumerate(zip(context.building.moved(), context.building.initial.movements, strict=True)):
         pair = model.rigid.joints[j]
         if pair is None or max(pair) < model.rigid.count:
             raise Refused(f"joint '{one.joint}' is not on the ground", ("initial", "movements", k, "joint"))
-        found.append(dem.SupportMove(max(pair), one.dx, one.dy, float(np.radians(one.turn)), one.start, one.duration))
+        found.append(SupportMove(max(pair), (one.dx, one.dy, float(np.radians(one.turn))), one.start, one.duration))
     return tuple(found)
 
 
@@ -129,7 +130,7 @@ class Trial:
         shift, rate = (None if self.shift is None else factor * self.shift), None
         if self.begin:
             shift, rate = self.begin.state(factor)
-        moves = tuple(replace(m, dx=factor * m.dx, dy=factor * m.dy, turn=factor * m.turn) for m in self.moves)
+        moves = tuple(move.times(factor) for move in self.moves)
         tasks = [
             Task(
                 k,

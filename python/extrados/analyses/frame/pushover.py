@@ -15,7 +15,7 @@ from extrados.analyses.frame.modes import Mode, modes_of, rest_of, way_of
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.frame.verified import verify_frame
 from extrados.core.calls import interruptible
-from extrados.core.frame import STATE, STATES, Path
+from extrados.core.frame import STATE, STATES, UNLIMITED, Path
 from extrados.results import frame as out
 from extrados.results.model import Array, Result, TableData
 from extrados.views.frame.frame import EquivalentFrame
@@ -259,7 +259,7 @@ def _failed(frame: EquivalentFrame, path: Path) -> list[dict[str, Any]]:
 
 def _ring_beams(frame: EquivalentFrame, paths: Sequence[Path]) -> dict[str, Any]:
     """Greatest moment of the elastic ring beams up to the peaks of all runs; nothing without any."""
-    own = [k for k, s in enumerate(frame.strips) if s.kind == "ring beam"]
+    own = [k for k, s in enumerate(frame.strips) if s.kind == "ring beam" and frame.elements[k].moment >= UNLIMITED]
     if not own:
         return {}
     return {"ring_beam_moment_Nm": max(float(np.abs(p.force[: int(p.multiple.argmax()) + 1, own, 1:]).max()) for p in paths)}

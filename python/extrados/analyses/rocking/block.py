@@ -24,13 +24,13 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     if structure.kind == "column":
         context.warnings.append("the column is modelled as one rigid body; use `dem` for joints that open")
     end_time = options.end_time or context.motion.end + rest_time(rocker)
-    ran = rock(context, options, rocker, end_time, 12)
+    ran = rock(context, options, rocker, end_time, 12, lambda found: _required(rocker, found))
     response = ran.response
 
     tangential, normal = toe_forces(model, response, rocker.restraints, response.forces)
     c, s = np.cos(model.block.slope), np.sin(model.block.slope)
-    along, across = c * tangential + s * normal, c * normal - s * tangential  # on a sloping base
-    friction = np.abs(along) / np.maximum(across, 1e-300)
+    across = c * normal - s * tangential  # on a sloping base
+    friction = np.abs(c * tangential + s * normal) / np.maximum(across, 1e-300)
     flying = across <= 0.0
     c_v = model.restitution
     needed = float(friction[~flying].max(initial=0.0))
@@ -65,6 +65,15 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     if ran.conditions.slides_first is None:  # else the conditions state the friction that rocking requires
         result.answer += f" If friction is below {needed:.2f}, the {rocker.word} slides instead."
     return result
+
+
+def _required(rocker: Rocker, response: core_rocking.Response) -> np.ndarray:
+    """Friction at the toe that a response requires (times), 0 where the block would fly."""
+    assert isinstance(rocker.model, BlockModel)
+    tangential, normal = toe_forces(rocker.model, response, rocker.restraints, response.forces)
+    c, s = np.cos(rocker.model.block.slope), np.sin(rocker.model.block.slope)
+    across = c * normal - s * tangential
+    return np.where(across > 0.0, np.abs(c * tangential + s * normal) / np.maximum(across, 1e-300), 0.0)
 
 
 def toe_forces(

@@ -1,5 +1,6 @@
 """What the rocking of blocks and arches share: running the history, storing it, saying it in words."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ from extrados.analyses.rocking.course import Course, build_result, impact_times,
 from extrados.analyses.rocking.doubts import Doubts, doubts, doubts_on_contacts
 from extrados.analyses.rocking.hand_over import contacts_of, follow_contacts, leaving_time, outcome_of, stored
 from extrados.analyses.rocking.tables import Rocking
+from extrados.analyses.rocking.tied import sliding_of
 from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
@@ -48,26 +50,37 @@ class Ran:
     run: Result | None = None
 
 
-def rock(context: Context, options: Rocking, rocker: Rocker, end_time: float, width: int) -> Ran:
-    """The response of a rocker, on rigid contacts from where a condition of its mechanism fails; width: see run_history."""
+def rock(
+    context: Context, options: Rocking, rocker: Rocker, end_time: float, width: int, demand: Callable[[Response], np.ndarray] | None = None
+) -> Ran:
+    """The response of a rocker, on rigid contacts from where a condition of its mechanism fails; width: see run_history.
 
-    def until(time: float) -> Response:
-        return run_history(context, options, rocker.body, time, width, rocker.start_rotation)
+    demand: friction that a response requires at its output times (times), where the joints are not watched."""
+
+    def until(time: float, step: float = options.output_step) -> Response:
+        chosen = options.model_copy(update={"output_step": step})
+        return run_history(context, chosen, rocker.body, time, width, rocker.start_rotation)
 
     fixed = until(end_time)
-    time = leaving_time(fixed, astray_of(rocker), rocker.time_unit) if options.hand_over and not fixed.interrupted else None
-    contacts = None
-    if time is not None:
+    time, contacts, slides = None, None, None
+    if options.hand_over and not fixed.interrupted:
+        time = leaving_time(fixed, astray_of(rocker), rocker.time_unit)
+        if demand is not None and rocker.watch is None:
+            slides = sliding_of(rocker, context.building, fixed, until, demand, options.tolerance)
+    if slides is not None:
+        time, contacts = slides.leaves, slides.contacts
+    elif time is not None:
         contacts = contacts_of(rocker, context.building, options.form == "linear", options.tolerance)
     if contacts is not None and time is not None:
         ground = context.motion.ground
         try:
-            run, result = follow_contacts(context, contacts, contacts.begin(ground, time), options.end_time, options.output_step)
+            last = options.end_time if slides is None else end_time  # ties keep a block rocking long
+            run, result = follow_contacts(context, contacts, contacts.begin(ground, time), last, options.output_step)
         except (Refused, Unfinished) as error:
             context.warnings.append(f"The run with rigid contacts, from {time:.3f} s on, gave no result: {error}")
         else:
             response = until(max(time, 1e-9 * rocker.time_unit))
-            conditions = of_one(rocker, fixed, handed=True)
+            conditions = of_one(rocker, fixed, handed=True) if slides is None else slides.conditions
             outcome = outcome_of(response.half_cycles > 0, run.outcome)
             over = out.HandOver(
                 time_s=time, reason=conditions.violated[0], outcome=outcome, fixed_hinges_outcome=fixed.outcome, contacts=run
@@ -100,7 +113,7 @@ def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction
     energy = response.kinetic + response.potential + response.stored
     course = Course(
         of=of,
-        settled=response.settled if over is None else not over.contacts.still_moving,
+        settled=response.settled if over is None else True,  # contacts say themselves that they still move
         moves="the structure still rocks",
         half_cycles=response.half_cycles,
         potential=response.potential,
@@ -114,7 +127,10 @@ def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction
         growth=doubt.growth,
         violated=doubt.violated,
     )
-    contacts = {} if over is None else {"outcome": over.outcome, "collapse_time_s": over.contacts.collapse_time_s}
+    contacts: dict[str, Any] = {}
+    if over is not None:
+        run = over.contacts
+        contacts = {"outcome": over.outcome, "collapse_time_s": run.collapse_time_s, "settled": not run.still_moving}
     result = build_result(
         context,
         response,

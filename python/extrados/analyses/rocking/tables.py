@@ -98,6 +98,10 @@ class Rocking(RockingTable, Animated):
         [], "times at which the structure and its thrust line are drawn", max_length=24
     )
 
+    def rests_on(self, building: Building) -> dict[str, str | None]:
+        """The friction of the deck, with which that of the motion is compared whatever acts on the structure."""
+        return super().rests_on(building) | {"joints.friction": None}
+
 
 class FailureDomain(RockingTable):
     """Which pulses bring an arch or a block down: Mode I (after an impact) and Mode II (without impact)."""

@@ -2,12 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.polygons import inside
+
+if TYPE_CHECKING:
+    from extrados.model.geometry.solids.assembly import SolidAssembly
 
 HAIR = 1e-6  # of the size of the assembly: so near to a face a point lies on it
 
@@ -77,7 +81,7 @@ def only_stone(
     return found[0]
 
 
-def moved_joints(assembly: Assembly, names: Sequence[str]) -> list[int]:
+def moved_joints(assembly: "Assembly | SolidAssembly", names: Sequence[str]) -> list[int]:
     """The joints on the ground that [[initial.movements]] name; BadGeometry where one is not there or not on the ground."""
     grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
     found = []

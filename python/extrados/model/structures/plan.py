@@ -232,13 +232,46 @@ class Prestress(Table):
     level: Annotated[int, Field(ge=1)] | None = key(None, "storey on whose top the force acts; default: the highest storey of the wall")
 
 
+class Reinforcement(Table):
+    """Longitudinal bars of a ring beam of concrete, half of them at its upper and half at its lower face."""
+
+    area: Annotated[float, Field(gt=0)] = key(about="cross-section of all bars in m^2")
+    yield_strength: Stress = key(about="yield strength of the bars", gt=0)
+    cover: Length = key(0.04, "distance of the bars from the upper and lower face of the beam", gt=0)
+
+    @property
+    def tension(self) -> float:
+        """Axial strength in tension [N]."""
+        return self.area * self.yield_strength
+
+    def plastic_moment(self, depth: float, width: float, concrete: float) -> float:
+        """Moment [N m] of a section by the stress block of 0.85 of a compressive strength [Pa]; bars in compression are neglected."""
+        force = 0.5 * self.tension
+        return force * max(depth - self.cover - 0.5 * force / (0.85 * concrete * width), 0.0)
+
+
 class RingBeam(Table):
-    """A beam of the wall's thickness along the top of some walls that stays elastic."""
+    """A beam of the wall's thickness along the top of some walls; elastic, or in frames with the strength of its reinforcement."""
 
     storey: int = key(about="storey on whose top the ring beam is; the upper edge of the beam is level with the floor", ge=1)
     depth: Length = key(about="height of the beam", gt=0)
     material: str = key(about="a name of [materials]")
     walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
+    reinforcement: Reinforcement | None = key(
+        None,
+        (
+            "bars of the beam, which give the plastic moment of its hinges and its strength as a tie in frames; the material of the beam then "
+            "needs a compressive_strength. Default: the beam remains elastic"
+        ),
+    )
+
+    @model_validator(mode="after")
+    def _room(self) -> "RingBeam":
+        if self.reinforcement is not None and 2.0 * self.reinforcement.cover >= self.depth:
+            raise ValueError(
+                f"reinforcement.cover: {self.reinforcement.cover:g} m from both faces does not fit in a beam with a depth of {self.depth:g} m"
+            )
+        return self
 
 
 class Plan(Structure):

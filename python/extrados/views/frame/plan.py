@@ -68,8 +68,12 @@ class _Maker(Division):
         if plan.beds:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
         if plan.ring_beams:
-            self.remarks.append("Ring beams of [[structure.ring_beams]] remain elastic: check their reinforcement for the greatest moment.")
-            weak = {b.material for b in plan.ring_beams if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
+            elastic = [b for b in plan.ring_beams if b.reinforcement is None]
+            if elastic:
+                self.remarks.append(
+                    "Ring beams of [[structure.ring_beams]] without reinforcement remain elastic: check them for the greatest moment."
+                )
+            weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
             if weak:
                 self.remarks.append(
                     f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} has no "
@@ -411,6 +415,7 @@ class _Maker(Division):
             material = self.building.materials[beam.material]
             young = material.young
             shear = young / (2.0 * (1.0 + material.poisson))
+            moment = self._ring_moment(strip, pressed)
         else:
             if high > float(self.plan.levels[strip.storey]) - MEETS:  # the ring beam below the level lies within
                 depth -= self.ring_depth(wall, strip.storey)
@@ -444,6 +449,9 @@ class _Maker(Division):
         pull = 0.0
         for beam in plan.ring_beams:
             if beam.storey == strip.storey and wall in plan.of_ring_beam(beam):
+                if beam.reinforcement is not None:
+                    pull += beam.reinforcement.tension
+                    continue
                 strength = self.building.materials[beam.material].tensile_strength if beam.material in self.building.materials else None
                 pull += UNLIMITED if strength is None else strength * beam.depth * strip.thickness
         for k, strength in self.along_walls.get(strip.wall, []):
@@ -454,6 +462,40 @@ class _Maker(Division):
                 pull += strength
                 self.idle.discard(k)
         return pull
+
+    def _ring_moment(self, strip: Strip, pressed: float) -> float:
+        """Moment [N m] of the hinges of a ring beam, M_p (1 - H_p/T): the strut H_p of a spandrel beside it takes that part of the tension
+        T of its bars. The chord of the domain of moments and axial forces is on the safe side."""
+        wall = self.plan.walls[strip.wall]
+        beams = [b for b in self.plan.ring_beams if b.storey == strip.storey and wall in self.plan.of_ring_beam(b)]
+        moment = tension = 0.0
+        for beam in beams:
+            if beam.reinforcement is None:
+                return UNLIMITED
+            concrete = self.building.materials[beam.material].compressive_strength
+            if concrete is None:
+                raise BadGeometry(
+                    f"ring beam of storey {beam.storey}: its reinforcement requires a compressive_strength in [materials.{beam.material}]",
+                    ("structure", "ring_beams", self.plan.ring_beams.index(beam)),
+                )
+            moment += beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete)
+            tension += beam.reinforcement.tension
+        struts = [
+            self._strut(one, one.part[3] - one.part[2], pressed, self._tie(one))
+            for one in self.strips
+            if (one.kind, one.wall, one.storey, one.nodes) == ("spandrel", strip.wall, strip.storey, strip.nodes)
+        ]
+        return moment * (1.0 - min(max(struts, default=0.0) / tension, 1.0))
+
+    def _sideways(self, pressed: float) -> float:
+        """f_h [Pa] for the strength of stress blocks."""
+        o = self.options
+        return o.horizontal_strength / o.confidence_factor if o.horizontal_strength else HORIZONTAL * pressed / BLOCK
+
+    def _strut(self, strip: Strip, depth: float, pressed: float, tie: float) -> float:
+        """Greatest strut H_p [N] in a spandrel beside a tie."""
+        unlimited = pressed >= UNLIMITED and not self.options.horizontal_strength
+        return strut_of(depth, strip.thickness, tie, UNLIMITED if unlimited else self._sideways(pressed))
 
     def _pressure(self, strip: Strip) -> float:
         """Half the mean pressure [Pa] under the loads above a spandrel on the piers beside it."""
@@ -478,8 +520,7 @@ class _Maker(Division):
         pressure beside, and that of a strut against a tie. M = min(M_u, V l/2).
         """
         o = self.options
-        sideways = o.horizontal_strength / o.confidence_factor if o.horizontal_strength else HORIZONTAL * pressed / BLOCK
-        strut = strut_of(depth, strip.thickness, tie, UNLIMITED if pressed >= UNLIMITED and not o.horizontal_strength else sideways)
+        sideways, strut = self._sideways(pressed), self._strut(strip, depth, pressed, tie)
         shear = shear_strength(depth, strip.thickness, length, cohesion, tension, strut)
         if not shear > 0.0:
             return 1e-3, False

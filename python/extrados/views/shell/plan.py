@@ -108,6 +108,8 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
         with blaming("rods", k):
             bars.append(_rod(rod, k + 1, grown, used, building, size))
     held, springs = _supports(plan, [*parts, *joints], grown, used, above)
+    if any(beam.reinforcement is not None for beam in plan.ring_beams):
+        warnings.append("ring beams remain elastic in shells: their reinforcement is not considered")
     warnings += _apart(plan, parts, bars, joints, grown)
     for prop in plan.props:
         w = next(i for i, wall in enumerate(plan.walls) if wall.name == prop.wall)

@@ -1,0 +1,52 @@
+"""A square torn in pure opening along a line that lies askew in its mesh: energy over that of the crack."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import extrados
+
+ENERGY, THICKNESS, SIDE, ELEMENTS = 50.0, 0.1, 1.1, 11
+
+
+def torn(folder: Path, angle: float, selective: bool) -> float:
+    """Dissipated energy at an opening of 2 mm over Gf times the area of the crack; a grid of quadrilaterals turned by `angle` [deg],
+    whose boundary is held on one side of the line x = 0 and moved along x on the other."""
+    meshio = pytest.importorskip("meshio")
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    ticks = np.linspace(-0.5 * SIDE, 0.5 * SIDE, ELEMENTS + 1)
+    grid = np.array([(x, y) for y in ticks for x in ticks])
+    first = np.array([j * (ELEMENTS + 1) + i for j in range(ELEMENTS) for i in range(ELEMENTS)])
+    edge = np.abs(np.abs(grid) - 0.5 * SIDE).min(axis=1) < 1e-9
+    nodes = grid @ np.array([[c, s], [-s, c]]).T
+    quads = np.column_stack([first, first + 1, first + ELEMENTS + 2, first + ELEMENTS + 1])
+    meshio.write(folder / "square.vtk", meshio.Mesh(np.c_[nodes, 0.0 * nodes[:, 0]], [("quad", quads)]))
+    places = [({"x": [x - 1e-4, x + 1e-4], "y": [y - 1e-4, y + 1e-4]}, x) for x, y in nodes[edge].tolist()]
+    moved = [place for place, x in places if x > 1e-9]
+    deck = {
+        "structure": {"kind": "mesh", "file": str(folder / "square.vtk"), "thickness": THICKNESS},
+        "material": {"density": 1.0, "young": 2e9, "poisson": 0.0, "tensile_strength": 1e5, "fracture_energy": ENERGY},
+        "supports": {"held": [place for place, x in places if x < -1e-9] + [place | {"fix": "y"} for place in moved]},
+        "analysis": [
+            {
+                "kind": "sla",
+                "constant": [{"kind": "gravity"}],
+                "reference": [{"kind": "displacement", "direction": "x", "parts": moved}],
+                "target_displacement": 2e-3,
+                "events": 30000,
+                "mesh": {"selective": selective},
+            }
+        ],
+    }
+    lost = extrados.run(deck, threads=1).analyses[0]["results"]["dissipated_energy_J"]
+    return lost / (ENERGY * THICKNESS * SIDE / max(c, s))
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize(
+    ("angle", "selective", "least", "most"), [(0.0, False, 0.99, 1.01), (0.0, True, 0.99, 1.01), (45.0, True, 0.9, 1.03)]
+)
+def test_the_energy_of_a_crack_askew_to_the_mesh(tmp_path, angle: float, selective: bool, least: float, most: float) -> None:
+    """Shear strain from the middle of each element takes away the stress that an oblique crack locks in."""
+    assert least < torn(tmp_path, angle, selective) < most
