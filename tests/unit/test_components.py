@@ -156,5 +156,5 @@ def test_a_missing_partner_stays_its_own(tmp_path: Path) -> None:
     up = result.tables["ensemble"].columns["vertical_pga_g"]
     assert up[:2] == pytest.approx([0.4, 0.4], rel=1e-2) and np.isnan(up[2])
     assert "rotd50_pga_g" not in result.tables["ensemble"].columns
-    with pytest.raises(DeckError, match="give only one of the keys files"):
+    with pytest.raises(DeckError, match="give only one of the keys `files`"):
         make_deck({"motion": {**suite(tmp_path), "pattern": "*"}, "analysis": {"kind": "motion"}}, tmp_path)

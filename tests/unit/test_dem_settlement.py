@@ -279,7 +279,7 @@ def test_a_block_that_slides_off_its_footing_gets_a_hint_at_the_floor(tmp_path) 
     deck.write_text(sliding + "floor = 0.0\n")
     on = extrados.run(deck).results[0]
     assert any(
-        "slides off its footing. To let detached blocks slide on a floor, give `dem` the key floor = " in text for text in off.warnings
+        "slides off its footing. To let detached blocks slide on a floor, give `dem` the key `floor` = " in text for text in off.warnings
     )
     assert not any("footing" in text for text in on.warnings)
     assert on.arrays["place"].data[:, 0, 1].min() == pytest.approx(0.1, abs=1e-3)

@@ -118,9 +118,9 @@ def test_a_hazard_curve_that_ends_too_early_is_reported() -> None:
 @pytest.mark.parametrize(
     ("keys", "said"),
     [
-        ({"hazard": HAZARD}, "requires the key levels, or a cloud"),
+        ({"hazard": HAZARD}, "requires the key `levels`, or a cloud"),
         ({"cloud": True, "intensity": "scale"}, "not scaled"),
-        ({"cloud": True, "levels": [0.1]}, "remove the keys levels"),
+        ({"cloud": True, "levels": [0.1]}, "remove the keys `levels`"),
         ({"rotation_limits": [0.5]}, "is used only with cloud = true"),
         ({"histories": 3, "levels": [0.1]}, "unscaled motions"),
         ({"cloud": True, "hazard": {"intensities": [0.1, 0.2]}}, "give either intensities"),

@@ -261,7 +261,7 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
 
 def test_wrong_dampers_and_hinges_are_reported_with_their_line() -> None:
     for text, said in (
-        ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]", "expected either the key damping"),
+        ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]", "expected either the key `damping`"),
         ("[[dampers]]\nstart = [0.0, 5.0]\nground = [1.0, 5.0]\nslip_force = 2.0", "require each other"),
         ("[[hinges]]\njoints = ['base']", "expected stiffness or damping"),
         ("[[hinges]]\njoints = ['base']\ndamping = 1.0\nyield_moment = 1.0", "yield_moment needs stiffness"),

@@ -432,7 +432,7 @@ def test_what_is_not_uncertain_of_it(name: str, word: str) -> None:
 
 
 def test_keys_of_the_base_are_required_together() -> None:
-    with pytest.raises(ValueError, match="damping_ratio requires the key stiffness"):
+    with pytest.raises(ValueError, match="damping_ratio requires the key `stiffness`"):
         Supports(damping_ratio=0.1)
     status, reason = answer(deck(BLOCK, "tilt", supports={"stiffness": 2e8, "damping_ratio": 0.1}), "tilt")
     assert status == "refused"

@@ -270,9 +270,9 @@ def test_every_stone_of_a_groin_vault_has_a_bed(given: dict[str, Any]) -> None:
         ({**SOLIDS["dome"], "oculus": 170, "embrace": 160}, "leaves nothing"),
         ({**SOLIDS["cross-vault"], "voussoirs": 9}, "expected an even number"),
         ({**SOLIDS["cross-vault"], "springers": 4}, "reach the crown"),
-        ({**SOLIDS["round column"], "depth": 1.0}, "depth is only for rectangular drums"),
+        ({**SOLIDS["round column"], "depth": 1.0}, "`depth` is only for rectangular drums"),
         ({"kind": "column", "width": 1, "height": 5, "flute_depth": 0.1}, 'section = "round"'),
-        ({**SOLIDS["room"], "legs": SOLIDS["room"]["legs"][:3]}, "the key closed requires at least four legs"),
+        ({**SOLIDS["room"], "legs": SOLIDS["room"]["legs"][:3]}, "the key `closed` requires at least four legs"),
         ({**SOLIDS["bent wall"], "legs": [{"length": 0.3}, {"length": 2}]}, "less than two thicknesses"),
     ],
 )

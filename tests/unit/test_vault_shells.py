@@ -238,7 +238,7 @@ def test_limits_of_a_vault_are_reported(tmp_path, stages, change, words):
 @pytest.mark.parametrize(
     "keys, words",
     [
-        ({"settlements": [{"out": 0.01}]}, "either the key wall"),
+        ({"settlements": [{"out": 0.01}]}, "either the key `wall`"),
         ({"settlements": [{"foot": "left"}]}, "does not move"),
         ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "give two stages"),
         ({"stages": [{"name": "a"}, {"name": "a"}]}, "occurs twice"),

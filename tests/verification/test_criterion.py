@@ -89,7 +89,7 @@ def test_fits_beside_the_curves() -> None:
     assert curve.criterion.c1 == pytest.approx(criterion.table()[0.15, 150.0].c1)
     block = {**deck, "structure": {"kind": "block", "width": 0.5, "height": 2.0}, "joints": {}}
     refused = extrados.run(block).results[0]
-    assert refused.status == "refused" and "the key fits is only for arches, and this structure is a block" in refused.reason
+    assert refused.status == "refused" and "the key `fits` is only for arches, and this structure is a block" in refused.reason
     flat = {**deck, "structure": {**deck["structure"], "embrace": 136.0}}
     beyond = extrados.run(flat).results[0]
     assert beyond.results.curves[0].criterion is None and any("Table 5.3 covers" in text for text in beyond.warnings)

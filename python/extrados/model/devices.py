@@ -29,13 +29,15 @@ class Damper(Table):
     @model_validator(mode="after")
     def _whole(self) -> "Damper":
         if (self.end is None) == (self.ground is None):
-            raise ValueError("expected either the key end (anchorage in another block) or the key ground")
+            raise ValueError("expected either the key `end` (anchorage in another block) or the key `ground`")
         if self.start == self.far:
             raise ValueError("start: both ends have the same position")
         if len(self.start) != len(self.far):
             raise ValueError("start: expected the same number of coordinates at both ends")
         if (self.damping is None) == (self.slip_force is None):
-            raise ValueError("expected either the key damping (viscous damper), or the keys slip_force and stiffness (friction damper)")
+            raise ValueError(
+                "expected either the key `damping` (viscous damper), or the keys `slip_force` and `stiffness` (friction damper)"
+            )
         if (self.slip_force is None) != (self.stiffness is None):
             raise ValueError("slip_force and stiffness require each other: give both")
         return self

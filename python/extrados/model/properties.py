@@ -92,7 +92,7 @@ class Material(Table):
             if self.crushing_energy is None:
                 raise ValueError("compressive_strength_parallel needs compressive_strength and crushing_energy")
             if self.confinement:
-                raise ValueError("the key confinement requires a single compressive strength: remove compressive_strength_parallel")
+                raise ValueError("the key `confinement` requires a single compressive strength: remove compressive_strength_parallel")
         self._check_bedding()
         return self
 
@@ -108,7 +108,7 @@ class Material(Table):
         if self.tensile_strength is None:
             raise ValueError("tensile_strength_parallel requires tensile_strength, the strength across the bed joints")
         if self.lateral_reduction:
-            raise ValueError("the key lateral_reduction requires a single tensile strength: remove tensile_strength_parallel")
+            raise ValueError("the key `lateral_reduction` requires a single tensile strength: remove tensile_strength_parallel")
         most = (self.tensile_strength * self.tensile_strength_parallel) ** 0.5
         if self.shear_strength is not None and self.shear_strength > most * (1.0 + 1e-9):
             raise ValueError(
@@ -254,14 +254,14 @@ class Supports(Table):
     @model_validator(mode="after")
     def _thrown_back_by_a_wall(self) -> "Supports":
         if self.rebound is not None and self.abutting_wall is None:
-            raise ValueError("the key rebound requires abutting_wall, the side of the wall")
+            raise ValueError("the key `rebound` requires abutting_wall, the side of the wall")
         return self
 
     @model_validator(mode="after")
     def _gives_way(self) -> "Supports":
         for name in ("foundation", "damping_ratio"):
             if name in self.model_fields_set and self.stiffness is None:
-                raise ValueError(f"{name} requires the key stiffness, the stiffness of the ground")
+                raise ValueError(f"{name} requires the key `stiffness`, the stiffness of the ground")
         return self
 
 

@@ -55,20 +55,20 @@ class Tie(Table):
         if self.hoop:
             if self.end is not None or self.ground is not None or self.via or self.start_stone or self.end_stone:
                 raise ValueError(
-                    "hoop: a closed hoop takes none of the keys end, ground, via, start_stone and end_stone; `start` gives its height"
+                    "hoop: a closed hoop takes none of the keys `end`, `ground`, `via`, `start_stone` and `end_stone`; `start` gives its height"
                 )
             if len(self.start) != 3:
                 raise ValueError("start: a hoop requires [x, y, z], where z is its height")
         elif (self.end is None) == (self.ground is None):
-            raise ValueError("expected either the key end (anchorage in another block) or the key ground")
+            raise ValueError("expected either the key `end` (anchorage in another block) or the key `ground`")
         if len({len(point) for point in (self.start, *self.via, *([] if self.hoop else [self.far]))}) != 1:
             raise ValueError("start: expected the same number of coordinates for all points of a tie")
         if self.bonded and not self.hoop and not self.via:
-            raise ValueError("the key bonded is only for a hoop, or for a chain with `via`")
+            raise ValueError("the key `bonded` is only for a hoop, or for a chain with `via`")
         if self.start == self.far:
             raise ValueError("start: both ends have the same position")
         if self.ground is not None and self.end_stone is not None:
-            raise ValueError("end_stone can be given only with the key end, and this tie has the key ground: remove end_stone")
+            raise ValueError("end_stone can be given only with the key `end`, and this tie has the key `ground`: remove end_stone")
         if self.prestress > self.most or self.prestress < self.least:
             raise ValueError(
                 f"prestress: {self.prestress:g} N exceeds the range that the tie can carry, {self.least:g} to {self.most:g} N "

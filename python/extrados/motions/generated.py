@@ -87,7 +87,7 @@ def line_frequencies(lines: int | Sequence[float], spacing: str, band: tuple[flo
         return np.linspace(*band, lines) if spacing == "uniform" else np.geomspace(*band, lines)
     given = np.array(lines, dtype=float)
     if given.ndim != 1 or len(given) < 2 or np.any(np.diff(given) <= 0.0) or given[0] <= 0.0:
-        raise ValueError("the key lines must contain at least two increasing frequencies above zero")
+        raise ValueError("the key `lines` must contain at least two increasing frequencies above zero")
     return given
 
 

@@ -47,7 +47,7 @@ class Harmonic(Motion):
     @model_validator(mode="after")
     def _one_envelope(self) -> "Harmonic":
         if self.ramp > 0.0 and self.carrier is not None:
-            raise ValueError("give either the key ramp or the key carrier, not both")
+            raise ValueError("give either the key `ramp` or the key `carrier`, not both")
         return self
 
 
@@ -105,7 +105,7 @@ class Treated(Motion):
     @model_validator(mode="after")
     def _one_target(self) -> "Treated":
         if sum(v is not None for v in (self.pga, self.pgv, self.arias, self.sa)) > 1:
-            raise ValueError("give only one of the keys pga, pgv, arias and sa")
+            raise ValueError("give only one of the keys `pga`, `pgv`, `arias` and `sa`")
         if (self.sa is None) != (self.sa_period is None):
             raise ValueError("sa and sa_period go together")
         if self.low_cut is not None and self.high_cut is not None and self.low_cut >= self.high_cut:
@@ -133,7 +133,7 @@ class Components(Table):
     @model_validator(mode="after")
     def _plane(self) -> "Components":
         if (self.angle is not None) != (self.second is not None or self.second_channel is not None):
-            raise ValueError("the key angle requires second or second_channel, which gives the other horizontal component")
+            raise ValueError("the key `angle` requires second or second_channel, which gives the other horizontal component")
         return self
 
 
@@ -210,9 +210,9 @@ class Suite(Treated):
     @model_validator(mode="after")
     def _one_source(self) -> "Suite":
         if any("*" in name or "?" in name for name in self.files or []):
-            raise ValueError('the key files takes names without wildcards; for wildcards give pattern = "records/*.AT2"')
+            raise ValueError('the key `files` takes names without wildcards; for wildcards give pattern = "records/*.AT2"')
         if sum(v is not None for v in (self.files, self.pattern, self.folder, self.records)) != 1:
-            raise ValueError("give only one of the keys files, pattern, folder and records")
+            raise ValueError("give only one of the keys `files`, `pattern`, `folder` and `records`")
         return self
 
 

@@ -71,7 +71,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         result.warnings.append(f"joints slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
     if who := numbers["off_footing"]:
         result.warnings.append(
-            f"{', '.join(who[:6])} slides off its footing. To let detached blocks slide on a floor, give `dem` the key floor "
+            f"{', '.join(who[:6])} slides off its footing. To let detached blocks slide on a floor, give `dem` the key `floor` "
             f"= {measures.ground_level(model):.4g}"
         )
     result.warnings += doubts_of_run(found, chaos["violated"], numbers["still_moving"])

@@ -188,7 +188,7 @@ class FrameFragility(FrameMotion):
             raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
         if self.by == "pushover" and self.levels is not None:
             raise ValueError(
-                'the key levels is used only with by = "history". N2 calculates the intensity that each motion needs to reach a limit state'
+                'the key `levels` is used only with by = "history". N2 calculates the intensity that each motion needs to reach a limit state'
             )
         for name, value in self.uncertain.items():
             if name not in UNCERTAIN:

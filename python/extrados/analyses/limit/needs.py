@@ -68,7 +68,7 @@ def _needs_of_many(context: Context, options: BuildingAnalysis) -> Iterator[Need
 
 def _refuse_sections() -> None:
     raise Refused(
-        "the key section is only for blocks in space: give the key direction to analyse the blocks in space, or the key "
+        "the key `section` is only for blocks in space: give the key `direction` to analyse the blocks in space, or the key "
         "chain for the plane section",
         ("analysis", "section"),
     )
@@ -76,7 +76,7 @@ def _refuse_sections() -> None:
 
 def _refuse_mortar() -> None:
     raise Refused(
-        'mortar = "ductile" is only for blocks in space: give the key direction to analyse the blocks in space, or remove mortar',
+        'mortar = "ductile" is only for blocks in space: give the key `direction` to analyse the blocks in space, or remove mortar',
         ("analysis", "mortar"),
     )
 
@@ -114,7 +114,7 @@ def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
 
 
 def _refuse_height(number: int) -> None:
-    raise Refused("the key z is only for blocks in space: in a plane section give the height as y", ("analysis", "load", number, "z"))
+    raise Refused("the key `z` is only for blocks in space: in a plane section give the height as y", ("analysis", "load", number, "z"))
 
 
 def _refuse_alone(building: Building) -> None:
@@ -127,10 +127,10 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
     key = ("analysis", "fracture")
     assembly = building.blocks()
     if not assembly.buttresses:
-        raise Refused("the key fracture requires a buttress on the ground: a vault or an aisled vault", key)
+        raise Refused("the key `fracture` requires a buttress on the ground: a vault or an aisled vault", key)
     if building.material.compressive_strength is not None or options.friction_rule != "associated":
         raise Refused(
-            "the key fracture excludes crushing and sliding without dilatancy: remove fracture, or remove "
+            "the key `fracture` excludes crushing and sliding without dilatancy: remove fracture, or remove "
             'compressive_strength and give friction_rule = "associated"',
             key,
         )

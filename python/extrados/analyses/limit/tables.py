@@ -134,7 +134,7 @@ class Section(Table):
     @model_validator(mode="after")
     def _one_cut(self) -> "Section":
         if sum(one is not None for one in (self.x, self.y, self.z, self.joints)) != 1:
-            raise ValueError("expected one of the keys x, y, z and joints")
+            raise ValueError("expected one of the keys `x`, `y`, `z` and `joints`")
         return self
 
 
@@ -179,7 +179,7 @@ class Sweep(SpatialLimit):
     @model_validator(mode="after")
     def _range(self) -> "Sweep":
         if (self.values is None) == (self.start is None or self.stop is None):
-            raise ValueError("give either the key values, or the keys start and stop")
+            raise ValueError("give either the key `values`, or the keys `start` and `stop`")
         return self
 
 
@@ -338,13 +338,13 @@ class MovingLoad(LimitAnalysisTable):
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
             raise ValueError("axle_loads: expected one load above 0 for each of the axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
-            raise ValueError("the key train replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
+            raise ValueError("the key `train` replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
         if self.axle_loads is not None and (self.shares is not None or self.force is not None):
             raise ValueError("axle_loads replaces shares and force")
         if self.uniform and self.axle_loads is None and self.axles:
-            raise ValueError("the key uniform requires axle_loads, or axles = [] if there are no axles")
+            raise ValueError("the key `uniform` requires axle_loads, or axles = [] if there are no axles")
         if self.serviceability is not None and self.train is None and self.axle_loads is None and not self.uniform:
-            raise ValueError("the key serviceability requires one of the keys train, axle_loads and uniform")
+            raise ValueError("the key `serviceability` requires one of the keys `train`, `axle_loads` and `uniform`")
         if not self.axles and not self.uniform:
             raise ValueError("axles: expected at least one axle, or uniform loads")
         if self.lanes is not None and self.train != "LM1":

@@ -149,7 +149,9 @@ def _fits(
     periods [s]; a warning states the one that is not possible."""
     model = variant.rocker.model
     if not isinstance(model, ArchModel):
-        raise Refused(f"the key fits is only for arches, and this structure is a {variant.rocker.word}: remove fits", ("analysis", "fits"))
+        raise Refused(
+            f"the key `fits` is only for arches, and this structure is a {variant.rocker.word}: remove fits", ("analysis", "fits")
+        )
     gamma, arch = model.collapse[0].gamma, model.arch
     ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
     found: dict[str, tuple[criterion.Fit, float]] = {}

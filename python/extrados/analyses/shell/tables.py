@@ -45,9 +45,9 @@ class Settlement(Table):
     @model_validator(mode="after")
     def _somewhere(self) -> "Settlement":
         if (self.wall is None) == (self.foot is None):
-            raise ValueError("expected either the key wall (for a building) or the key foot (for a vault)")
+            raise ValueError("expected either the key `wall` (for a building) or the key `foot` (for a vault)")
         if self.down == 0.0 and self.out == 0.0:
-            raise ValueError("the support does not move: give the key down or the key out")
+            raise ValueError("the support does not move: give the key `down` or the key `out`")
         return self
 
     @property
@@ -247,13 +247,13 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         if self.settlements and not self.constant_damage:
             raise ValueError("settlements are applied together with the weight: they require constant_damage = true")
         if self.drives and self.pattern != "mass":
-            raise ValueError("the key drives replaces the key pattern: remove pattern")
+            raise ValueError("the key `drives` replaces the key `pattern`: remove pattern")
         if len({variant.name for variant in self.variants}) < len(self.variants):
             raise ValueError("variants: a name occurs twice")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         if self.verification.model_fields_set and (self.stages or self.drives):
-            raise ValueError("the key verification requires a single load by inertia forces: remove stages and drives")
+            raise ValueError("the key `verification` requires a single load by inertia forces: remove stages and drives")
         return self
 
     @property

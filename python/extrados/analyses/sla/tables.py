@@ -119,10 +119,10 @@ class Stage(Table):
     def _one_cause(self) -> "Stage":
         if self.free and self.reference:
             raise ValueError(
-                "the keys free and reference exclude each other, because removed supports are the load of their stage: give two stages"
+                "the keys `free` and `reference` exclude each other, because removed supports are the load of their stage: give two stages"
             )
         if not (self.free or self.reference):
-            raise ValueError("a stage requires a load that increases: give the key reference, or the key free")
+            raise ValueError("a stage requires a load that increases: give the key `reference`, or the key `free`")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
             raise ValueError(
                 "if `reference` contains an imposed displacement, it can contain no other load. To impose the "
@@ -422,7 +422,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
             raise ValueError("an incremental solution has no events: remove without_equilibrium, states and budget")
         if self.verification.model_fields_set and not self.by_inertia:
-            raise ValueError("the key verification requires one horizontal load by the masses only, without stages")
+            raise ValueError("the key `verification` requires one horizontal load by the masses only, without stages")
         if self.verification.shape == "mode":
             raise ValueError('verification: shape = "mode" is only for buildings: remove shape')
         return self

@@ -85,7 +85,7 @@ class Fragility(RockingTable):
     )
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
         "pga",
-        "intensity measure of the keys levels, cloud and hazard. pga: PGA [g]; pga-ratio: PGA/(g tan alpha); "
+        "intensity measure of the keys `levels`, `cloud` and `hazard`. pga: PGA [g]; pga-ratio: PGA/(g tan alpha); "
         "pgv-ratio: p PGV/(g tan alpha); sa: SA(sa_period) [g]; arias: Arias intensity [m/s]; scale: the scale "
         "factor itself. alpha: slenderness angle, p: frequency parameter",
         source="Dimitrakopoulos and Paraskeva 2015",
@@ -156,7 +156,7 @@ class Fragility(RockingTable):
         if self.hand_over and {"density", "imperfection"} & set(self.uncertain):
             raise ValueError("hand_over uses the nominal blocks: remove uncertain.density and uncertain.imperfection")
         if self.hand_over and self.sensitivity is not None:
-            raise ValueError("the key sensitivity uses only runs of the mechanism: remove sensitivity or hand_over")
+            raise ValueError("the key `sensitivity` uses only runs of the mechanism: remove sensitivity or hand_over")
         if "friction" in self.uncertain and self.sensitivity is not None:
             raise ValueError(
                 "friction does not change an outcome of the mechanism, so its Sobol index is zero: remove uncertain.friction or sensitivity"
@@ -164,22 +164,22 @@ class Fragility(RockingTable):
         if self.levels is not None and min(self.levels) <= 0.0:
             raise ValueError("levels must be above zero")
         if self.levels is not None and self.durations is not None:
-            raise ValueError("give either the key levels or the key durations, not both")
+            raise ValueError("give either the key `levels` or the key `durations`, not both")
         if (self.levels is not None or self.cloud) and (self.intensity == "sa") != (self.sa_period is not None):
             raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
         if self.cloud and (self.levels is not None or self.durations is not None):
-            raise ValueError("a cloud uses unscaled motions: remove the keys levels and durations")
+            raise ValueError("a cloud uses unscaled motions: remove the keys `levels` and `durations`")
         if self.cloud and self.intensity == "scale":
             raise ValueError('the motions of a cloud are not scaled, so intensity = "scale" would be the same for all of them')
         if self.rotation_limits and not self.cloud:
             raise ValueError("rotation_limits is used only with cloud = true")
         if self.histories and (self.levels is not None or self.durations is not None):
-            raise ValueError("the key histories shows the unscaled motions: remove the keys levels and durations")
+            raise ValueError("the key `histories` shows the unscaled motions: remove the keys `levels` and `durations`")
         if self.hazard is not None and (self.intensity == "scale" or not (self.cloud or self.levels)):
-            raise ValueError("a hazard curve requires the key levels, or a cloud with an intensity measure")
+            raise ValueError("a hazard curve requires the key `levels`, or a cloud with an intensity measure")
         if self.sensitivity is not None:
             if not self.uncertain or self.levels is not None or self.durations is not None:
-                raise ValueError("the key sensitivity requires uncertain values, and excludes the keys levels and durations")
+                raise ValueError("the key `sensitivity` requires uncertain values, and excludes the keys `levels` and `durations`")
             if self.sensitivity & (self.sensitivity - 1):
                 raise ValueError(f"sensitivity is {self.sensitivity}, expected a power of 2")
         known = sorted({name for names in (*UNCERTAIN.values(), STONES, BASE) for name in names})

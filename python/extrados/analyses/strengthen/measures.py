@@ -299,7 +299,7 @@ class Runs:
             return Worth(1.0 if self.by_probability else 0.0, "collapse under self-weight")
         if self.by_probability:
             if not isinstance(result.results, Ensemble):
-                raise Refused("levels of the options: use the key levels of this table instead", ("analysis", "options"))
+                raise Refused("levels of the options: use the key `levels` of this table instead", ("analysis", "options"))
             share = result.results.collapse_probability
             return Worth(share, "rocking until it overturns", reason="" if share is not None else "no motion could be run")
         verdict = result.results.judged(MotionDemand(context))

@@ -60,7 +60,7 @@ def _refuse(text: str, key: tuple[str | int, ...]) -> None:
 
 def _refuse_directions(options: Strengthen) -> None:
     if options.directions:
-        raise Refused("the key directions is only for blocks in space: give direction", ("analysis", "directions"))
+        raise Refused("the key `directions` is only for blocks in space: give direction", ("analysis", "directions"))
 
 
 def _refuse_without_peak(context: Context) -> None:

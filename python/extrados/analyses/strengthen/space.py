@@ -166,7 +166,7 @@ class SpaceStatics(Statics):
         """That one direction alone was asked for."""
         return (
             f"The target refers only to a load along {self.word(self.senses[0])}. An earthquake acts in all directions: "
-            "remove the key directions, unless the other sides are restrained."
+            "remove the key `directions`, unless the other sides are restrained."
         )
 
     @property
@@ -194,7 +194,7 @@ class SpaceStatics(Statics):
 def refuse_in_space(context: Context, options: Strengthen) -> None:
     """Refused where a deck asks in space for what is known in a plane section alone."""
     wrong: dict[str, tuple[bool, Any]] = {
-        "the key direction is only for plane sections: give directions": (options.direction != "both", ("analysis", "direction")),
+        "the key `direction` is only for plane sections: give directions": (options.direction != "both", ("analysis", "direction")),
         "friction_rule: in space, ties are sized for dilatant sliding only": (
             options.friction_rule != "associated",
             ("analysis", "friction_rule"),

@@ -95,7 +95,7 @@ def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int
         xyz = np.array([[float(v.get(a, 0.0)) for a in AXES] for v in vertices.values()])
         faces = [[order[str(k)] for k in face] for face in mesh["face"].values()]
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
-        raise BadGeometry(f"{where}: expected a mesh with the keys vertex and face") from None
+        raise BadGeometry(f"{where}: expected a mesh with the keys `vertex` and `face`") from None
     if xyz.ndim != 2 or len(xyz) < 6 or not (np.abs(xyz) <= FARTHEST).all():  # NaN too
         raise BadGeometry(
             f"{where}: the mesh has {len(xyz)} vertices; expected the vertices of a solid, with finite coordinates up to {FARTHEST:g}"

@@ -199,7 +199,7 @@ class Blocks(Structure):
     def _drawing(self, folder: Path) -> tuple[Drawing, float | None]:
         """What the file or the deck says, and the depth where the file has one."""
         if self.up is not None:
-            raise NoView("the key up is only for files of solids, which have no plane section", ("structure", "up"))
+            raise NoView("the key `up` is only for files of solids, which have no plane section", ("structure", "up"))
         if self.file is None:
             polygons = [Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density) for i, b in enumerate(self.block or [])]
             return Drawing(polygons), None

@@ -69,7 +69,7 @@ class Span(Table):
     @model_validator(mode="after")
     def _surveyed(self) -> "Span":
         if (self.shape == "surveyed") != (self.intrados is not None):
-            raise ValueError('the key intrados is only for shape = "surveyed", which requires this key')
+            raise ValueError('the key `intrados` is only for shape = "surveyed", which requires this key')
         for before, after in itertools.pairwise(self.intrados or []):
             if after[0] <= before[0]:
                 raise ValueError(f"intrados: x must increase from point to point, found {before[0]:g} before {after[0]:g}")

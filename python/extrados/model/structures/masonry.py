@@ -87,16 +87,16 @@ class Column(Structure):
     @model_validator(mode="after")
     def _one_height(self) -> "Column":
         if (self.height is None) == (not self.heights):
-            raise ValueError("give either the key height (and drums), or the key heights")
+            raise ValueError("give either the key `height` (and drums), or the key `heights`")
         if self.heights and self.drums != 1:
-            raise ValueError("the key heights already determines the number of drums: remove the key drums")
+            raise ValueError("the key `heights` already determines the number of drums: remove the key `drums`")
         if any(h <= 0.0 for h in self.heights):
             raise ValueError("heights: each height must be above zero")
         given = self.model_fields_set
         if self.section == "rectangle" and (wrong := given & {"sides", "flute_depth"}):
             raise ValueError(f'{min(wrong)} is only for round drums: give section = "round", or remove this key')
         if self.section == "round" and "depth" in given:
-            raise ValueError("the key depth is only for rectangular drums; the diameter of round drums is the key width")
+            raise ValueError("the key `depth` is only for rectangular drums; the diameter of round drums is the key `width`")
         if self.dowel_reach is not None and self.dowels is None:
             raise ValueError("dowel_reach requires dowels: give the shear strength of the dowels")
         if self.flute_depth >= 0.25 * self.width:

@@ -163,7 +163,7 @@ class Wall(Bonded, Spatial):
                 if o.is_outside(leg.length, self.height):
                     raise ValueError(f"legs: the opening x {o.x}, y {o.y} is outside leg {i}")
         if self.closed and len(self.legs) < 4:
-            raise ValueError(f"the key closed requires at least four legs, found {len(self.legs)}")
+            raise ValueError(f"the key `closed` requires at least four legs, found {len(self.legs)}")
         return self
 
     def solids(self, density: float) -> SolidAssembly:

@@ -50,7 +50,7 @@ def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Me
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     if wall.groups:
         raise BadGeometry(
-            "the key groups is only for shells in space (`pushover`); for a plane wall give the key regions", ("structure", "groups")
+            "the key `groups` is only for shells in space (`pushover`); for a plane wall give the key `regions`", ("structure", "groups")
         )
     name, mesh = open_mesh(wall, building)
     found: dict[str, list[np.ndarray]] = {}

@@ -46,7 +46,7 @@ def open_shells(structure: MeshFile, building: Description, options: ShellOption
     """Name and content of a file of shells; BadGeometry if it holds anything else, or too many."""
     for name in ("regions", "ties", "bars"):
         if getattr(structure, name):
-            raise BadGeometry(f"{name} are only for a wall in a plane; for shells in space give the key groups", ("structure", name))
+            raise BadGeometry(f"{name} are only for a wall in a plane; for shells in space give the key `groups`", ("structure", name))
     file, mesh = open_mesh(structure, building)
     if options.size is not None:
         raise BadGeometry(f"{file}: the file determines the elements: remove mesh.size", ("analysis", "mesh", "size"))
@@ -167,7 +167,7 @@ def _check(group: MeshGroup, what: str, elements: bool, key: Key) -> None:
     told = [key for key in ("thickness", "material", "linear", "membrane", "pressure") if getattr(group, key)]
     if told and not elements:
         raise BadGeometry(
-            f"{what}: {told[0]} is a key for elements, and this group has none: give only the keys support and force", (*key, told[0])
+            f"{what}: {told[0]} is a key for elements, and this group has none: give only the keys `support` and `force`", (*key, told[0])
         )
     if not (told or group.support or group.force):
         raise BadGeometry(

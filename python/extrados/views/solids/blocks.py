@@ -29,15 +29,15 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         value = parsed(file)
     if file is None or not (sort in SOLID or is_compas(value)):
         if drawing.up is not None:
-            raise BadGeometry("the key up is only for files of solids (OBJ, STL, COMPAS JSON)", ("structure", "up"))
+            raise BadGeometry("the key `up` is only for files of solids (OBJ, STL, COMPAS JSON)", ("structure", "up"))
         return solids_of_section(building)
     name = file.path.name
     if drawing.layers is not None or drawing.layer or drawing.ground is not None or drawing.origin is not None:
         raise BadGeometry(
-            f"{name}: the keys layers, ground and origin are only for plane drawings; solids are supported by foundation_levels"
+            f"{name}: the keys `layers`, `ground` and `origin` are only for plane drawings; solids are supported by foundation_levels"
         )
     if drawing.fill is not None:
-        raise BadGeometry(f"{name}: the key fill is only for plane drawings", ("structure", "fill"))
+        raise BadGeometry(f"{name}: the key `fill` is only for plane drawings", ("structure", "fill"))
     meshes = read_meshes(file) if sort in (".obj", ".stl") else read_solids(value, name)
     if drawing.up == "y":
         meshes = [replace(mesh, points=mesh.points @ Y_UP.T) for mesh in meshes]
