@@ -4,6 +4,7 @@ import numpy as np
 from assess_model import CONTEXT, FACTORS, QUICK, TABLES, concluded, rows, stated
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from extrados.analyses.assess import facts as stating
 from extrados.analyses.assess import reasons_of_buildings, reasons_of_motion, reasons_of_statics, strategies
@@ -11,7 +12,7 @@ from extrados.analyses.assess.asking import scaled_margin
 from extrados.analyses.assess.facts import Facts
 from extrados.decks.reader import make_deck
 from extrados.results.assess import StrategyVerdict
-from extrados.results.codes import LocalMechanism, WallMechanism
+from extrados.results.codes import Check, LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
 from extrados.results.frame import FramePush, FramePushover
 from extrados.results.limit import Fracture, Tilt
@@ -224,6 +225,78 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
             assert (
                 abs(found.numbers["peak"] - min(factors) * facts.peak_g) < 1e-9 or len(names) > 1 or "displacement_ratio" in found.numbers
             )
+
+
+def answer_of_oscillator(period: float) -> float:
+    """Greatest pseudo-acceleration of the motion of the model [g], 5 % damping, by integration in time."""
+    time, ground = CONTEXT.motion.series()
+    omega = 2.0 * np.pi / period
+
+    def rate(t: float, state: np.ndarray) -> list[float]:
+        return [state[1], -float(np.interp(t, time, ground)) - 0.1 * omega * state[1] - omega**2 * state[0]]
+
+    path = solve_ivp(rate, (0.0, time[-1] + period), [0.0, 0.0], max_step=period / 200.0)
+    return float(omega**2 * np.abs(path.y[0]).max()) / 9.80665
+
+
+#: Period of the governing check [s], 0 the ground, and what the motion asks there [g]
+ASKED = {0.0: CONTEXT.motion.peak / 9.80665, **{period: answer_of_oscillator(period) for period in (0.3, 0.9)}}
+
+
+@QUICK
+@given(
+    st.lists(rows(), min_size=3, max_size=7, unique_by=lambda r: r.strategy),
+    rows(),
+    st.sampled_from(list(ASKED)),
+    FACTORS,
+    st.none() | FACTORS,
+)
+def test_the_spectrum_of_the_site_explains_what_that_of_the_motion_would_change(
+    table: list[StrategyVerdict], codes: StrategyVerdict, period: float, margin: float, site: float | None
+) -> None:
+    """Codes against strategies that follow the motion: where the ordinates of both at the period of the check set their verdicts apart."""
+    outcome = "stands" if margin >= 1.0 else "collapses"
+    of_codes = {
+        "strategy": "code-checks",
+        "status": "ok",
+        "outcome": outcome,
+        "margin": margin,
+        "margin_at_least": None,
+        "margin_below": None,
+    }
+    every = {r.strategy: r for r in [*(r for r in table if r.strategy != "code-checks"), codes.model_copy(update=of_codes)]}
+    check = Check.model_construct(
+        capacity=margin, demand=1.0, unit="m" if period else "g", code="NTC 2018", limit_state="SLV", alternative="", verdict="holds"
+    )
+    r = LocalMechanism.model_construct(checks={"NTC": check}, equivalent_period_s=period or None, walls=None, bound=None, violated=[])
+    facts = Facts(
+        CONTEXT.building,
+        CONTEXT.motion,
+        CONTEXT.motion.peak / 9.80665,
+        every,
+        {"code-checks": Result("local-mechanism", results=r)},
+        1.2,
+        site=lambda state, at: site if (state, at) == ("SLV", period) else None,
+    )
+    found = reasons_of_buildings.code_spectrum(facts, facts.pairs())
+    if site is None:
+        assert found is None
+        return
+    by_motion = margin * site / ASKED[period]
+    if any(abs(by_motion / edge - 1.0) < 0.02 for edge in (1.0, margin, 1.2 * margin, margin / 1.2)):
+        return  # at the accuracy of the integration
+    want = []
+    for pair in facts.pairs():
+        if "code-checks" not in pair or not set(pair) & {"rocking", "assessment", "probability", "dem"}:
+            continue
+        turned = (by_motion >= 1.0) != (margin >= 1.0)
+        far = by_motion > 1.2 * margin if facts.split(pair)[0] == "code-checks" else by_motion < margin / 1.2
+        if {"disagree": turned, "apart": far}.get(facts.relation(*pair), False):
+            want.append(list(pair))
+    assert (found.explains if found else []) == want
+    if found:
+        stated(found)
+        assert abs(found.numbers["other_margin"] / by_motion - 1.0) < 0.02 and found.numbers["governing_margin"] == margin
 
 
 PLAN = make_deck(

@@ -421,6 +421,20 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "there is no other": lambda f: having(f, **{"code-checks": checked(0.36, None, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
         },
     ),
+    "the spectrum of the site": (
+        "code-spectrum",
+        lambda: facts(
+            [row("rocking", "stands", margin=1.5), row("code-checks", "collapses", margin=0.5)],
+            {"code-checks": checked(0.15)},
+            site=lambda state, period: 3.0 * PEAK if (state, period) == ("SLV", 0.0) else None,
+        ),
+        {
+            "the codes check the motion": lambda f: replace(f, site=lambda state, period: None),
+            "the motion is hardly weaker": lambda f: replace(f, site=lambda state, period: 1.5 * PEAK),
+            "both agree": lambda f: rated(f, row("code-checks", "stands", margin=1.2)),
+            "the period of the check is not known": lambda f: having(f, **{"code-checks": checked(2.0, nonlinear=check(0.15, 0.3, "m"))}),
+        },
+    ),
     "a wall that the codes tear off": (
         "torn-off",
         lambda: facts(

@@ -28,6 +28,7 @@ RULES: tuple[Rule, ...] = (
     statics.mortar,
     buildings.code_factors,
     buildings.code_check,
+    buildings.code_spectrum,
     buildings.torn_off,
     buildings.weaker_direction,
     buildings.frame_and_shells,

@@ -1,12 +1,14 @@
 """Reasons by which codes, and pushes of a building on a plan, differ from others: their factors and checks, corners, axes, models."""
 
-from extrados.analyses.assess.facts import Facts, Pair, least_of_limit_analysis, reason
+from extrados.analyses.assess.facts import DYNAMIC, Facts, Pair, least_of_limit_analysis, reason
+from extrados.analyses.codes.actions import sampled, spectrum_of_motion
 from extrados.model.structures.plan import Plan
 from extrados.results.assess import Reason
 from extrados.results.codes import Check, Checked, LocalMechanism
 from extrados.results.frame import FramePushover
 from extrados.results.limit import Tilt
 from extrados.results.shell import Pushover
+from extrados.schema.constants import GRAVITY
 
 #: Part by which the base shears of frame and shells may differ without a stated reason
 SHELLS_APART = 0.15
@@ -87,6 +89,46 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
         governing_margin=margin,
         demand=check.demand,
         capacity=check.capacity,
+        other_margin=other,
+    )
+
+
+def code_spectrum(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """The codes check the spectrum of the site, other strategies the motion: with the ordinate of the motion at the period of the governing
+    check the codes would say otherwise, or give a margin nearer to the other by the factor from which margins are apart."""
+    found = _governing(facts, [p for p in pairs if set(p) & set(DYNAMIC)])
+    if found is None:
+        return None
+    r, ((margin, name, check), *_), mine = found
+    period = 0.0 if check.unit == "g" else r.equivalent_period_s if check.unit == "m" and isinstance(r, LocalMechanism) else None
+    site = None if period is None else facts.site(check.limit_state, period)
+    if period is None or not site:
+        return None
+    own = spectrum_of_motion(*sampled(facts.motion), facts.motion.peak)(period, 0.05) / GRAVITY
+    if own <= 0.0:
+        return None
+    other = margin * site / own
+
+    def shows(pair: Pair) -> bool:
+        if facts.relation(*pair) == "disagree":
+            return (other >= 1.0) != (margin >= 1.0)
+        low, high = sorted((other, margin))
+        nearer = (other > margin) == (facts.split(pair)[0] == "code-checks")
+        return facts.relation(*pair) == "apart" and nearer and high > facts.apart * low
+
+    if not (mine := [p for p in mine if shows(p)]):
+        return None
+    return reason(
+        "code-spectrum",
+        mine,
+        f"The codes check the spectrum of the site, not the motion. At {'the ground' if period == 0.0 else f'a period of {period:.3g} s'} "
+        f"this spectrum is {site:.3g} g, and that of the motion {own:.3g} g (5 % damping). The governing check, {name}, has the safety factor "
+        f"{margin:.3g}. With the spectrum of the motion it would be about {other:.3g}.",
+        period_s=period,
+        site_g=site,
+        motion_g=own,
+        damping=0.05,
+        governing_margin=margin,
         other_margin=other,
     )
 
