@@ -2,6 +2,7 @@
 
 from extrados.analyses.assess.facts import DYNAMIC, Facts, Pair, least_of_limit_analysis, reason
 from extrados.analyses.codes.actions import sampled, spectrum_of_motion
+from extrados.analyses.codes.ntc import SLV, displacement, equivalent_period
 from extrados.model.structures.plan import Plan
 from extrados.results.assess import Reason
 from extrados.results.codes import Check, Checked, LocalMechanism
@@ -94,18 +95,23 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def code_spectrum(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """The codes check the spectrum of the site, other strategies the motion: with the ordinate of the motion at the period of the governing
+    """The codes check the spectrum of the site, other strategies the motion: with what the motion requires at the period of the governing
     check the codes would say otherwise, or give a margin nearer to the other by the factor from which margins are apart."""
     found = _governing(facts, [p for p in pairs if set(p) & set(DYNAMIC)])
     if found is None:
         return None
     r, ((margin, name, check), *_), mine = found
-    period = 0.0 if check.unit == "g" else r.equivalent_period_s if check.unit == "m" and isinstance(r, LocalMechanism) else None
+    period = 0.0 if check.unit == "g" else _period(r, name, check)
     site = None if period is None else facts.site(check.limit_state, period)
-    if period is None or not site:
+    if period is None or not site or check.capacity is None:
         return None
-    own = spectrum_of_motion(*sampled(facts.motion), facts.motion.peak)(period, 0.05) / GRAVITY
-    if own <= 0.0:
+    spectrum = spectrum_of_motion(*sampled(facts.motion), facts.motion.peak)
+    if period:
+        own, told = displacement(spectrum, period), f"period of {period:.3g} s"
+        site, unit = check.demand, "m"
+    else:
+        own, told, unit = spectrum(0.0, 0.05) / GRAVITY, "ground", "g"
+    if site is None or own <= 0.0:
         return None
     other = margin * site / own
 
@@ -121,13 +127,12 @@ def code_spectrum(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "code-spectrum",
         mine,
-        f"The codes check the spectrum of the site, not the motion. At {'the ground' if period == 0.0 else f'a period of {period:.3g} s'} "
-        f"this spectrum is {site:.3g} g, and that of the motion {own:.3g} g (5 % damping). The governing check, {name}, has the safety factor "
-        f"{margin:.3g}. With the spectrum of the motion it would be about {other:.3g}.",
+        f"The codes check the spectrum of the site, not the motion. At {'a' if period else 'the'} {told} the site requires {site:.3g} {unit}, and "
+        f"the motion {own:.3g} {unit}. The governing check, {name}, has the safety factor {margin:.3g}. With the spectrum of the motion it "
+        f"would be about {other:.3g}.",
         period_s=period,
-        site_g=site,
-        motion_g=own,
-        damping=0.05,
+        site=site,
+        motion=own,
         governing_margin=margin,
         other_margin=other,
     )
@@ -214,6 +219,19 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "bend out of plane. They slide only along joints that are drawn.",
         **numbers,
     )
+
+
+def _period(r: Checked, name: str, check: Check) -> float | None:
+    """Period [s] at which the demand of the displacement check of NTC is taken; None of other checks."""
+    if not name.startswith("NTC nonlinear") or check.limit_state == "SLC" or not check.capacity:
+        return None
+    if isinstance(r, LocalMechanism):
+        return r.equivalent_period_s
+    start = next(((n, c) for n, c in r.checks.items() if n.startswith(BY_MULTIPLIER) and c.unit == "g" and c.capacity), None)
+    if start is None or start[1].capacity is None:
+        return None
+    q = (r.behaviour_factor or 1.0) if start[0].startswith("NTC linear") else 1.0
+    return equivalent_period(GRAVITY * start[1].capacity / q, check.capacity / SLV)
 
 
 def _reached(facts: Facts, name: str) -> float | None:
