@@ -204,12 +204,15 @@ class Tilt(KindResults):
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse towards -x")
     thrust_min_N: float = maybe(
-        "least horizontal thrust of the first arch, upright; for an arch restrained by ties, the value at the crown", "N"
+        "least horizontal thrust of the first arch at its left springing under vertical loads only; at the crown of an arch with ties", "N"
     )
     thrust_max_N: float = maybe(
-        "greatest horizontal thrust of the first arch, upright; for an arch restrained by ties, the value at the crown", "N"
+        "greatest horizontal thrust of the first arch at its left springing under vertical loads only; at the crown of an arch with ties",
+        "N",
     )
-    thrusts: dict[str, ChainThrust] = maybe("least and greatest horizontal thrust of each arch, upright, by the name of the arch")
+    thrusts: dict[str, ChainThrust] = maybe(
+        "least and greatest horizontal thrust of each arch under vertical loads only, by the name of the arch"
+    )
     clear_span_m: float = maybe("clear span", "m")
     rise_m: float = maybe("rise of the intrados", "m")
     base_width_m: float = maybe("width of a buttress at its base", "m")
