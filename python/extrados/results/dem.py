@@ -173,7 +173,7 @@ class BlocksRun(KindResults):
         else:
             text = (
                 f"A block moves by {three_figures(1e3 * most)} mm. This exceeds the {three_figures(1e3 * limit)} mm that count as collapse, "
-                "but the block neither rotates nor sinks as in a collapse."
+                "but the block neither rotates nor settles as in a collapse."
             )
         if self.slipped_joint is not None:
             text += f" {slip}."

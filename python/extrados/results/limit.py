@@ -302,7 +302,7 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
     peak of the motion."""
     peak = demand.peak_g
     upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
-    lower = "no lesser state was sought" if least is None else f"the least state found is {least:.3g} g"
+    lower = "no lower value was sought" if least is None else f"the lowest value found is {least:.3g} g"
     text = (
         f"Joints slide. The design value of the collapse acceleration (horizontal, constant) is {design:.3g} g, the least "
         f"of the load paths; {lower}; {upper}"
@@ -326,7 +326,7 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
     peak = demand.peak_g
     upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
     text = (
-        "Joints slide, so the collapse acceleration (horizontal, constant) lies in an interval: the least state found is "
+        "Joints slide, so the collapse acceleration (horizontal, constant) lies in an interval: the lowest value found is "
         f"{least:.3g} g; {upper}"
     )
     if peak is None:
@@ -337,9 +337,9 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
     elif peak >= least:
         outcome, place = "open", "between both"
     elif peak >= least - spread:
-        outcome, place = ("open", f"below the least state found, but by less than the scatter of the states found ({spread:.3g} g)")
+        outcome, place = ("open", f"below the lowest value found, but by less than the scatter of the values found ({spread:.3g} g)")
     else:
-        outcome, place = "stands", "below the least state found"
+        outcome, place = "stands", "below the lowest value found"
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place}."
     return judge(text, peak, least, "g", outcome)
 

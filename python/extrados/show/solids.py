@@ -266,7 +266,7 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
         if rows:
             way = np.radians([row.direction_deg for row in rows])
             ax.plot(way, [row.load_path_g for row in rows], "s", color=style.HINGE, markersize=5, label="design value by load paths")
-            ax.plot(way, [row.least_g for row in rows], "_", color=style.HINGE, markersize=9, label="least state found")
+            ax.plot(way, [row.least_g for row in rows], "_", color=style.HINGE, markersize=9, label="lowest value found")
             ax.legend(loc="lower left", bbox_to_anchor=(-0.17, -0.07), fontsize=7)
         ax.set_ylim(0.0, 1.15 * float(np.nanmax(radius)))
         ax.set_rlabel_position(100.0)

@@ -331,7 +331,7 @@ class MovingLoad(LimitAnalysisTable):
     count: int = key(
         81, "number of positions while a load crosses the span; a train longer than the span has proportionally more", ge=3, le=2000
     )
-    places: list[Length] | None = key(None, "positions of the first axle; replaces count", min_length=1, max_length=2000)
+    places: list[Length] | None = key(None, "positions of the first axle; `count` is then not used", min_length=1, max_length=2000)
 
     @model_validator(mode="after")
     def _axles(self) -> "MovingLoad":
