@@ -269,19 +269,45 @@ def codes_take_the_least_multiplier(deck: Deck, within: float) -> None:
         near("d_SLC", r.collapse_displacement_m, 0.6 * r.zero_displacement_m, within)
 
 
-@relation("failure-curves failure-domain", st.tuples(decks("block", "arch"), number(0.3, 1.0)), 5e-3)
+@relation(
+    "failure-curves failure-domain",
+    st.tuples(decks("block", "arch"), number(0.3, 1.0)),
+    5e-3,
+    examples=(
+        (
+            {
+                "structure": {"kind": "arch", "radius": 6.06, "thickness": 0.9199, "embrace": 145.0, "voussoirs": 12},
+                "joints": {"friction": 0.7},
+            },
+            0.86,
+        ),
+    ),
+)
 def curves_and_domains(deck: Deck, period: float, within: float) -> None:
-    """A failure curve is the lower edge of the failure domain."""
-    durations = [period, 1.5 * period]
-    domain = ask(deck, "failure-domain", pulse="sine", durations=durations, amplitudes=10, accuracy=1e-3)
-    curves = ask(deck, "failure-curves", pulse="sine", durations=durations, amplitudes=10, accuracy=1e-3)
-    ok(domain, curves)
-    pairs = zip(domain.results.mode_I.amplitudes_g, curves.results.curves[0].amplitudes_g, strict=True)
-    for one, other in pairs:
+    """A failure curve is the lower edge of the failure domain of fixed hinges. Both state where these do not hold; an edge decided by contacts
+    lies on an amplitude of the map, and this is stated."""
+    keys = {"pulse": "sine", "durations": [period, 1.5 * period], "amplitudes": 10, "accuracy": 1e-3}
+    domain, curves = ask(deck, "failure-domain", hand_over_cells=0, **keys), ask(deck, "failure-curves", **keys)
+    decided = ask(deck, "failure-domain", **keys)
+    ok(domain, curves, decided)
+    curve, r = curves.results.curves[0], decided.results
+    for one, other in zip(domain.results.mode_I.amplitudes_g, curve.amplitudes_g, strict=True):
         must((one is None) == (other is None), f"{one} g of the domain, {other} g of the curve")
         if one is not None:
             near("amplitude", one, other, within, 0.3)
-    near("uplift", domain.results.uplift_acceleration_g, curves.results.curves[0].uplift_acceleration_g, 1e-9)
+    near("uplift", domain.results.uplift_acceleration_g, curve.uplift_acceleration_g, 1e-9)
+    for name in ("sliding_from_g", "hinges_elsewhere_from_g"):
+        must(getattr(r, name) == getattr(curve, name) == getattr(domain.results, name), f"{name} of the curve and of the map differ")
+    if r.handed_over is None:
+        must(r.mode_I == domain.results.mode_I, "the edge differs without a hand-over")
+        return
+    must("accurate to one cell of the map" in decided.warnings, f"the accuracy is not stated: {decided.warnings}")
+    must(bool(curve.conditions.violated), "the curve does not state that hinges or friction fail")
+    places = decided.result.arrays["amplitude"].data
+    left = zip(r.mode_I.amplitudes_g, r.sliding_from_g, r.hinges_elsewhere_from_g, strict=True)
+    for edge, *starts in left:
+        if edge is not None and any(start is not None for start in starts):
+            must(bool(np.isclose(places, edge).any()), f"{edge} g is no amplitude of the map")
 
 
 @relation("harmonic-map rocking", st.tuples(decks("block"), number(0.5, 2.0)), 0.0)

@@ -187,16 +187,32 @@ def equilibrium_at_collapse(deck: Deck, within: float) -> None:
         must((there.outcome == "stands") == stands, f"a thrust line at {gamma} g of {r.collapse_acceleration_g}: {there.outcome}")
 
 
-@relation("rocking dem", st.tuples(decks("block", "column", "stack"), pulses(0.1, 0.8)), 1e-3)
+@relation(
+    "rocking dem",
+    st.tuples(decks("block", "column", "stack"), pulses(0.1, 0.8)),
+    1e-3,
+    examples=(
+        (
+            {"structure": {"kind": "block", "width": 0.3085, "height": 3.2525, "depth": 0.5}, "joints": {"friction": 0.6}},
+            {"kind": "sine-pulse", "amplitude": "0.2505 g", "period": 1.06},
+        ),
+    ),
+)
 def energies(deck: Deck, motion: Deck, within: float) -> None:
-    """No energy is won: what friction, dampers and impacts take is never negative, and the ledger closes."""
+    """No energy is won: what friction, dampers and impacts take is negative by errors of the time step at most, and the ledger closes."""
     moving = changed(deck, motion=motion)
     for told, keys in (("rigid contacts", RIGID), ("springs", {"joints": {"normal_stiffness": 1e8}})):
         r = ask(moving, "dem", end_time=1.0, **keys)
         if r.answers:
             scale = max(r.results.peak_kinetic_energy_J, 1.0)
-            at_most(f"{told}: friction", 0.0, r.results.friction_loss_J, within, scale)
-            at_most(f"{told}: damping", 0.0, r.results.damping_loss_J, within, scale)
+            for name in ("friction_loss_J", "damping_loss_J"):
+                loss = getattr(r.results, name)
+                if keys is RIGID and loss < -within * scale:  # the work of contacts is of first order in the step
+                    finer = ask(moving, "dem", end_time=1.0, time_step=0.5 / r.results.steps, **keys)
+                    ok(finer)
+                    at_most(f"{told}: {name}: half the time step", 0.7 * loss, getattr(finer.results, name), 0.0)
+                else:
+                    at_most(f"{told}: {name}", 0.0, loss, within, scale)
             at_most(f"{told}: residual", r.results.energy_residual_ratio, 0.02, 0.0)
     if (r := ask(moving, "rocking")).answers:
         at_most("impacts", 0.0, r.results.energy_lost_at_impacts_J, within, abs(r.results.energy_supplied_J) + 1e-6)

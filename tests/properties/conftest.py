@@ -20,10 +20,17 @@ import asking
 import numpy as np
 import pytest
 from _pytest.runner import runtestprotocol
+from hypothesis.internal.conjecture.providers import HypothesisProvider
+from hypothesis.internal.constants_ast import Constants
 
 import extrados
 import trials
 from extrados.results.model import Result
+
+# hypothesis also draws numbers and words that it reads in the modules of the program which are loaded so far: the draws of one seed then
+# depend on the analyses asked before in the process, and on every number of the program. There is no setting for it.
+assert hasattr(HypothesisProvider, "_local_constants"), "hypothesis names its constants otherwise: see `_maybe_draw_constant`"
+HypothesisProvider._local_constants = Constants()
 
 ROOT = str(Path(extrados.__file__).parent)
 #: Seconds of a processor after which a test ends the process by SIGPROF, by its name; others: none

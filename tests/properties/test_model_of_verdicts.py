@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from assess_model import BOUNDS, FACTORS, NAMES, OUTCOMES, QUICK, decided
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from extrados.analyses.assess import strategies
@@ -324,6 +324,7 @@ def test_the_worst_motion_under_a_cap(outcome: str, cap: float, least: float | N
 
 @QUICK
 @given(st.lists(st.none() | FACTORS, min_size=1, max_size=5), CONDITIONS, st.sampled_from(["sine", "step"]), st.integers(4, 80))
+@example([0.05, None], Conditions.model_construct(violated=[]), "sine", 16)  # at an amplitude of the map, beside one without collapse
 def test_maps_name_their_least_amplitude_and_duration(cells: list, conditions: Conditions, pulse: str, place: int) -> None:
     """A harmonic map, a spectrum and a domain of elements name the least value that causes collapse, or none; a domain compares the deck's own pulse
     with its curve."""

@@ -7,7 +7,9 @@ still breaks it. Environment: EXTRADOS_TRIALS, the share of the whole count; EXT
 import importlib
 import json
 import os
+import sys
 import zlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ import tomlkit
 from asking import ask
 from buildings import KINDS
 from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
 from hypothesis.errors import UnsatisfiedAssumption
 from relations import RELATIONS, Relation
 
@@ -190,13 +193,35 @@ def test_relation(relation: Relation) -> None:
                 (place / f"{relation.name}.json").write_text(json.dumps(row), encoding="utf-8")
 
 
+def test_draws_do_not_depend_on_what_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same seed, before and after a module with numbers that are admissible is loaded."""
+
+    def drawn() -> list[int]:
+        found: list[int] = []
+
+        @seed(SEED)
+        @settings(max_examples=200, database=None, phases=(Phase.generate,))
+        @given(st.integers(0, 10**6))
+        def one(value: int) -> None:
+            found.append(value)
+
+        one()
+        return found
+
+    before = drawn()
+    (tmp_path / "numbers_of_a_program.py").write_text(f"NUMBERS = {list(range(1000, 2000))}\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    module = importlib.import_module("numbers_of_a_program")
+    monkeypatch.setitem(sys.modules, module.__name__, module)  # and taken out again
+    assert drawn() == before
+
+
 def test_a_whole_run_runs_enough_buildings() -> None:
     assert sum(most_of(r) for r in RELATIONS.values() if not r.awaits) >= WHOLE
 
 
 def test_a_broken_relation_shows_the_smallest_deck() -> None:
     """The machine itself: a relation that no building keeps."""
-    from hypothesis import strategies as st
 
     def never(deck: dict, within: float) -> None:
         assert ask(deck, "tilt").capacity[0] < 0.3, "bears too much"
