@@ -472,7 +472,7 @@ def test_a_proof_of_collapse_overrules_all_else() -> None:
     rows = [verdict("tilt", "cannot-stand", 0.0, 0.4, margin=0.0, statement="Proof."), verdict("sla", "stands", 0.5, 0.4, margin=1.25)]
     found = facts(rows)
     overall, words = conclusion(found, [], found.pairs(), "arch", (0.0, "tilt"), rows)
-    assert overall == "cannot stand" and "overrules the opposite result of sla" in words and "Proof." in words
+    assert overall == "cannot stand" and "opposite result of sla is not considered" in words and "Proof." in words
     assert found.relation("tilt", "sla") == "disagree"
     assert facts([rows[0], verdict("dem", "collapses")]).relation("tilt", "dem") == "agree"
     shared = [rows[0], verdict("dem", "cannot-stand", 0.0, 0.4, margin=0.0)]

@@ -285,7 +285,7 @@ WRONG = {
         'amplitudes = ["0.5 g"]\ndurations = [0.1, 0.2]\n',
     ),
     "movements of rigid solids": (
-        "dem of solids cannot include turn of a support",
+        "dem of solids cannot include rotation of a support",
         ARCH
         + "[[initial.movements]]\njoint = 'joint 0'\nturn = 1 # here\n"
         + DEM

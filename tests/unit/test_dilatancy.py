@@ -78,7 +78,7 @@ def test_a_demand_just_below_the_least_state_is_open() -> None:
     """The least of several states is no lower bound: within their spread below it nothing is decided."""
     verdicts = [judge_interval(0.342, 0.5, 0.03, asked(peak)) for peak in (0.311, 0.313, 0.341, 0.343)]
     assert [v.outcome for v in verdicts] == ["stands", "open", "open", "open"]
-    assert "by less than the scatter of the states found (0.03 g)" in verdicts[1].statement
+    assert "by less than the scatter of the values found (0.03 g)" in verdicts[1].statement
     assert all(v.capacity == 0.342 for v in verdicts)
     assert judge_interval(0.342, 0.5, 0.0, asked(0.341)).outcome == "stands"
 

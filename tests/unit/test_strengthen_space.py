@@ -153,7 +153,9 @@ def test_a_target_in_space_is_met_only_if_the_state_without_dilatancy_meets_it()
     weight = float(solids.mass.sum()) * G
     assert one.required_N == pytest.approx(weight * (0.5 / 0.3 - 1.0), rel=1e-4) and one.capacity_after == pytest.approx(0.5, rel=1e-4)
     assert not one.meets_target and "upper bound" in one.reason and one.cost is not None
-    assert any("Without dilatancy, the least state found of the strengthened building carries 0.3 g" in text for text in one.adverse)
+    assert any(
+        "Without dilatancy, the lowest collapse acceleration found for the strengthened building is 0.3 g" in text for text in one.adverse
+    )
     # as a rod of the existing building it does not meet a target of 0.4 g either
     existing = {"ties": [{**rod, "yield_force": one.required_N, "name": "rod"}]}
     before = run({"structure": squat, "joints": {"friction": 0.3}, **existing, "analysis": [{**asked, "acceleration": "0.4 g"}]}).results

@@ -201,6 +201,6 @@ def _motion_page(result: "Result") -> None:
         table.add_row(
             f"impulse {k}",
             f"{impulse['amplitude_g']:+.4g} g over {impulse['period_s']:.4g} s from {impulse['start_s']:.3f} s, "
-            f"goodness {impulse['goodness_of_fit']:.2f}",
+            f"goodness of fit {impulse['goodness_of_fit']:.2f}",
         )
     out_console.print(table)

@@ -236,7 +236,7 @@ def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     wide, high = s.units * s.unit_length, s.courses * s.unit_height
     yield _length(
         "unit_length",
-        "Length of a unit (the handle changes the length of the wall)",
+        "Length of a unit. The handle changes the length of the wall; the number of units remains",
         wide,
         0.5 * high,
         s.unit_length,

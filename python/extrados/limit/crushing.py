@@ -97,7 +97,7 @@ class CrushingLimit(SolidLimit):
 
     def stated(self, dead: np.ndarray, live: np.ndarray | None, sized: Sequence[int] = (), counted: np.ndarray | None = None) -> Stated:
         """Unknown of contacts that crush: their programme is that of the forces."""
-        raise NoAnswer("this question is not answered for contacts that crush")
+        raise NoAnswer("this result is not available for contacts that crush")
 
     def falls(self) -> Falls | None:
         """The proof that it cannot stand without a push: a motion at less than the weights, as the blocks bear no loads too."""

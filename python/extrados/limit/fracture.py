@@ -101,7 +101,7 @@ def fractured_collapse(
             raise
         except NoEquilibrium:
             if limit.certificate() is None:
-                raise NoAnswer("no equilibrium state was found with the crack, and no mechanism proves that none exists") from None
+                raise NoAnswer("with the crack, neither an equilibrium state nor a collapse mechanism was found") from None
             raise
         distance, width = section_distance(cracked, block, foot + height, direction, state, load, sway)
         line = np.array(_ends(assembly, block, base, height, direction))

@@ -135,7 +135,9 @@ class Contribution(ResultModel):
     probability: float = fact("probability that the true critical scale factor is below 1")
     low: float = fact("lower end of the 90 % confidence interval of this probability")
     high: float = fact("upper end of the 90 % confidence interval of this probability")
-    weight: float = fact("weight of this strategy in the overall probability: its share of the number of tests")
+    weight: float = fact(
+        "weight of this strategy in the overall probability of collapse: its share of the experiments with which the strategies were compared"
+    )
 
 
 class CollapseInMotion(ResultModel):

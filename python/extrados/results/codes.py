@@ -186,8 +186,10 @@ class CodeChecks(Checked):
 
     dynamic_outcome: RockingOutcome = maybe("for a block under a motion: outcome of the calculated rocking")
     dynamic_peak_rotation_ratio: float = maybe("ratio of the greatest rotation of the block to its critical rotation")
-    peak_ground_acceleration_g: float | None = maybe("for a block: a_g S, the demand in the rules", "g")
-    peak_ground_velocity_m_s: float | None = maybe("for a block: demand by the rule of Ishiyama", "m/s")
+    peak_ground_acceleration_g: float | None = maybe(
+        "for a block: peak acceleration of the ground a_g S, the demand in the code rules", "g"
+    )
+    peak_ground_velocity_m_s: float | None = maybe("for a block: peak velocity of the ground, the demand in the rule of Ishiyama", "m/s")
 
 
 class WallMechanism(ResultModel):

@@ -97,8 +97,8 @@ class BlocksRun(KindResults):
     residual_slip_m: float = fact("greatest slip of the joints at the end of the run", "m")
     slip_ratio: float = fact("greatest ratio of the slip to the length of the joint")
     slip_limit_ratio: float = fact(
-        "limit of the ratio of slip to joint length (0.25). Beyond it more than half of the lever arm to the end of the "
-        "joint is lost, and the verdict is open"
+        "limit of the ratio of slip to joint length (0.25). Beyond it the distance from the centre of the joint to its end is "
+        "less than half, and the outcome is open (no verdict)"
     )
     slipped_joint: str | None = fact("joint with the greatest ratio of slip to length; null if no joint slides by 1 % of its length")
     off_footing: list[str] = fact("blocks that slid off their footings; recorded only if the deck names no floor")
@@ -173,7 +173,7 @@ class BlocksRun(KindResults):
         else:
             text = (
                 f"A block moves by {three_figures(1e3 * most)} mm. This exceeds the {three_figures(1e3 * limit)} mm that count as collapse, "
-                "but the block neither rotates nor sinks as in a collapse."
+                "but the block neither rotates nor settles as in a collapse."
             )
         if self.slipped_joint is not None:
             text += f" {slip}."

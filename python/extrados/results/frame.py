@@ -95,7 +95,7 @@ class FramePush(ResultModel):
     level_mass_kg: list[float] = fact("masses on the levels, from the lowest", "kg")
     level_shape: list[float] = fact("mean of the mode shape on each level, in the sense of the load")
     storeys: list[PierLimits] = fact("limit events of the piers, for each storey of each wall")
-    failed: list[FailedElement] = fact("elements beyond their drift limits, in order")
+    failed: list[FailedElement] = fact("elements beyond their drift limits, in the order in which they reach them")
 
 
 class OutOfPlane(ResultModel):

@@ -204,12 +204,15 @@ class Tilt(KindResults):
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse towards -x")
     thrust_min_N: float = maybe(
-        "least horizontal thrust of the first arch, upright; for an arch restrained by ties, the value at the crown", "N"
+        "least horizontal thrust of the first arch at its left springing under vertical loads only; at the crown of an arch with ties", "N"
     )
     thrust_max_N: float = maybe(
-        "greatest horizontal thrust of the first arch, upright; for an arch restrained by ties, the value at the crown", "N"
+        "greatest horizontal thrust of the first arch at its left springing under vertical loads only; at the crown of an arch with ties",
+        "N",
     )
-    thrusts: dict[str, ChainThrust] = maybe("least and greatest horizontal thrust of each arch, upright, by the name of the arch")
+    thrusts: dict[str, ChainThrust] = maybe(
+        "least and greatest horizontal thrust of each arch under vertical loads only, by the name of the arch"
+    )
     clear_span_m: float = maybe("clear span", "m")
     rise_m: float = maybe("rise of the intrados", "m")
     base_width_m: float = maybe("width of a buttress at its base", "m")
@@ -299,7 +302,7 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
     peak of the motion."""
     peak = demand.peak_g
     upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
-    lower = "no lesser state was sought" if least is None else f"the least state found is {least:.3g} g"
+    lower = "no lower value was sought" if least is None else f"the lowest value found is {least:.3g} g"
     text = (
         f"Joints slide. The design value of the collapse acceleration (horizontal, constant) is {design:.3g} g, the least "
         f"of the load paths; {lower}; {upper}"
@@ -323,7 +326,7 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
     peak = demand.peak_g
     upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
     text = (
-        "Joints slide, so the collapse acceleration (horizontal, constant) lies in an interval: the least state found is "
+        "Joints slide, so the collapse acceleration (horizontal, constant) lies in an interval: the lowest value found is "
         f"{least:.3g} g; {upper}"
     )
     if peak is None:
@@ -334,9 +337,9 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
     elif peak >= least:
         outcome, place = "open", "between both"
     elif peak >= least - spread:
-        outcome, place = ("open", f"below the least state found, but by less than the scatter of the states found ({spread:.3g} g)")
+        outcome, place = ("open", f"below the lowest value found, but by less than the scatter of the values found ({spread:.3g} g)")
     else:
-        outcome, place = "stands", "below the least state found"
+        outcome, place = "stands", "below the lowest value found"
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place}."
     return judge(text, peak, least, "g", outcome)
 

@@ -98,7 +98,7 @@ class SolidTilt(KindResults):
     duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
     equilibrium_residual: float = fact("ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight")
     friction_residual: float = fact(
-        "ratio of the greatest excess of shear over friction, or of the greatest tension, at a corner to the weight"
+        "greatest violation at a corner of a contact (shear above friction, or tension), divided by the weight of the structure"
     )
     overlap_residual: float = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest contact")
     dilating_contacts: int = fact(
@@ -196,7 +196,7 @@ class SolidThrust(KindResults):
     duality_gap: float = fact("ratio of the greatest difference between the bounds of the thrusts to the weight")
     equilibrium_residual: float = fact("ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight")
     friction_residual: float = fact(
-        "ratio of the greatest excess of shear over friction, or of the greatest tension, at a corner to the weight"
+        "greatest violation at a corner of a contact (shear above friction, or tension), divided by the weight of the structure"
     )
 
     def judged(self, demand: Demand) -> Verdict:

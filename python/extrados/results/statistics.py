@@ -355,13 +355,15 @@ class Resonance(KindResults):
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     conditions: Conditions = fact("whether blocks slide or hinges form at other joints under this motion")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
-        "for a block, by number of half cycles: least ratio of the acceleration cap to the uplift acceleration at which "
+        "for a block, by number of half cycles: least limit on the acceleration of the motion, as a ratio to the uplift acceleration, at which "
         "collapse occurs within this number"
     )
-    least_cap_g: float | None = maybe("for a block: least acceleration cap at which the rotation grows; null if the two toes differ", "g")
-    least_cap_ratio: float | None = maybe("ratio of the least acceleration cap to the uplift acceleration")
+    least_cap_g: float | None = maybe(
+        "for a block: least limit on the acceleration of the motion at which the rotation grows; null if the two toes differ", "g"
+    )
+    least_cap_ratio: float | None = maybe("ratio of the least limit on the acceleration to the uplift acceleration")
     least_cap_ratios: list[list[float]] = maybe(
-        "ratios of the least acceleration caps to the uplift acceleration, for each aspect ratio (rows) and each "
+        "ratios of the least limits on the acceleration to the uplift acceleration, for each aspect ratio (rows) and each "
         "initial ratio of the rotation (columns)",
         source="thesis Fig. 6-3",
     )

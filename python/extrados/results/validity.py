@@ -64,7 +64,7 @@ Rocking = Validity(
     "Hinges remain at the same joints; blocks do not slide, bounce or crush. Sliding and hinges at other joints are "
     "checked during the motion. If a check fails, the run continues with rigid contacts from that state. "
     "If the impact rules give different outcomes, or if the response is chaotic, one run is only one sample: use "
-    "fragility.",
+    "the analysis fragility.",
 )
 FailureDomain = Validity(
     "A single pulse acts on the rigid-body mechanism at rest.",

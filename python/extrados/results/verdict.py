@@ -101,7 +101,7 @@ class SelfWeight(KindResults):
     collapse_acceleration_g: float = fact("always 0: the building carries no horizontal acceleration", "g")
     safety_factor: float = fact("always 0: the building collapses before the demand acts")
     certificate: str = fact(
-        "certificate of collapse, with the joints or blocks at which equilibrium fails; if the collapse is not proven, the end of the run"
+        "certificate of collapse, with the joints or blocks at which equilibrium fails; if the collapse is not proven, the reason for which the run ended"
     )
     proven: bool = fact("whether a certificate proves the collapse; otherwise the outcome is open")
     neglected: list[str] = fact(

@@ -113,11 +113,11 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
     with style.figure(7.0, float(np.clip(6.0 / wide + 1.4, 3.8, 7.0))) as (fig, (ax,)):
         pale_stones(ax, stones, frame, r.load_direction_deg)
         pressing(ax, force, centre, frame, float(size.max()), style.THRUST)
-        ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the longest is {size.max() / 1e3:.3g} kN")
+        ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the greatest is {size.max() / 1e3:.3g} kN")
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
         "Forces between the stones, and on the ground, at collapse. Each acts at the centre "
-        f"of compression of its contact; its length is in proportion. The longest is {size.max() / 1e3:.3g} kN."
+        f"of compression of its contact; its length is in proportion. The greatest is {size.max() / 1e3:.3g} kN."
     )
 
 
@@ -170,7 +170,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 pale_stones(ax, stones, frame, r.load_direction_deg if r.gamma_g else None)
                 pressing(ax, force, centre, frame, longest, colour)
                 ax.set_title(title)
-            caption = f"Forces between the blocks at {r.gamma_g:g} g, each through the centre of its compression; the longest is {longest / 1e3:.3g} kN."
+            caption = f"Forces between the blocks at {r.gamma_g:g} g, each through the centre of its compression; the greatest is {longest / 1e3:.3g} kN."
             found.append((style.save(fig, folder, f"{name}-forces"), caption))
     if r.sections:
         found.append(_draw_ranges(folder, name, r))
@@ -266,7 +266,7 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
         if rows:
             way = np.radians([row.direction_deg for row in rows])
             ax.plot(way, [row.load_path_g for row in rows], "s", color=style.HINGE, markersize=5, label="design value by load paths")
-            ax.plot(way, [row.least_g for row in rows], "_", color=style.HINGE, markersize=9, label="least state found")
+            ax.plot(way, [row.least_g for row in rows], "_", color=style.HINGE, markersize=9, label="lowest value found")
             ax.legend(loc="lower left", bbox_to_anchor=(-0.17, -0.07), fontsize=7)
         ax.set_ylim(0.0, 1.15 * float(np.nanmax(radius)))
         ax.set_rlabel_position(100.0)

@@ -77,7 +77,7 @@ def conclusion(
             said.append(f"{labels(others)} gives the same conclusion by the same certificate, which counts only once.")
         said.append(first.statement)
         if stands:
-            said.append(f"This certificate overrules the opposite result of {labels(stands)}.")
+            said.append(f"This certificate leaves no doubt: the opposite result of {labels(stands)} is not considered.")
     elif not stands and not collapses and not left:
         overall = "open"
         said.append(f"No strategy has a verdict on the {word} under this hazard.")

@@ -440,7 +440,7 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
                 associated = None
             else:
                 context.warnings.append(
-                    f"Joints slide: the multiplier lies between {least:.4g} (least state found without dilatancy) and "
+                    f"Joints slide: the multiplier lies between {least:.4g} (lowest value found without dilatancy) and "
                     f"{multiplier:.4g} ({DILATANT}). The checks use the lower value."
                 )
     return _Turning(

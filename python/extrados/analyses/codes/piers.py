@@ -104,7 +104,7 @@ def ntc_piers(p: Pier, factor: float, partial: float, demand: float | None, stat
             state,
             ""
             if p.cohesion > 0.0
-            else "the deck gives no f_v0 ([joints] cohesion). For irregular masonry only the rule of diagonal cracking applies",
+            else "the deck gives no f_v0 ([joints] cohesion). Regular masonry requires it for stepped cracking. For irregular masonry only diagonal cracking is checked",
         ),
     ]
     b = float(np.clip(p.height / p.width, 1.0, 1.5))

@@ -132,7 +132,7 @@ class Floor(Table):
     )
     arm: Length | None = key(None, "horizontal distance of the load behind the hinge; default: the middle of the wall", ge=0)
     sways: bool = key(True, "whether the mass of the load is accelerated with the wall; false if other walls restrain it")
-    thrust: Force = key(0.0, "outward horizontal thrust of the load at rest")
+    thrust: Force = key(0.0, "outward horizontal thrust of the load under vertical loads only (without earthquake)")
 
 
 class WallTie(Table):

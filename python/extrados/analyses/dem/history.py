@@ -154,7 +154,9 @@ def _further(context: Context, options: Dem, trial: Trial, result: Result, numbe
             numbers["friction_threshold"] = friction_threshold(context, trial, options.slip)
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
-        result.reason = f"the variations, or the search of the least friction, stopped: {error}. The main run is complete"
+        result.reason = (
+            f"the main run is complete, but the further runs (variations, or the search for the least friction) stopped: {error}"
+        )
     except Refused as error:
         numbers["friction_threshold"] = None
         result.warnings.append(f"the least friction was not found: {error}")

@@ -137,7 +137,10 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         *((key, key in given, ("analysis", key)) for key in ("vary_damping", "vary_stiffness", "vary_friction")),
         ("[[initial.movements]] of a tilt test or of a map", bool(building.initial.movements) and not moves, ("initial", "movements")),
         ("[[initial.movements]] with a floor", bool(building.initial.movements) and options.floor is not None, ("initial", "movements")),
-        *(("turn of a support", bool(one.turn), ("initial", "movements", k, "turn")) for k, one in enumerate(building.initial.movements)),
+        *(
+            ("rotation of a support", bool(one.turn), ("initial", "movements", k, "turn"))
+            for k, one in enumerate(building.initial.movements)
+        ),
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),

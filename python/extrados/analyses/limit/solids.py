@@ -393,7 +393,7 @@ def _told(r: out.SolidTilt) -> str:
         most = "none" if row.associated_g is None else f"{row.associated_g:.4f} g"
         text += (
             f"Without dilatancy along {row.direction_deg % 360.0:g} degrees, the design value is {design} (the least of "
-            f"{len(row.load_paths)} load paths of elastic joints), the least state found {least} and the upper bound {most}. "
+            f"{len(row.load_paths)} load paths of elastic joints), the lowest value found is {least}, and the upper bound is {most}. "
         )
     if r.non_associated_reason:
         text += f"No state without dilatancy is given: {r.non_associated_reason}. "

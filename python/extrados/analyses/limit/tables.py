@@ -49,7 +49,10 @@ class LimitAnalysisTable(BuildingAnalysis):
         source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
     starts: int = key(
-        6, 'for "non-associated": number of starting points of the search; the least state found is the result', ge=1, le=1000
+        6,
+        'for "non-associated": number of starting points of the search; the result is the lowest collapse acceleration found',
+        ge=1,
+        le=1000,
     )
     load: list[AppliedLoad] = key(
         [], "constant loads in addition to self-weight and fill; their weight can be accelerated with the ground (sways)", max_length=1000
@@ -328,7 +331,7 @@ class MovingLoad(LimitAnalysisTable):
     count: int = key(
         81, "number of positions while a load crosses the span; a train longer than the span has proportionally more", ge=3, le=2000
     )
-    places: list[Length] | None = key(None, "positions of the first axle; replaces count", min_length=1, max_length=2000)
+    places: list[Length] | None = key(None, "positions of the first axle; `count` is then not used", min_length=1, max_length=2000)
 
     @model_validator(mode="after")
     def _axles(self) -> "MovingLoad":

@@ -208,12 +208,12 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
         way = "to +x" if direction > 0 else "to -x"
         if limit.strength is not None:
             result.warnings.append(
-                f"Load paths {way} do not include crushing. The capacity is therefore the least state found, not the design value."
+                f"Load paths {way} do not include crushing. The capacity is therefore the lowest value found, not the design value."
             )
         elif limit.associated and len(limit.assembly.a) > MOST_FOLLOWED:
             result.warnings.append(
                 f"Load paths {way} are not calculated, because the structure has more than {MOST_FOLLOWED} joints. The capacity "
-                "is therefore the least state found, not the design value. To calculate load paths, give friction_rule = "
+                "is therefore the lowest value found, not the design value. To calculate load paths, give friction_rule = "
                 '"non-associated".'
             )
         elif beside.coulomb[direction].falling is None:
@@ -359,7 +359,7 @@ def _told(found: out.Tilt) -> str:
         if design is not None:
             text += f"Without dilatancy, the design value {way} is {design:.4f} g, the least of {len(paths)} load paths of elastic joints. "
         text += (
-            f"The least of {len(r.starts_g)} states found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The lower "
+            f"The lowest of {len(r.starts_g)} values found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The lower "
             f"bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
         )
     if found.non_associated_reason:

@@ -158,7 +158,9 @@ def _fits(
     try:
         found["fit"] = criterion.fit(durations, amplitudes, gamma), 1.0
     except ValueError as error:
-        context.warnings.append(f"{variant.label}: Eq. 5.5 is not fitted: {error}")
+        context.warnings.append(
+            f"{variant.label}: Eq. 5.5 of the dissertation (amplitude over duration at collapse) cannot be fitted: {error}"
+        )
     table = criterion.interpolated(ratio, embrace, gamma)
     if table is None:
         context.warnings.append(

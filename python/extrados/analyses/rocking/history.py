@@ -150,7 +150,7 @@ def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction
     if over is not None and ran.run is not None:
         if ran.run.status != "ok":
             result.status, result.reason = ran.run.status, f"rigid contacts: {ran.run.reason}"
-        result.warnings.append(f"From {over.time_s:.3f} s on, the blocks are followed with rigid contacts.")
+        result.warnings.append(f"From {over.time_s:.3f} s on, the motion of the blocks is calculated with rigid contacts.")
         result.warnings += [text for text in ran.run.warnings if text not in result.warnings]
         result.arrays |= stored(ran.run)
     result.arrays |= {
@@ -232,7 +232,7 @@ def answer_of(context: Context, ran: Ran, who: str, falls: str, uplift: float) -
     before = f"rocks ({count(response.impacts, 'impact')})" if response.half_cycles else "rests"
     return (
         f"By rigid contacts: {ran.run.answer} {who} {before} by the assumed mechanism until {over.time_s:.3f} s. From "
-        f"then on the blocks are followed with rigid contacts. {over.reason}"
+        f"then on the motion of the blocks is calculated with rigid contacts. {over.reason}"
     )
 
 

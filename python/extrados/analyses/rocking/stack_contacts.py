@@ -61,7 +61,12 @@ def _handed(context: Context, options: Rocking, rocker: Rocker, demand: JointDem
     )
     if further.status != "ok":
         result.status, result.reason = further.status, f"rigid contacts: {further.reason}"
-    told = [*conditions.violated, *run.violated, f"From {time:.3f} s on, the blocks are followed with rigid contacts.", *further.warnings]
+    told = [
+        *conditions.violated,
+        *run.violated,
+        f"From {time:.3f} s on, the motion of the blocks is calculated with rigid contacts.",
+        *further.warnings,
+    ]
     result.warnings = list(dict.fromkeys(told))
     result.arrays |= stored(further)
     result.arrays |= on_contacts(context.building.blocks(), result)

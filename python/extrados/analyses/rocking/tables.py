@@ -155,7 +155,7 @@ class FailureCurves(RockingTable):
     @model_validator(mode="after")
     def _trains(self) -> "FailureCurves":
         if self.pulse != "sine" and self.cycles != [1]:
-            raise ValueError(f"the key `cycles` is only for trains of sines; a pulse of shape '{self.pulse}' occurs only once")
+            raise ValueError(f"the key `cycles` is only for sine pulses; a pulse of shape '{self.pulse}' has only one cycle")
         if self.fits and (self.pulse != "sine" or self.cycles != [1]):
             raise ValueError('the key `fits` requires failure curves of single sines: give pulse = "sine" and cycles = [1], or remove fits')
         if len(set(self.cycles)) < len(self.cycles):

@@ -142,7 +142,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     drives: list[Drive] = key(
         [],
-        "imposed displacements that replace the pattern: the tops of storeys of walls move by given ratios of one displacement",
+        "imposed displacements in place of the horizontal forces: the top of each storey of a wall moves by a given multiple of the control displacement",
         max_length=100,
     )
     control: Drive | None = key(

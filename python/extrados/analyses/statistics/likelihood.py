@@ -124,9 +124,9 @@ def fit(seen: Capacities) -> Lognormal:
         raise NoFit("the event occurred in every run at every intensity")
     if low.max() <= high.min():
         raise NoFit(
-            f"a step between {low.max():.4g} and {high.min():.4g} explains all runs, so the dispersion cannot be estimated"
+            f"a step between {low.max():.4g} and {high.min():.4g} separates all runs without collapse from all runs with collapse, so the dispersion cannot be estimated"
             if low.max() < high.min()
-            else f"a step at {low.max():.4g} explains all runs, so the dispersion cannot be estimated"
+            else f"a step at {low.max():.4g} separates all runs without collapse from all runs with collapse, so the dispersion cannot be estimated"
         )
     a, b = _greatest(low, high, weight[None, :])
     if not b[0] > 1e-9:

@@ -226,7 +226,9 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     result.arrays |= {
         "aspect": Array(ASPECTS, ("aspect",), "", "B/H"),
         "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "ratio of the initial rotation to the critical rotation"),
-        "least_cap_ratio": Array(table, ("aspect", "initial_ratio"), "", "ratio of the least acceleration cap to the uplift acceleration"),
+        "least_cap_ratio": Array(
+            table, ("aspect", "initial_ratio"), "", "ratio of the least limit on the acceleration to the uplift acceleration"
+        ),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
         "impulse_rotation": Array(
             np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "ratio of the initial rotation to the critical rotation"

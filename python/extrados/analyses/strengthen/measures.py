@@ -331,14 +331,14 @@ def unmet_reason(measure: Measure, worth: Worth) -> str:
     if worth.value is None:
         return worth.reason or "no value was found"
     if not reached(measure, worth):
-        least = ", an upper bound or the least state found without dilatancy," if worth.bound == "upper" else ""
+        least = ", an upper bound or the lowest value found without dilatancy," if worth.bound == "upper" else ""
         return f"the value is {worth.value:.3g}{least} and the target is {measure.target:.3g}"
     if worth.unfound:
         return worth.unfound
     if worth.beside is not None and worth.beside <= (1.0 - SLACK) * measure.target:
         return (
-            "only the upper bound of limit analysis (dilatant friction) meets the target. The least state found without "
-            f"dilatancy carries {worth.beside:.3g} g"
+            "only the upper bound of limit analysis (dilatant friction) meets the target. The lowest collapse acceleration found without "
+            f"dilatancy is {worth.beside:.3g} g"
         )
     return ""
 

@@ -116,7 +116,7 @@ def _adverse_of(work: Sizing, worth: Worth, volume: float, met: bool) -> list[st
         found.append("The governing mechanism changes: the intervention moves the collapse to another part.")
     if met and worth.beside is not None and worth.beside < work.measure.target:
         found.append(
-            "Joints in compression slide. Without dilatancy, the least state found of the strengthened building carries "
+            "Joints in compression slide. Without dilatancy, the lowest collapse acceleration found for the strengthened building is "
             f"{worth.beside:.3g} g, less than the target. Increase the force, or the friction."
         )
     statics = work.measure if isinstance(work.measure, Statics) else None
@@ -153,7 +153,7 @@ def with_lapses(work: Sizing, row: out.Intervention, curve: tuple[list[float], l
     ]
     if not beyond:
         return row
-    text = f"The target is not met at {len(beyond)} greater sizes that were calculated, for instance {beyond[0]:.4g} {row.unit}"
+    text = f"Of the calculated sizes above the required one, {len(beyond)} do not meet the target, for instance {beyond[0]:.4g} {row.unit}"
     return row.model_copy(update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not increase with the size."]})
 
 

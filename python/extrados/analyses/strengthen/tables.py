@@ -86,7 +86,7 @@ class TieOption(Tie):
     @model_validator(mode="after")
     def _range(self) -> "TieOption":
         if self.hoop and self.far_to is not None:
-            raise ValueError("far_to: a hoop has only one height: give start_to")
+            raise ValueError("a hoop has only one height: give start_to, and remove far_to")
         if any(len(point) != len(self.start) for point in (self.start_to, self.far_to) if point is not None):
             raise ValueError("start_to and far_to: expected the same number of coordinates as in start")
         if "places" in self.model_fields_set and self.start_to is None and self.far_to is None:

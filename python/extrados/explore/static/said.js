@@ -39,7 +39,7 @@ const TEXTS = [
   "Right edge of opening {0}",
   "Lower edge of opening {0}",
   "Upper edge of opening {0}",
-  "Length of a unit (the handle changes the length of the wall)",
+  "Length of a unit. The handle changes the length of the wall; the number of units remains",
   "Radius of the intrados (the handle changes the rise)",
   "Radius of the nave's centre line",
   "Radius of the vault's centre line",

@@ -105,7 +105,9 @@ class CrossVault(Spatial):
     embrace: Angle = key(about="angle of embrace of the barrels, from springing to springing", ge=20, le=180)
     voussoirs: int = key(about="number of courses of a barrel from springing to springing; an even number", ge=4, le=400)
     edge: Length | None = key(
-        None, "distance by which the webs extend beyond the corner of the extrados at the springing; default: the thickness", ge=0
+        None,
+        "horizontal distance by which the webs extend over the support, beyond the corner of the extrados at the springing; default: the thickness",
+        ge=0,
     )
     stone_length: Length | None = key(None, "length of a block along the barrel; default: whole courses, mitred along the groins", gt=0)
     springers: int = key(

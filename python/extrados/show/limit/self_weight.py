@@ -38,7 +38,7 @@ def draw_self_weight(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     return [
         (
             f"{name}-self-weight",
-            f"{title}. The scale is arbitrary. In this mechanism the loads do work, and the joints do not resist it. "
-            f"Dotted: geometry of the deck. The arrow marks the block with the greatest velocity, {names[fastest]}.",
+            f"{title}. The scale is arbitrary. In this mechanism the work of the loads is positive, and the joints dissipate nothing. "
+            f"Dotted: geometry without displacements. The arrow marks the block with the greatest velocity, {names[fastest]}.",
         )
     ]

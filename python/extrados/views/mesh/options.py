@@ -23,7 +23,7 @@ class MeshOptions(Table):
     """Kind, size and pattern of the elements."""
 
     size: Length | None = key(
-        None, "required size of the elements; default: 1/20 of the lesser side of the wall, or 1/8 of the median joint for blocks", gt=0
+        None, "target size of the elements; default: 1/20 of the lesser side of the wall, or 1/8 of the median joint for blocks", gt=0
     )
     joints: Literal["interfaces", "rows"] | None = key(
         None,

@@ -187,8 +187,8 @@ class ArchModel:
         if (kept := self.kept_by_elements) is not None:
             return [
                 (
-                    f"a plastic impact at all joints gives this stocky arch c_v = {self.restitution:.3f}, and discrete elements give "
-                    f"up to {kept:.3f}: they collapse earlier"
+                    f"a plastic impact at all joints gives this stocky arch a coefficient of restitution of {self.restitution:.3f}. Discrete elements give up "
+                    f"to {kept:.3f} and collapse earlier: use `dem`"
                 )
             ]
         if self.rule == "thesis" and impacts.thesis > 1.0:
