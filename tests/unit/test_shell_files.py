@@ -237,7 +237,7 @@ def test_files_that_do_not_fit_are_reported(tmp_path):
     with pytest.raises(BadGeometry, match=r"no\.msh: this is not a mesh"):
         read(tmp_path / "no.msh", ground)
     flat = written(tmp_path, "vtu")
-    with pytest.raises(BadGeometry, match="groups is only for shells"):
+    with pytest.raises(BadGeometry, match="`groups` is only for shells"):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).mesh()
     with pytest.raises(BadGeometry, match=r"remove mesh\.size"):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).shell(ShellOptions(size=0.5))

@@ -94,4 +94,4 @@ def test_up_is_refused_of_plane_drawings() -> None:
     square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
     deck = make_deck({"structure": {"kind": "blocks", "up": "y", "block": [{"points": square}]}, "analysis": {"kind": "tilt"}})
     (found,) = run_analyses(Context(deck, threads=1))
-    assert found.status == "refused" and "up is only for" in found.reason
+    assert found.status == "refused" and "up` is only for" in found.reason
