@@ -384,6 +384,24 @@ def test_the_answer_states_one_limit_of_friction() -> None:
     assert set(re.findall(r"below (?:the )?([0-9.]+[0-9])", found.answer)) == {f"{found.results.conditions.required_friction:.2f}"}
 
 
+def test_cells_of_several_cycles_that_coarse_steps_bring_down() -> None:
+    """Step 1/25 of the time unit alone gives a collapse at 0.7 g and 1.6 Hz; maps give the recovery of single runs, as its next step does."""
+    block = {"kind": "block", "width": 0.5, "height": 2.0}
+    harmonic = {"kind": "harmonic-map", "cycles": 8, "frequencies": [1.6], "amplitudes": 2, "max_amplitude": "0.7 g"}
+    deck = make_deck({"structure": block, "joints": {"friction": 0.3}, "analysis": harmonic})
+    contacts = contacts_of(deck.buildings[0].rocker(), deck.buildings[0])
+    assert contacts is not None
+    ground = pulses.harmonic(1.0, 1.6, 5.0).ground
+    single = Fates.of(Context(deck), contacts)
+    ends = [
+        replace(single, steps=steps).follow(ground, 0.7 * GRAVITY, ground.end) for steps in (STEPS[-1:], STEPS, ((STEPS[0][0], np.inf),))
+    ]
+    assert [WORDS_OF_MAP[one.outcome] for one in ends] == ["recovery", "recovery", "collapse"]
+    found = extrados.run({"structure": block, "joints": {"friction": 0.3}, "analysis": harmonic}).results[0]
+    assert found.results.handed_over and WORDS_OF_MAP[int(found.arrays["outcome"].data[0, 1])] == "recovery"
+    assert found.arrays["peak_ratio"].data[0, 1] == pytest.approx(ends[0].ratio, rel=1e-9)
+
+
 @pytest.mark.verify
 @pytest.mark.parametrize("structure", [ARCH, VAULT, STACK])
 def test_coarse_steps_decide_cells_as_those_of_single_runs(structure: dict) -> None:

@@ -89,3 +89,19 @@ def test_a_swing_that_reverses_at_the_end_has_not_come_to_rest(end: float) -> No
     contacts = {"kind": "dem", "solver": "nonsmooth", "floor": 0.0, "end_time": end, "perturbed": False}
     found = extrados.run(deck(0.6, 3.0, 0.25, 0.5, 0.6) | {"ties": [tie], "analysis": contacts}).results[0]
     assert found.results.still_moving and "still move" in found.answer
+
+
+@pytest.mark.parametrize("friction", [0.34, 0.36])
+def test_the_step_of_output_does_not_decide_whether_a_tied_block_slides(friction: float) -> None:
+    """Its toe needs the friction for some hundredths of a second only: time, requirement and outcome are the same at any step of output."""
+    tie = {"name": "rod", "start": [0.0, 1.5], "start_stone": "block", "ground": [0.0, 0.0], "stiffness": 2e5, "prestress": 2e3}
+    given = deck(0.5, 1.5, friction, 0.6, 0.4) | {"ties": [tie]}
+    times, needed, ends = set(), set(), set()
+    for step in ({}, {"output_step": 0.2}, {"output_step": 0.5}):
+        found = extrados.run(given | {"analysis": {"kind": "rocking"} | step}).results[0]
+        over = found.results.hand_over
+        times.add(over.time_s)
+        needed.add((found.results.required_friction, found.results.conditions.required_friction))
+        ends.add((found.results.outcome, found.verdict.outcome))
+    assert len(times) == len(needed) == len(ends) == 1
+    assert found.results.conditions.required_friction > friction >= found.results.required_friction

@@ -24,26 +24,26 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     if structure.kind == "column":
         context.warnings.append("the column is modelled as one rigid body; use `dem` for joints that open")
     end_time = options.end_time or context.motion.end + rest_time(rocker)
-    ran = rock(context, options, rocker, end_time, 12, lambda found: _required(rocker, found))
+    ran = rock(context, options, rocker, end_time, 12, lambda found: _required(rocker, found)[0])
     response = ran.response
 
     tangential, normal = toe_forces(model, response, rocker.restraints, response.forces)
-    c, s = np.cos(model.block.slope), np.sin(model.block.slope)
-    across = c * normal - s * tangential  # on a sloping base
-    friction = np.abs(c * tangential + s * normal) / np.maximum(across, 1e-300)
-    flying = across <= 0.0
     c_v = model.restitution
-    needed = float(friction[~flying].max(initial=0.0))
+    seen = ran.seen
+    required, flying = _required(rocker, seen)
+    flying &= seen.time <= response.stop_time  # contacts may go on from there
+    required = np.where(seen.time <= response.stop_time, required, 0.0)
+    needed = float(required.max(initial=0.0))
     if response.joints is not None and np.isfinite(response.joints.friction):
         # the joints are watched while it rocks; at rest the ground pushes it along too
-        still = friction[(response.rotation == 0.0) & ~flying]
+        still = required[seen.rotation == 0.0]
         needed = max(float(response.joints.friction), float(still.max(initial=0.0)))
     result = rocking_result(
         context,
         ran,
         rocker,
         f"the {rocker.word}",
-        friction[:, None],
+        _friction(model, tangential, normal)[0][:, None],
         restitution=c_v[0],
         restitution_to_left=c_v[1],
         energy_ratio=c_v[0] ** 2 * model.block.toe_inertia[0] / model.block.toe_inertia[1],
@@ -54,7 +54,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         required_friction=needed,
     )
     if flying.any():
-        first = response.time[flying.argmax()]
+        first = seen.time[flying.argmax()]
         result.warnings.append(
             f"from {first:.3f} s on, the {rocker.word} would lift off completely for some time, but the analysis assumes that "
             "it stays in contact"
@@ -67,13 +67,18 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     return result
 
 
-def _required(rocker: Rocker, response: core_rocking.Response) -> np.ndarray:
-    """Friction at the toe that a response requires (times), 0 where the block would fly."""
+def _friction(model: BlockModel, tangential: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Friction that forces of the ground at the toe require, and where the block would fly (times each); forces to +x and up [N]."""
+    c, s = np.cos(model.block.slope), np.sin(model.block.slope)
+    across = c * normal - s * tangential  # on a sloping base
+    return np.abs(c * tangential + s * normal) / np.maximum(across, 1e-300), across <= 0.0
+
+
+def _required(rocker: Rocker, response: core_rocking.Response) -> tuple[np.ndarray, np.ndarray]:
+    """Friction at the toe that a response requires, 0 where the block would fly, and where it would (times each)."""
     assert isinstance(rocker.model, BlockModel)
-    tangential, normal = toe_forces(rocker.model, response, rocker.restraints, response.forces)
-    c, s = np.cos(rocker.model.block.slope), np.sin(rocker.model.block.slope)
-    across = c * normal - s * tangential
-    return np.where(across > 0.0, np.abs(c * tangential + s * normal) / np.maximum(across, 1e-300), 0.0)
+    friction, flying = _friction(rocker.model, *toe_forces(rocker.model, response, rocker.restraints, response.forces))
+    return np.where(flying, 0.0, friction), flying
 
 
 def toe_forces(

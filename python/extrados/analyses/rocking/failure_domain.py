@@ -15,7 +15,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import DIFFER
-from extrados.analyses.rocking.hand_over import decide_cells
+from extrados.analyses.rocking.hand_over import STEPS, decide_cells
 from extrados.analyses.rocking.job import RunsJob, runs_job
 from extrados.analyses.rocking.tables import FailureDomain
 from extrados.core.calls import interruptible
@@ -408,9 +408,9 @@ def _by_contacts(
     def decided(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         ends = np.array([m.end for m in mapper.motions]) + mapper.settle
         grounds = [m.ground for m in mapper.motions]
-        return decide_cells(context, model, options.hand_over_cells, options.form == "linear", grounds, index, amplitude, ends[index])[
-            "outcome"
-        ]
+        linear = options.form == "linear"
+        found = decide_cells(context, model, options.hand_over_cells, linear, grounds, index, amplitude, ends[index], STEPS)
+        return found["outcome"]
 
     return decided
 

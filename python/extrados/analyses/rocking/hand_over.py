@@ -44,11 +44,9 @@ BEFORE = 1e-3
 #: Spacing of the history of contacts in maps, over the time unit of the structure
 COARSE = 0.02
 #: Time steps of contacts over the time unit of the structure, the coarsest first, 0 that of single runs; and the rotation over the critical
-#: one up to which a recovery is accepted at this step. Coarse steps lose more energy, so a collapse is accepted at any step. In 258 motions
-#: no collapse was wrong, and the least rotations of wrong recoveries were 0.72, 1.1, 2.4 and 2.8.
+#: one up to which a recovery is accepted at this step. In 258 motions of one cycle the least rotations of wrong recoveries were 0.72, 1.1,
+#: 2.4 and 2.8. Coarse steps lose more energy, but may also err to a collapse: it is accepted only if the next step collapses too.
 STEPS = ((0.04, 0.4), (0.02, 0.7), (0.01, 1.2), (0.005, 1.8), (0.0, np.inf))
-#: The same where the rotation of recoveries is a result
-STEPS_WITH_ROTATION = ((STEPS[0][0], 0.0), STEPS[-1])
 #: Blocks have collapsed beyond a fifth of the size, and so many times as far as at the critical rotation, from which they may recover
 FALLEN, BEYOND = 0.2, 1.5
 #: Rotation from which a block at the end of a run has overturned, where no critical rotation exceeds it [rad]
@@ -395,13 +393,15 @@ class Fates:
         rest = max(ground.end, left.time) + self.options.end_time - left.time
         options = replace(self.options, end_time=rest, threads=threads if many else 1)
         seen_ground = ground.seen_from(left.time)
-        fate = Fate(UNKNOWN, 0.0, 0.0)
+        fate, fell = Fate(UNKNOWN, 0.0, 0.0), False
         for step, sure in self.steps:
             tried = replace(options, step=step * c.leaving.time_unit)
             run = dem.run(c.bodies, tried, seen_ground, scale=scale, shift=shift, rate=rate)
             fate = self._fate(run, left.rocks)
-            if fate.outcome == COLLAPSE or (fate.outcome != UNKNOWN and fate.ratio <= sure):
+            falls = fate.outcome == COLLAPSE
+            if (falls and fell) or not (falls or fell or fate.outcome == UNKNOWN or fate.ratio > sure):
                 break
+            fell = falls
         return fate
 
     def _fate(self, run: dem.Run, rocks: bool) -> Fate:
@@ -459,7 +459,7 @@ def decide_cells(
     index: np.ndarray,
     scale: np.ndarray,
     end: np.ndarray,
-    steps: tuple[tuple[float, float], ...] = STEPS,
+    steps: tuple[tuple[float, float], ...] = STEPS[-1:],
 ) -> dict[str, np.ndarray]:
     """See `decide`: of cells of a map whose mechanism a condition leaves, motion index[k] times scale[k] until end[k] [s]; UNKNOWN where
     contacts do not decide them, or where they are more than `limit`, with a warning."""

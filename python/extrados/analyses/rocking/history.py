@@ -13,7 +13,7 @@ from extrados.analyses.rocking.course import Course, build_result, impact_times,
 from extrados.analyses.rocking.doubts import Doubts, doubts, doubts_on_contacts
 from extrados.analyses.rocking.hand_over import contacts_of, follow_contacts, leaving_time, outcome_of, stored
 from extrados.analyses.rocking.tables import Rocking
-from extrados.analyses.rocking.tied import sliding_of
+from extrados.analyses.rocking.tied import sliding_of, watch_step
 from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
@@ -39,11 +39,13 @@ def rest_time(rocker: Rocker) -> float:
 
 @dataclass(frozen=True)
 class Ran:
-    """response: of the mechanism, until contacts go on, where they do; fixed: of the mechanism to its end; hand_over: results of the
+    """response: of the mechanism, until contacts go on, where they do; fixed: of the mechanism to its end; seen: the same by the step in
+    which friction is looked at, where that is asked for; hand_over: results of the
     rest of the motion on contacts, `run` what is stored of it."""
 
     response: Response
     fixed: Response
+    seen: Response
     conditions: out.Conditions
     doubt: Doubts
     hand_over: out.HandOver | None = None
@@ -55,18 +57,20 @@ def rock(
 ) -> Ran:
     """The response of a rocker, on rigid contacts from where a condition of its mechanism fails; width: see run_history.
 
-    demand: friction that a response requires at its output times (times), where the joints are not watched."""
+    demand: friction that a response requires at its output times (times), where the joints are not watched; it is looked at by a step
+    of its own (watch_step)."""
 
     def until(time: float, step: float = options.output_step) -> Response:
         chosen = options.model_copy(update={"output_step": step})
         return run_history(context, chosen, rocker.body, time, width, rocker.start_rotation)
 
     fixed = until(end_time)
+    seen = fixed if demand is None or fixed.interrupted else until(end_time, watch_step(rocker.time_unit, end_time))
     time, contacts, slides = None, None, None
     if options.hand_over and not fixed.interrupted:
         time = leaving_time(fixed, astray_of(rocker), rocker.time_unit)
         if demand is not None and rocker.watch is None:
-            slides = sliding_of(rocker, context.building, fixed, until, demand, options.tolerance)
+            slides = sliding_of(rocker, context.building, seen, until, demand, options.tolerance)
     if slides is not None:
         time, contacts = slides.leaves, slides.contacts
     elif time is not None:
@@ -86,8 +90,8 @@ def rock(
                 time_s=time, reason=conditions.violated[0], outcome=outcome, fixed_hinges_outcome=fixed.outcome, contacts=run
             )
             doubt = doubts_on_contacts(context, rocker, contacts, response, over, end_time)
-            return Ran(response, fixed, conditions, doubt, over, result)
-    return Ran(fixed, fixed, of_one(rocker, fixed), doubts(context, options, rocker, fixed, end_time))
+            return Ran(response, fixed, seen, conditions, doubt, over, result)
+    return Ran(fixed, fixed, seen, of_one(rocker, fixed), doubts(context, options, rocker, fixed, end_time))
 
 
 def run_history(context: Context, options: Rocking, body: Body, end_time: float, width: int, start_rotation: float = 0.0) -> Response:

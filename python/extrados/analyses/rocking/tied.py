@@ -25,8 +25,8 @@ from extrados.views.rockers.rocker import Rocker
 
 #: Permanent path of a restraint that is rounding, over the size of the structure
 ROUNDING = 1e-9
-#: Output times at most of the run that finds when a base slides
-MOST_TIMES = 20000
+#: Step of the history in which friction is looked at, over the time unit of the structure, and its times at most
+WATCH, MOST_TIMES = 5e-3, 20000
 
 
 @dataclass(frozen=True)
@@ -57,10 +57,16 @@ class Slides:
         )
 
 
+def watch_step(time_unit: float, end_time: float) -> float:
+    """Step [s] of the history in which friction is looked at until `end_time` [s], whatever the step of output; time_unit: of the
+    structure [s]."""
+    return max(WATCH * time_unit, end_time / MOST_TIMES)
+
+
 def sliding_of(
     rocker: Rocker,
     building: Building,
-    fixed: Response,
+    seen: Response,
     until: Callable[[float, float], Response],
     demand: Callable[[Response], np.ndarray],
     tolerance: float,
@@ -68,7 +74,7 @@ def sliding_of(
     """When the base of a tied block slides first; None where it does not, where other than ties and dampers act on one block, or where one
     of these has yielded before.
 
-    fixed: the response to the end; until: the response to a time with a step of output [s]; demand: friction that a response requires
+    seen: the response to the end by watch_step; until: the response to a time with a step of output [s]; demand: friction that a response requires
     (times).
     """
     friction = building.joints.coefficient
@@ -77,11 +83,11 @@ def sliding_of(
         return None
     if not all(held.open_sides) or any(one.sort != LENGTH for one in held.members):
         return None
-    required = demand(fixed)
+    required = demand(seen)
     beyond = required > friction
     if not beyond.any():
         return None
-    end = float(fixed.time[beyond.argmax()])
+    end = float(seen.time[beyond.argmax()])
     fine = until(max(end, BEFORE * rocker.time_unit), max(BEFORE * rocker.time_unit, end / MOST_TIMES))
     beyond = demand(fine) > friction
     time = float(fine.time[beyond.argmax()]) if beyond.any() else end

@@ -7,7 +7,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import too_fast
-from extrados.analyses.rocking.hand_over import STEPS_WITH_ROTATION, decide_cells
+from extrados.analyses.rocking.hand_over import decide_cells
 from extrados.analyses.rocking.job import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
 from extrados.motions import pulses
@@ -56,7 +56,7 @@ def run(context: Context, options: HarmonicMap) -> Result:
         at = np.flatnonzero(fails)
         linear = options.form == "linear"
         runs = (grounds, motion[at], job.scale[at], job.end[at])
-        found = decide_cells(context, model, options.hand_over_cells, linear, *runs, STEPS_WITH_ROTATION)
+        found = decide_cells(context, model, options.hand_over_cells, linear, *runs)
         known = found["outcome"] >= 0
         outcome[at[known]], handed = found["outcome"][known], int(known.sum())
         swept["peak_ratio"][at[known]] = found["ratio"][known]
