@@ -274,6 +274,7 @@ def test_a_key_at_the_wrong_place_is_reported_with_its_right_place(tables: dict,
     [
         ("piers = { width = 1.0, height = 2.0 }", "expected a list of tables, [{ ... }], also for a single table"),
         ("piers = 2", "piers: 2: expected a list, [ ... ]"),
+        ('piers = ["2 m"]', "expected a table such as { "),
         ("piers = [{ width = 1.0, height = 2.0 }]", "1 span needs no piers; found 1"),
         ('title = "x"', "unknown key"),
     ],
@@ -283,6 +284,13 @@ def test_what_was_expected_is_said_in_words_of_a_deck(text: str, words: str) -> 
     with pytest.raises(DeckError) as error:
         read_text(deck.encode())
     assert words in str(error.value)
+
+
+def test_a_load_in_a_list_of_tables_is_answered_with_the_keys_of_the_table() -> None:
+    with pytest.raises(DeckError) as error:
+        make_deck({"structure": {"kind": "arch"}, "analysis": {"kind": "moving-load", "axles": [], "uniform": ["20 kN/m"]}})
+    assert "expected a table such as { load = ..., start = ..., stop = ... }" in str(error.value)
+    assert "UniformLoad" not in str(error.value)
 
 
 def test_a_number_where_a_name_is_wanted_and_a_word_of_another_kind() -> None:

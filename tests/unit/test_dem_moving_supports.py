@@ -12,6 +12,7 @@ from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.results.model import Result
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import three_figures
 
 DRUMS = {"kind": "column", "section": "round", "sides": 6, "width": 0.8, "height": 1.2, "drums": 2}
 ARCH = {"kind": "arch", "radius": 3.0, "thickness": 0.6, "embrace": 120.0, "voussoirs": 5, "depth": 0.5}
@@ -37,6 +38,23 @@ def test_the_work_of_a_support_lifts_and_carries_what_stands_on_it(solver: str) 
     assert work[-1] == pytest.approx(0.05 * weight, rel=0.01)
     assert found.results.energy_residual_ratio < 0.01
     assert found.results.peak_slip_m < 5e-4 and found.results.outcome == "at-rest"
+
+
+@pytest.mark.parametrize("section", [{}, {"direction": 0.0}])
+@pytest.mark.parametrize("dz", [50.0, -1.0])
+def test_a_column_that_its_footing_carries_up_or_down_does_not_collapse(dz: float, section: dict[str, Any]) -> None:
+    """Slowly by forty times its height, or down by most of it: the drums stay where they are on their footing."""
+    upward = "dz" if section else "dy"
+    found = run(
+        {"kind": "column", "section": "rectangle", "width": 0.8, "height": 1.2, "drums": 2},
+        [{"joint": "base", upward: dz, "duration": 20.0}],
+        solver="nonsmooth",
+        end_time=21.0,
+        **section,
+    )
+    assert found.results.outcome == "at-rest" and found.results.peak_displacement_m < 0.01
+    assert "no block rotates, no slip" in found.answer and f"Supports move by {three_figures(1e3 * abs(dz))} mm" in found.answer
+    assert "weight times lift" in found.answer
 
 
 def table(folder: Path) -> dict[str, Any]:

@@ -33,6 +33,8 @@ from extrados.views.building import Building
 
 LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
+#: Keys of a table that a message names as an example.
+MOST_SHOWN = 4
 #: Names of pipes that this process was given, which are open already: none is waited for
 PIPE = re.compile(r"-|/dev/stdin|/dev/fd/\d+")
 #: Tables that say what the building is besides its geometry
@@ -375,7 +377,7 @@ class _Checker:
             wanted = f"at least {limits['min_length']}" if sort == "too_short" else f"at most {limits['max_length']}"
             self.complain(at, f"{_shown(problem.get('input'))}: expected {wanted}, found {limits['actual_length']}")
         else:
-            told = ", or ".join(dict.fromkeys(_expected(p) for p in problems))
+            told = ", or ".join(dict.fromkeys(_expected(model, p) for p in problems))
             unit = _unit(model, place) if told[-1].isdigit() else ""  # of a bound
             self.complain(at, f"{_shown(problem.get('input'))}: {told}{f' {unit}' if unit else ''}")
 
@@ -469,8 +471,12 @@ def _unit(model: type[Table], place: tuple) -> str:
     return next((b["unit"] for b in branches if "unit" in b), "")
 
 
-def _expected(problem: ErrorDetails) -> str:
-    """What would have been right, in words of a deck."""
+def _expected(model: type[Table], problem: ErrorDetails) -> str:
+    """What would have been right, in words of a deck; model: the table that holds the problem."""
+    if problem["type"] in ("model_type", "model_attributes_type"):
+        fields = _table_at(model, _place(problem)).model_fields
+        keys = sorted(fields, key=lambda name: not fields[name].is_required())[:MOST_SHOWN]
+        return f"expected a table such as {{ {', '.join(f'{name} = ...' for name in keys)} }}"
     if problem["type"] == "string_type":
         return "expected text in quotes"
     if problem["type"] == "list_type" and isinstance(problem.get("input"), dict):

@@ -92,7 +92,9 @@ class BlocksRun(KindResults):
     still_moving: bool = fact("whether blocks still moved in the last twentieth of the run")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse (not applied to a block that only slides)", "m")
-    peak_displacement_m: float = fact("greatest displacement of any block from its position at rest under self-weight", "m")
+    peak_displacement_m: float = fact(
+        "greatest displacement of any block from its position at rest under self-weight, less the displacement that all supports share", "m"
+    )
     peak_slip_m: float = fact("greatest slip of the joints that are still in contact", "m")
     residual_slip_m: float = fact("greatest slip of the joints at the end of the run", "m")
     slip_ratio: float = fact("greatest ratio of the slip to the length of the joint")

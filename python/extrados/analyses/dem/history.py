@@ -15,7 +15,7 @@ from extrados.analyses.dem.friction import friction_threshold
 from extrados.analyses.dem.job import Runs, watched
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.perturbed import probe_chaos
-from extrados.analyses.dem.seen import Seen, begun_result, doubts_of_run, numbers_of
+from extrados.analyses.dem.seen import Seen, begun_result, doubts_of_run, moved_supports, numbers_of
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.ties import segment_arrays, tie_arrays, tie_columns
 from extrados.analyses.dem.trial import Trial
@@ -81,7 +81,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)
     result.files |= dem_files.files(model, found, options)
-    result.answer = motion_answer(result.results, trial.idle)
+    result.answer = motion_answer(result.results, trial.idle) + moved_supports(seen, trial.moves, 2, trial.ground is not None)
     return result
 
 

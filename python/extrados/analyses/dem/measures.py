@@ -1,7 +1,8 @@
 """What is read off a run: openings and slip of joints, hinges, the outcome, restitution, blocks, snapshots."""
 
 import itertools
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
 from extrados.core import dem, dem3, dem_run
+from extrados.core.dem_run import SupportMove
 from extrados.model.geometry.assembly import GROUND
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, CollapseCriterion, Convergence, DemOutcome
 from extrados.results.model import Array, TableData
@@ -150,10 +152,31 @@ def ground_level(model: Model) -> float:
     return float(np.minimum(a.p[ground, 1], a.q[ground, 1]).min())
 
 
+def carried(run: dem.Run | dem3.Run, count: int, axes: int) -> np.ndarray:
+    """Displacement that all supports share (time, axis) [m], along two or three axes; supports: the bodies after the first `count`."""
+    shift = run.place[:, count:, :axes] - run.settled[count:, :axes]
+    if not shift.shape[1]:
+        return np.zeros((len(shift), axes))
+    return shift.min(axis=1).clip(min=0.0) + shift.max(axis=1).clip(max=0.0)
+
+
+def displaced(run: dem.Run | dem3.Run, count: int, axes: int) -> np.ndarray:
+    """Displacements (time, body, axis) [m] of the first `count` bodies, along two or three axes, from their settled places, less those
+    that all supports share: a structure does not fall with the ground that carries it."""
+    return run.place[:, :count, :axes] - run.settled[:count, :axes] - carried(run, count, axes)[:, None]
+
+
+def farthest_move(moves: Sequence[SupportMove], axes: int) -> float:
+    """How far supports move at most, along two or three axes [m]: the sum of their movements."""
+    return float(sum(np.linalg.norm(move.shift[:axes]) for move in moves))
+
+
 def movements(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """How far each body is from its settled place [m], how far it has turned [rad] and how much lower it is [m] (time, body)."""
+    """How far each body is from its settled place [m], how far it has turned [rad] and how much lower it is [m] (time, body); see
+    `displaced`."""
     mobile = slice(0, model.rigid.count)
     shift = run.place[:, mobile] - run.settled[mobile]
+    shift[..., :2] = displaced(run, model.rigid.count, 2)
     return np.hypot(shift[..., 0], shift[..., 1]), np.abs(shift[..., 2]), -shift[..., 1]
 
 
@@ -179,6 +202,10 @@ class Collapse:
         as long as the structure, and a quarter of that displacement."""
         displacement = displacement or 0.2 * size
         return cls(displacement, 0.5 * displacement / size, 0.25 * displacement)
+
+    def beyond(self, far: float) -> "Collapse":
+        """The same of displacements from the place at rest, where supports move by up to `far` [m]: the core measures these."""
+        return replace(self, displacement=self.displacement + far, drop=self.drop + far)
 
     @property
     def options(self) -> dict[str, Any]:

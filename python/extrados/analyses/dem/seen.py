@@ -1,5 +1,6 @@
 """What is read off a run of blocks, in the plane and in space, and how it ends."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +14,12 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.ties import tie_rows
+from extrados.analyses.dem.words import supports_answer
 from extrados.core import dem, dem_run
+from extrados.core.dem_run import SupportMove
 from extrados.results.dem import CLOSED, SLIP_LIMIT
 from extrados.results.model import Result
+from extrados.schema.constants import GRAVITY
 
 
 @dataclass(frozen=True)
@@ -91,6 +95,16 @@ class Seen(BlocksSeen):
     def unsupported(self) -> set[int]:
         """Numbers of the bodies that slid off their footings: several blocks may be one body."""
         return {int(self.model.rigid.body_of_block[i]) for i in self.off_footing}
+
+
+def moved_supports(seen: BlocksSeen, moves: Sequence[SupportMove], axes: int, shaken: bool) -> str:
+    """What supports did, in words; axes: two or three; shaken: a motion acts, too."""
+    found, model = seen.run, seen.model
+    if not len(found.time):
+        return ""
+    lift = float(measures.carried(found, model.count, axes)[-1, -1])
+    work = None if shaken else float(found.energy["work"][-1])
+    return supports_answer(measures.farthest_move(moves, axes), lift, float(model.mass.sum()) * GRAVITY, work)
 
 
 def begun_result(context: Context, found: dem_run.FoundRun) -> Result:

@@ -12,7 +12,7 @@ from extrados.analyses.dem.forces import force_arrays, force_columns
 from extrados.analyses.dem.job import SolidRuns, SolidTask, watched
 from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.perturbed import probe_chaos
-from extrados.analyses.dem.seen import begun_result, doubts_of_run, numbers_of
+from extrados.analyses.dem.seen import begun_result, doubts_of_run, moved_supports, numbers_of
 from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel, moves_of
 from extrados.analyses.dem.solid_settlement import farthest_settlement
@@ -32,20 +32,21 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
     """Options of the core for a run of this deck."""
     moved = [one.start + one.duration for one in context.building.initial.movements]
     quiet = max([context.motion.end if context.deck.motion else 0.0, *moved])
+    far = measures.farthest_move(moves_of(context.building, model), 3)
     return dem3.Options(
         end_time=options.end_time or quiet + dem_model.settle_time(model),
         output_step=options.output_step,
         step=options.time_step or 0.0,
         fraction=options.fraction,
         settle_damping=model.values.settle_damping,
-        domain=options.domain * model.size,
+        domain=options.domain * model.size + far,
         settlement=farthest_settlement(model, options.rigid),
         stop_at_rest=options.end_time is None,
         rigid=options.rigid,
         rebound=options.rebound,
         quasi_static=options.quasi_static,
         way=options.way,
-        **(Collapse.of(options.collapse_displacement, model.size).options if options.stop_at_collapse else {}),
+        **(Collapse.of(options.collapse_displacement, model.size).beyond(far).options if options.stop_at_collapse else {}),
     )
 
 
@@ -82,7 +83,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     result.warnings += doubts_of_run(found, chaos["violated"], r.still_moving)
     if idle:
         result.warnings.append("no motion acts on the structure: add [motion] or [[initial.movements]]")
-    result.answer = solid_answer(r, idle)
+    result.answer = solid_answer(r, idle) + moved_supports(seen, moves, 3, moved is not None)
     return result
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, Slip, off_footing
+from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, Slip, displaced, off_footing
 from extrados.analyses.dem.seen import BlocksSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.core import dem3
@@ -37,7 +37,7 @@ def look(model: SolidModel, run: dem3.Run, floor: bool) -> SolidsSeen:
     """Everything that is read off a run; floor: blocks slide on a level floor, not off their footings."""
     turn = turns(model, run)
     opening, slip, state = contacts(model, run)
-    drop = run.settled[: model.count, 2] - run.place[:, : model.count, 2]
+    drop = -displaced(run, model.count, 3)[..., 2]
     one, width = model.assembly, widths(model)
     return SolidsSeen(
         model=model,
@@ -77,8 +77,8 @@ def turns(model: SolidModel, run: dem3.Run) -> np.ndarray:
 
 
 def displacements(model: SolidModel, run: dem3.Run) -> np.ndarray:
-    """How far the centroid of each block is from its settled place (time, block) [m]."""
-    return np.linalg.norm(run.place[:, : model.count] - run.settled[: model.count], axis=2)
+    """How far the centroid of each block is from its settled place (time, block) [m]; see `measures.displaced`."""
+    return np.linalg.norm(displaced(run, model.count, 3), axis=2)
 
 
 def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

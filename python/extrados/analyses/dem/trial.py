@@ -9,7 +9,7 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.job import Runs, Task
-from extrados.analyses.dem.measures import Collapse
+from extrados.analyses.dem.measures import Collapse, farthest_move
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
@@ -30,16 +30,17 @@ class Begin:
     state: Callable[[float], tuple[np.ndarray, np.ndarray]]
 
 
-def domain_of(model: Model, options: Dem | None = None) -> tuple[float, float, float, float]:
-    """Least and greatest x and y [m] beyond which a block is no longer followed; options: default those of the table."""
+def domain_of(model: Model, options: Dem | None = None, far: float = 0.0) -> tuple[float, float, float, float]:
+    """Least and greatest x and y [m] beyond which a block is no longer followed; options: default those of the table; far: how far
+    supports move [m]."""
     outline = np.concatenate(model.assembly.outlines)
-    reach = (options or Dem(kind="dem")).domain * model.size
+    reach = (options or Dem(kind="dem")).domain * model.size + far
     (left, low), (right, high) = (outline.min(axis=0) - reach).tolist(), (outline.max(axis=0) + reach).tolist()
     return left, right, low, high
 
 
-def core_options(context: Context, options: Dem, model: Model, begin: float = 0.0) -> dem.Options:
-    """Options of the core for a run of this deck; begin: its time by the clock of the motion [s]."""
+def core_options(context: Context, options: Dem, model: Model, begin: float = 0.0, far: float = 0.0) -> dem.Options:
+    """Options of the core for a run of this deck; begin: its time by the clock of the motion [s]; far: how far supports move [m]."""
     moved = [m.start + m.duration for m in context.building.initial.movements]
     quiet = max([context.motion.end if context.deck.motion else 0.0, *moved])
     return dem.Options(
@@ -48,14 +49,14 @@ def core_options(context: Context, options: Dem, model: Model, begin: float = 0.
         step=options.time_step or 0.0,
         fraction=options.fraction,
         settle_damping=model.values.settle_damping,
-        domain=domain_of(model, options),
+        domain=domain_of(model, options, far),
         stop_at_rest=options.end_time is None,
         moving_base=options.base == "moving",
         mass_damping=options.mass_damping,
         rigid=options.rigid,
         rebound=options.rebound,
         quasi_static=options.quasi_static,
-        **(Collapse.of(options.collapse_displacement, model.size).options if options.stop_at_collapse else {}),
+        **(Collapse.of(options.collapse_displacement, model.size).beyond(far).options if options.stop_at_collapse else {}),
     )
 
 
@@ -113,10 +114,10 @@ class Trial:
         self.model = model
         self.begin = begin
         self.starts = begin.time if begin else 0.0
-        self.options = core_options(context, options, model, self.starts)
+        self.moves = () if begin else _moves(context, model)  # a rocking structure feels them as motion of its ground
+        self.options = core_options(context, options, model, self.starts, farthest_move(self.moves, 2))
         self.collapse = Collapse.of(options.collapse_displacement, model.size)
         self.ground: Ground | None = context.motion.ground.seen_from(self.starts) if context.deck.motion else None
-        self.moves = () if begin else _moves(context, model)  # a rocking structure feels them as motion of its ground
         self.shift = None if begin else start(context, model)
 
     @property

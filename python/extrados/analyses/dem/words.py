@@ -3,6 +3,9 @@
 from extrados.results.dem import ONE_PATH, Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt, TieRun
 from extrados.schema.quantities import three_figures
 
+#: Rotations [rad] and slips [m] below this are rounding errors and the elasticity of joints.
+STILL = 1e-6
+
 
 def solved(c: Convergence) -> str:
     """How far rigid contacts converged."""
@@ -37,7 +40,16 @@ def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
     if r.outcome == "at-rest":
         return f"No {joint} opens or slides"
     fate = f"rock and still move at {r.stop_time_s:.2f} s" if r.still_moving else "rock and come to rest"
+    if r.slipped_joint is not None and r.peak_slip_m > 0.5 * r.peak_displacement_m:  # most of the displacement is slip
+        fate = f"slide by up to {three_figures(1e3 * r.peak_slip_m)} mm ({joint} {r.slipped_joint}), {fate}"
     return f"Blocks {fate}: greatest displacement {three_figures(1e3 * r.peak_displacement_m)} mm ({r.governing_block})"
+
+
+def _moved(name: str, turn: float, slip: float) -> str:
+    """The greatest rotation [rad], of the block of that name, and the greatest slip [m]; below `STILL` they are rounding errors."""
+    rotates = f"{name} rotates by {three_figures(1e3 * turn)} mrad at most" if turn > STILL else "no block rotates"
+    slips = f"the greatest slip is {three_figures(1e3 * slip)} mm" if slip > STILL else "no slip"
+    return f"{rotates}, {slips}"
 
 
 def _tied(ties: list[TieRun] | None) -> str:
@@ -54,16 +66,25 @@ def _tied(ties: list[TieRun] | None) -> str:
     return f" Forces of ties and dampers (tension positive): {', '.join(told)}{', ...' if len(ties) > 4 else ''}."
 
 
+def supports_answer(far: float, lift: float, weight: float, work: float | None) -> str:
+    """The movement of supports and their work: how far they move [m], how far all of them rise [m], the weight of the blocks [N], and the
+    work [J]; None under a motion, whose work the ledger does not separate."""
+    if not far:
+        return ""
+    told = f" Supports move by {three_figures(1e3 * far)} mm"
+    if work is not None:
+        told += f" and do a work of {three_figures(1e-3 * work)} kJ"
+        told += f" (weight times lift: {three_figures(1e-3 * weight * lift)} kJ)" if abs(lift) > STILL else ""
+    return f"{told}."
+
+
 def motion_answer(r: DemRun, idle: bool) -> str:
     """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
         return "The structure stands under its own weight. No motion acts on it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
-    return (
-        f"{first}; {turn[0]} rotates by {three_figures(1e3 * abs(turn[1]))} mrad at most, the greatest slip is "
-        f"{three_figures(1e3 * r.peak_slip_m)} mm, {r.bounces} bounces; {audit}.{_tied(r.ties)}"
-    )
+    return f"{first}; {_moved(turn[0], abs(turn[1]), r.peak_slip_m)}, {r.bounces} bounces; {audit}.{_tied(r.ties)}"
 
 
 def tilt_answer(r: DemTilt) -> str:
@@ -93,10 +114,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
     if r.dowels:
         gave = f"slipped by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
-    return (
-        f"{first}; {turn[0]} rotates by {three_figures(1e3 * turn[1])} mrad at most, the greatest slip is {three_figures(1e3 * r.peak_slip_m)} mm, {r.bounces} "
-        f"bounces; {r.blocks} blocks, {r.contacts} contacts; {audit}.{_tied(r.ties)}"
-    )
+    return f"{first}; {_moved(turn[0], turn[1], r.peak_slip_m)}, {r.bounces} bounces; {r.blocks} blocks, {r.contacts} contacts; {audit}.{_tied(r.ties)}"
 
 
 def solid_tilt_answer(r: SolidDemTilt) -> str:

@@ -481,6 +481,8 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
         )
     else:
         text = f"The least collapse load of {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with {where}."
+        if not {"axles", "uniform"} & options.model_fields_set:
+            text += " The load is a single axle (default)."
     if r.places_without_limit:
         text += f" At {r.places_without_limit} of {positions} positions no multiple of the load causes collapse."
     if options.force is not None:
