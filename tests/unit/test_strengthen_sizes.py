@@ -163,7 +163,7 @@ def test_why_a_target_is_not_met_is_said_of_what_failed():
     measure = measure_of(Context(deck, 1), deck.analyses[0])
     assert unmet_reason(measure, Worth(None, reason="the blocks overlap")) == "the blocks overlap"
     assert "the value is 0.4" in unmet_reason(measure, Worth(0.4)) and "upper" not in unmet_reason(measure, Worth(0.4, bound="exact"))
-    assert "carries 0.3 g" in unmet_reason(measure, Worth(0.5, bound="upper", beside=0.3))
+    assert "is 0.3 g" in unmet_reason(measure, Worth(0.5, bound="upper", beside=0.3))
     assert not unmet_reason(measure, Worth(0.5, bound="upper", beside=0.46))
 
 

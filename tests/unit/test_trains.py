@@ -139,7 +139,7 @@ def test_the_permissible_limit_state_needs_a_strength_and_a_train() -> None:
     deck = of_service(serviceability={})
     del deck["material"]
     assert "requires compressive_strength" in extrados.run(deck).analyses[0]["reason"]
-    with pytest.raises(DeckError, match="serviceability requires"):
+    with pytest.raises(DeckError, match="serviceability` requires"):
         make_deck({"structure": BRIDGE, "analysis": {"kind": "moving-load", "serviceability": {}}})
 
 
