@@ -166,11 +166,57 @@ def test_bad_openings_through_storeys_name_wall_and_place(z, more, words):
         ({"roof": None}, "both pitch and roof"),
         ({"bears_on": ["south"]}, "two different walls"),
         ({"bears_on": ["south", "east"]}, "'south' and 'east' are not parallel"),
+        ({"bears_on": ["east", "west"]}, "wall 'east' has a gable on top of storey 1"),
+        ({"load": 0.0}, "a roof of rafters requires load"),
     ],
 )
 def test_bad_roofs(change, words):
     with pytest.raises(DeckError, match=words):
         make_deck(deck(floors=[ROOF | change]))
+
+
+def test_a_gable_rises_at_most_twice_the_length_of_its_wall():
+    walls = deck()["structure"]["walls"]
+    walls[1]["gable"] = {"rise": 8.0}
+    assert building(walls=walls).structure.walls[1].gable.rise == 8.0
+    walls[1]["gable"] = {"rise": 8.01}
+    with pytest.raises(DeckError, match=r"wall 'east': 8\.01 m is more than 2 times the length of the wall, 4 m"):
+        make_deck(deck(walls=walls))
+
+
+def all_warnings(made):
+    """Remarks on roofs, which the frame and the shell also state."""
+    found = made.structure.roof_remarks
+    assert set(found) <= set(made.frame(FrameOptions()).remarks)
+    assert set(found) <= set(made.shell(ShellOptions(size=1.0)).warnings)
+    return found
+
+
+def test_a_pitch_and_a_gable_of_different_ridges_are_stated_with_both_heights():
+    """2 m tan(60 deg) = 3.46 m of the roof, 1.2 m of the gables; at 30 degrees 1.15 m, within 5 %."""
+    assert not all_warnings(building())
+    found = all_warnings(building(floors=[ROOF | {"pitch": 60.0}]))
+    assert [name in remark for name, remark in zip(("'east'", "'west'"), found, strict=True)] == [True, True]
+    assert all("ridge of the rafters is 3.46 m" in remark and "rises 1.2 m" in remark for remark in found)
+
+
+def test_purlins_follow_the_slope_of_either_side_of_a_gable():
+    """A ridge at 1 m of 4 m: slopes of 1.2/1 and 1.2/3."""
+    walls = deck()["structure"]["walls"]
+    for k in (1, 3):
+        walls[k]["gable"] = {"rise": 1.2, "ridge": 1.0}
+    roof = ROOF | {"roof": "purlins", "bears_on": ["east", "west"]}
+    for run in (1.0, 3.0):
+        assert not all_warnings(building(walls=walls, floors=[roof | {"pitch": float(np.degrees(np.arctan(1.2 / run)))}]))
+    assert len(all_warnings(building(walls=walls, floors=[roof | {"pitch": 36.0}]))) == 2
+
+
+def test_a_rigid_floor_ties_the_rafters():
+    slab = {k: v for k, v in ROOF.items() if k not in ("young", "thickness")} | {"kind": "rigid"}
+    tied = building(floors=[slab])
+    assert any("ties the rafters at the eaves, so they have no thrust" in remark for remark in all_warnings(tied))
+    assert not tied.shell(ShellOptions(size=1.0)).push.any()
+    assert not any("push wall" in remark for remark in tied.frame(FrameOptions()).remarks)
 
 
 def crossing(hole):

@@ -19,6 +19,10 @@ from extrados.schema.table import Table, key
 MEETS = 1e-6
 #: Cosine of the angle of walls that run side by side
 PARALLEL = 0.99
+#: Greatest rise of a gable over the length of its wall; of a roof with the greatest pitch, 75 degrees, it is 1.87
+STEEP = 2.0
+#: Ratio by which the ridge of a roof and that of a gable can differ without a remark
+RIDGES = 0.05
 PlanPoint = Annotated[list[Length], Field(min_length=2, max_length=2)]
 Place = Annotated[list[Length], Field(min_length=3, max_length=3)]
 
@@ -54,7 +58,7 @@ class WallOpening(Table):
 class Gable(Table):
     """A triangular top of a wall, of the material and thickness of the highest storey of the wall."""
 
-    rise: Length = key(about="height of the ridge above the top of the wall", gt=0)
+    rise: Length = key(about="height of the ridge above the top of the wall; at most twice the length of the wall", gt=0)
     ridge: Length | None = key(None, "distance of the ridge from the start of the wall; default: the middle", ge=0)
 
 
@@ -84,6 +88,10 @@ class PlanWall(Table):
             raise ValueError("thicknesses: each must be above 0")
         if self.gable is not None and self.gable.ridge is not None and self.gable.ridge > self.length + MEETS:
             raise ValueError(f"gable.ridge: {self.gable.ridge:g} m is beyond the end of the wall, whose length is {self.length:g} m")
+        if self.gable is not None and self.gable.rise > STEEP * self.length + MEETS:
+            raise ValueError(
+                f"gable.rise: wall '{self.name}': {self.gable.rise:g} m is more than {STEEP:g} times the length of the wall, {self.length:g} m"
+            )
         return self
 
     @property
@@ -156,7 +164,7 @@ class StoreyFloor(Table):
     roof: Literal["rafters", "trusses", "purlins"] | None = key(
         None,
         "structure of a roof with a pitch. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and "
-        "push them apart, because nothing ties them; trusses: rafters with ties, without thrust; purlins: beams along the ridge "
+        "push them apart, unless the floor is rigid and ties them; trusses: rafters with ties, without thrust; purlins: beams along the ridge "
         "between the two walls of `bears_on`, without thrust",
     )
     bears_on: list[str] = key(
@@ -175,6 +183,8 @@ class StoreyFloor(Table):
             raise ValueError("a roof requires both pitch and roof (rafters, trusses or purlins)")
         if self.roof is not None and len(set(self.bears_on)) != 2:
             raise ValueError(f"bears_on: for a roof of {self.roof}, expected the names of two different walls")
+        if self.roof is not None and not self.load > 0.0:
+            raise ValueError(f"a roof of {self.roof} requires load, the weight per area of its slopes, above 0")
         if self.roof == "rafters" and self.kind == "joists":
             raise ValueError("joists tie the two walls: give roof = 'trusses', or another kind of floor")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
@@ -194,8 +204,10 @@ class StoreyFloor(Table):
     @property
     def thrust_ratio(self) -> float:
         """Thrust on each of the two walls that carry rafters over the weight of the roof: of a three-hinged arch of span l and rise
-        f = l/2 tan(pitch) the thrust is w l^2/(8 f). 0 of other floors."""
-        return 0.25 / tan(radians(self.pitch)) if self.roof == "rafters" and self.pitch is not None else 0.0
+        f = l/2 tan(pitch) the thrust is w l^2/(8 f). 0 of other floors, and of a rigid floor, which ties the rafters at the eaves."""
+        if self.roof != "rafters" or self.pitch is None or self.kind == "rigid":
+            return 0.0
+        return 0.25 / tan(radians(self.pitch))
 
 
 class Rod(Table):
@@ -352,20 +364,30 @@ class Plan(Structure):
         for k, beam in enumerate(self.ring_beams):
             self._check_ring_beam(k, beam)
         for k, floor in enumerate(self.floors):
-            if floor.storey > len(self.storeys):
-                raise ValueError(f"floors[{k}].storey: storey {floor.storey} does not exist; the number of storeys is {len(self.storeys)}")
-            if floor.roof in ("rafters", "trusses"):
-                one, two = (self.wall(name) for name in dict.fromkeys(floor.bears_on))
-                if abs(float(one.direction @ two.direction)) < PARALLEL:
-                    raise ValueError(
-                        f"floors[{k}].bears_on: {floor.roof} span between parallel walls, but walls '{one.name}' and '{two.name}' are not parallel"
-                    )
+            self._check_floor(k, floor)
         return self
 
     def _check_storey(self, what: str, wall: str, storey: int) -> None:
         first, last = self.reach(self.wall(wall))
         if not first <= storey <= last:
             raise ValueError(f"{what}: wall '{wall}' has no storey {storey}; its storeys are {first} to {last}")
+
+    def _check_floor(self, k: int, floor: StoreyFloor) -> None:
+        if floor.storey > len(self.storeys):
+            raise ValueError(f"floors[{k}].storey: storey {floor.storey} does not exist; the number of storeys is {len(self.storeys)}")
+        if floor.roof not in ("rafters", "trusses"):
+            return
+        one, two = (self.wall(name) for name in dict.fromkeys(floor.bears_on))
+        if abs(float(one.direction @ two.direction)) < PARALLEL:
+            raise ValueError(
+                f"floors[{k}].bears_on: {floor.roof} span between parallel walls, but walls '{one.name}' and '{two.name}' are not parallel"
+            )
+        for wall in (one, two):
+            if wall.gable is not None and self.reach(wall)[1] == floor.storey:
+                raise ValueError(
+                    f"floors[{k}].bears_on: {floor.roof} bear on the walls of the eaves, but wall '{wall.name}' has a gable on top of storey "
+                    f"{floor.storey}. Give the two walls without gables, or a roof of purlins"
+                )
 
     def _check_ring_beam(self, k: int, beam: RingBeam) -> None:
         for wall in self.of_ring_beam(beam):
@@ -535,6 +557,38 @@ class Plan(Structure):
                 f"{', '.join(names)}"
             )
         return [part for part in around if self.walls[part[0]].name in floor.bears_on] or around
+
+    @property
+    def roof_remarks(self) -> list[str]:
+        """Roofs whose ridge [m] differs from that of a gable beside them, and rafters without thrust."""
+        found = []
+        for floor in self.floors:
+            if floor.roof == "rafters" and floor.kind == "rigid":
+                found.append(f"Floor on storey {floor.storey}: the rigid floor ties the rafters at the eaves, so they have no thrust.")
+            around = floor.walls or [wall.name for wall in self.walls]
+            for wall in self.walls:
+                if floor.pitch is None or wall.gable is None or wall.name not in around or self.reach(wall)[1] != floor.storey:
+                    continue
+                rise = wall.gable.rise
+                heights = [run * tan(radians(floor.pitch)) for run in self._roof_runs(floor, wall)]
+                if all(abs(height - rise) > RIDGES * max(height, rise) for height in heights):
+                    ridge = min(heights, key=lambda height: abs(height - rise))
+                    found.append(
+                        f"Floor on storey {floor.storey}: with a pitch of {floor.pitch:g} degrees the ridge of the {floor.roof} is {ridge:.3g} m "
+                        f"above the eaves, but the gable of wall '{wall.name}' rises {rise:.3g} m. The load and the thrust are those of "
+                        "the pitch, the masonry is that of the gable."
+                    )
+        return found
+
+    def _roof_runs(self, floor: StoreyFloor, wall: PlanWall) -> list[float]:
+        """Horizontal lengths [m] of the slopes of a roof: half the span of rafters and trusses; of purlins from both ends of the
+        wall of a gable to its ridge."""
+        if floor.roof == "purlins":
+            ridge = wall.gable_outline[1][0]
+            return [ridge, wall.length - ridge]
+        one, two = (self.wall(name) for name in dict.fromkeys(floor.bears_on))
+        across = 0.5 * np.add(two.start, two.end) - np.asarray(one.start)
+        return [0.5 * abs(float(one.direction[0] * across[1] - one.direction[1] * across[0]))]
 
     def thrusts(self, floor: StoreyFloor, around: list[tuple[int, float, float]]) -> list[tuple[int, float, float, np.ndarray]]:
         """Thrust of rafters on the walls that carry them: wall, from and to along it [m], force (2) on the plan, outward [N]."""

@@ -60,7 +60,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
             f"the mesh would have about {area / size**2:.2g} elements of {size:g} m; at most {LARGEST_MESH:g} are allowed",
             ("analysis", "mesh", "size"),
         )
-    warnings: list[str] = []
+    warnings = plan.roof_remarks
     junctions = {}
     for a, b in itertools.combinations(range(len(plan.walls)), 2):
         one, two = plan.walls[a], plan.walls[b]
