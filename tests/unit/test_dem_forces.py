@@ -105,3 +105,36 @@ def test_a_section_and_its_solids_have_the_same_reactions() -> None:
     assert {"pair_name", "pair_block", "pair_force", "pair_friction_work", "pair_damping_work", "reaction"} <= set(plane.arrays) & set(
         space.arrays
     )
+
+
+@pytest.mark.parametrize("keys", [{"solver": "compliant"}, {"solver": "nonsmooth"}, {"solver": "compliant", "direction": 0.0}])
+def test_ties_to_the_ground_are_part_of_the_base_shear(keys: dict[str, Any]) -> None:
+    """A block on slippery ground between two stiff ties: reactions, less inertia, are its momentum; contacts carry a tenth alone."""
+    far = {"stiffness": "20 MN/m", "prestress": "1 kN"}
+    middle = [0.0, 0.5] if "direction" in keys else [0.5]
+    ties = [
+        {"name": name, "start": [x, *middle], "start_stone": "block", "ground": [end, *middle], **far}
+        for name, x, end in (("left", 0.0, -3.0), ("right", 1.0, 3.0))
+    ]
+    tables = {"structure": {"kind": "block", "width": 1.0, "height": 1.0}, "material": {"density": 2000.0}, "ties": ties}
+    tables |= {"joints": {"friction": 0.05, "normal_stiffness": 1e9}, "motion": PULSE | {"period": 0.6}}
+    deck = make_deck({**tables, "analysis": {"kind": "dem", "perturbed": False, "end_time": 0.5, "output_step": 0.0005, **keys}})
+    (found,) = run_analyses(Context(deck, threads=1))
+    assert found.status == "ok", found.reason
+    a = numbers(found)
+    moves = a["reaction"][:, 0] - 2000.0 * a["ground"]
+    gained = np.cumsum(0.5 * (moves[1:] + moves[:-1]) * 0.0005)
+    momentum = 2000.0 * a["rate"][:, 0, 0]
+    assert gained == pytest.approx(momentum[1:] - momentum[0], abs=0.02 * 2000.0 * 0.5 * GRAVITY * 0.3)
+    assert found.results.peak_base_shear_N == pytest.approx(2000.0 * 0.5 * GRAVITY, rel=0.1)
+    assert not any("formed later" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize("keys", [{}, {"direction": 0.0}])
+def test_blocks_that_fall_on_a_floor_are_stated(keys: dict[str, Any]) -> None:
+    """The upper of two drums falls over and lies on a floor: it is named, since the floor is no part of the reactions."""
+    motion = {"kind": "sine-pulse", "amplitude": "0.9 g", "period": 0.8}
+    fallen = {"kind": "column", "width": 0.15, "height": 0.6, "drums": 2}
+    found = run(fallen, 0.6, motion, end_time=1.6, floor=0.0, stop_at_collapse=False, **keys)
+    (stated,) = [text for text in found.warnings if "formed later" in text]
+    assert "carry drum 2;" in stated

@@ -122,3 +122,13 @@ def test_what_moves_in_space_is_refused_where_it_cannot() -> None:
     assert "tilt" in run(DRUMS, moves, direction=0.0, test="tilt").reason
     assert "does not exist" in run(DRUMS, [{"joint": "nowhere", "dz": 0.1}], direction=0.0).reason
     assert "dz" in run(ARCH, [{"joint": "joint 0", "dz": 0.1}]).reason
+
+
+def test_a_settlement_of_a_plane_section_in_space_is_dz() -> None:
+    """In the plane dy is upward, in space across the section: a deck that keeps dy is refused, not shoved sideways."""
+    name = make_deck({"structure": ARCH, "analysis": {"kind": "tilt"}}).building.blocks().joint_names[-1]
+    keys = {"end_time": 0.1, "solver": "nonsmooth"}
+    found = run(ARCH, [{"joint": name, "dy": -0.05}], direction=0.0, **keys)
+    assert found.status != "ok" and "give dz for a settlement" in found.reason
+    for movement, more in (({"dy": -1e-4}, {}), ({"dz": -1e-4}, {"direction": 0.0})):
+        assert run(ARCH, [{"joint": name, **movement}], **keys, **more).status == "ok"

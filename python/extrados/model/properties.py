@@ -270,7 +270,11 @@ class Movement(Table):
 
     joint: str = key(about="name of a joint on the support")
     dx: Length = key(0.0, "to the right")
-    dy: Length = key(0.0, "upward; negative is a settlement. In space: along y, the second direction in plan")
+    dy: Length = key(
+        0.0,
+        "upward; negative is a settlement. In space: along y, the second direction in plan; refused for a plane section with a `direction`, "
+        "whose settlement is dz",
+    )
     dz: Length = key(0.0, "in space: upward; negative is a settlement")
     turn: Angle = key(0.0, "in the plane: rotation, counter-clockwise, about the middle of the support")
     start: Time = key(0.0, "when it starts", ge=0)

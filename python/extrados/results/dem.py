@@ -118,7 +118,11 @@ class BlocksRun(KindResults):
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
-    peak_base_shear_N: float = fact("greatest horizontal force of the ground on the blocks, over the output times", "N")
+    peak_base_shear_N: float = fact(
+        "greatest horizontal force of the ground on the blocks over the output times, at the contacts as drawn and at the anchors of ties "
+        "and dampers; contacts formed later are not included, which a warning states",
+        "N",
+    )
     peak_base_shear_over_weight: float = fact("ratio of the greatest horizontal force of the ground to the weight of the structure")
     joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")

@@ -74,7 +74,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
             f"{', '.join(who[:6])} slides off its footing. To let detached blocks slide on a floor, give `dem` the key `floor` "
             f"= {measures.ground_level(model):.4g}"
         )
-    result.warnings += doubts_of_run(found, chaos["violated"], numbers["still_moving"])
+    result.warnings += doubts_of_run(model, found, chaos["violated"], numbers["still_moving"])
     if trial.idle:
         result.warnings.append("no motion acts on the structure: add [motion], [[initial.movements]] or [initial] rotation_ratio")
     if result.status == "ok":

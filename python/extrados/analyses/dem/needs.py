@@ -6,7 +6,7 @@ from functools import partial
 from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
-from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
+from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_shoves, refuse_stones
 from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.model.errors import BadGeometry, Key
@@ -108,6 +108,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     yield lambda: damper_strands(building)
     if not isinstance(options, tables.Dem):
         return
+    yield lambda: refuse_shoves(building, stones)
     yield lambda: moved_joints(stones, [one.joint for one in building.initial.movements])
     yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))
     if context.deck.motion is not None and options.test == "motion":

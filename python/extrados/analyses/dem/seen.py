@@ -9,7 +9,7 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
-from extrados.analyses.dem.forces import force_keys
+from extrados.analyses.dem.forces import carried_elsewhere, force_keys
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
@@ -20,6 +20,8 @@ from extrados.core.dem_run import SupportMove
 from extrados.results.dem import CLOSED, SLIP_LIMIT
 from extrados.results.model import Result
 from extrados.schema.constants import GRAVITY
+
+SHOWN = 3  # blocks that a warning names
 
 
 @dataclass(frozen=True)
@@ -155,12 +157,17 @@ def numbers_of(options: Dem, seen: BlocksSeen, collapse: measures.Collapse) -> d
     }
 
 
-def doubts_of_run(found: dem_run.FoundRun, violated: list[str], still_moving: bool) -> list[str]:
+def doubts_of_run(model: Model | SolidModel, found: dem_run.FoundRun, violated: list[str], still_moving: bool) -> list[str]:
     """Warnings of any run: its energy balance, its convergence, conditions that do not hold, an end before rest."""
     doubts = []
     if found.residual > 0.01:
         doubts.append(f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged")
     doubts += [*dem_model.unconverged(found.effort), *violated]
+    if elsewhere := carried_elsewhere(model, found):
+        more = f" and {len(elsewhere) - SHOWN} more blocks" if len(elsewhere) > SHOWN else ""
+        doubts.append(
+            f"contacts formed later carry {', '.join(elsewhere[:SHOWN])}{more}; their forces are not part of the reactions and the base shear"
+        )
     if still_moving:
         doubts.append("the structure still moves at the end of the run: a later end_time may change the outcome")
     return doubts

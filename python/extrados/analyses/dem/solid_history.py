@@ -80,7 +80,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         )
     if seen.slides:
         result.warnings.append(f"contacts slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
-    result.warnings += doubts_of_run(found, chaos["violated"], r.still_moving)
+    result.warnings += doubts_of_run(model, found, chaos["violated"], r.still_moving)
     if idle:
         result.warnings.append("no motion acts on the structure: add [motion] or [[initial.movements]]")
     result.answer = solid_answer(r, idle) + moved_supports(seen, moves, 3, moved is not None)

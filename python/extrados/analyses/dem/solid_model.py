@@ -11,13 +11,13 @@ from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
 from extrados.analyses.dem.ties import NO_TIES, ElementTies, element_ties
 from extrados.core import dem3
 from extrados.core.dem_run import Law, SupportMove
-from extrados.model.errors import Key
+from extrados.model.errors import Key, NoView
 from extrados.model.geometry.anchors import moved_joints
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.views.building import Building
 from extrados.views.solids.strands import damper_strands
-from extrados.views.solids.supports import Supports, supports_of
+from extrados.views.solids.supports import LEVEL, Supports, supports_of
 
 #: What is refused of them, in words
 RIGID = 'rigid contacts (solver = "nonsmooth", or cross_check)'
@@ -165,6 +165,23 @@ def refuse_mortar(building: Building, assembly: SolidAssembly | None = None) -> 
     for name in ("cohesion", "tension"):
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
             raise Refused(f"{RIGID} have no mortar", ("joints", name))
+
+
+def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:
+    """Refused where a support of a section that is drawn out moves by dy: upward in the plane, in space across the section."""
+    y = np.concatenate([part.vertices for part in assembly.parts])[:, 1]
+    if np.minimum(y - y.min(), y.max() - y).max() > LEVEL * assembly.size:
+        return
+    try:
+        building.blocks()
+    except NoView:
+        return
+    for k, one in enumerate(building.initial.movements):
+        if one.dy:
+            raise Refused(
+                "dy moves a support of this section sideways in space, across its depth: give dz for a settlement (z is upward in space)",
+                ("initial", "movements", k, "dy"),
+            )
 
 
 def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> None:
