@@ -152,7 +152,7 @@ def ground_level(model: Model) -> float:
     return float(np.minimum(a.p[ground, 1], a.q[ground, 1]).min())
 
 
-def carried(run: dem.Run | dem3.Run, count: int, axes: int) -> np.ndarray:
+def carried(run: dem_run.FoundRun, count: int, axes: int) -> np.ndarray:
     """Displacement that all supports share (time, axis) [m], along two or three axes; supports: the bodies after the first `count`."""
     shift = run.place[:, count:, :axes] - run.settled[count:, :axes]
     if not shift.shape[1]:

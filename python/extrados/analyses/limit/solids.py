@@ -71,20 +71,7 @@ def run(context: Context, options: Tilt) -> Result:
                 ]
             )
             least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])
-    if isinstance(limit, CrushingLimit):
-        sliding["crushing_contacts"] = _crushing(assembly, there)
-        if options.face_law:
-            sliding["face_law_reason"] = "the face law neglects crushing, so the face law is not calculated"
-    elif options.face_law or (options.face_law is None and slides and len(assembly.a) <= MOST_BESIDE):
-        sliding |= _by_faces(limit, [found_at[round(d, 9)] for d in (first, opposite)], (first, opposite), result)
-    if options.block_size and isinstance(sound := found_at[round(first, 9)], Programme):
-        sliding["block_sizes"] = sizes = by_block_size(context, options, first, sound.gamma)
-        if told := warning_of(sizes):
-            result.warnings.append(told)
-    if options.mortar == "ductile":
-        sliding |= _dry(context, options, asked.tolist(), (first, opposite))
-        if told := warn_of_mortar(building, limit):
-            result.warnings.append(told)
+    sliding |= _beside(context, options, limit, found_at, asked.tolist(), (first, opposite), there, slides, result)
     opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
     pose = pose_of(assembly, there.motion)
@@ -123,6 +110,36 @@ def run(context: Context, options: Tilt) -> Result:
     result.files |= scene_files(assembly.parts, assembly.owner, assembly.centroid, assembly.block_names, pose)
     result.answer = _words(word, found, count)
     return result
+
+
+def _beside(
+    context: Context,
+    options: Tilt,
+    limit: SolidLimit,
+    found_at: dict[float, Programme | Falls | None],
+    asked: list[float],
+    ends: tuple[float, float],
+    there: Programme,
+    slides: int,
+    result: Result,
+) -> Keys:
+    """Keys beside the capacity: contacts that crush, friction of whole faces, other sizes of blocks, joints without mortar."""
+    found: Keys = {}
+    if isinstance(limit, CrushingLimit):
+        found["crushing_contacts"] = _crushing(limit.assembly, there)
+        if options.face_law:
+            found["face_law_reason"] = "the face law neglects crushing, so the face law is not calculated"
+    elif options.face_law or (options.face_law is None and slides and len(limit.assembly.a) <= MOST_BESIDE):
+        found |= _by_faces(limit, [found_at[round(d, 9)] for d in ends], ends, result)
+    if options.block_size and isinstance(sound := found_at[round(ends[0], 9)], Programme):
+        found["block_sizes"] = sizes = by_block_size(context, options, ends[0], sound.gamma)
+        if told := warning_of(sizes):
+            result.warnings.append(told)
+    if options.mortar == "ductile":
+        found |= _dry(context, options, asked, ends)
+        if told := warn_of_mortar(context.building, limit):
+            result.warnings.append(told)
+    return found
 
 
 def refuse_falling(there: Programme, back: Programme, first: float, neglects: tuple[str, ...] = NEGLECTED) -> None:

@@ -61,15 +61,7 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     """
     _refuse(options)
     assembly = building.blocks()
-    size, most = options.size, LARGEST_MESH
-    if size is None:
-        size, most = float(np.median(assembly.length)) / DIVISIONS, DIVISIONS
-    sizes = [max(size, float(assembly.length[assembly.joints_of(i)].max()) / most) for i in range(len(assembly.mass))]
-    count = sum(abs(signed_area(o)) / s**2 for o, s in zip(assembly.outlines, sizes, strict=True))
-    if count > LARGEST_MESH:
-        raise BadGeometry(
-            f"the mesh would have about {count:.2g} elements of {size:g} m; at most {LARGEST_MESH:g} are allowed: use larger elements"
-        )
+    size, most, sizes = _sizes(assembly, options)
     lines = [_divided(p, q, size, most) for p, q in zip(assembly.p, assembly.q, strict=True)]
     shortest = min(float(np.hypot(*np.diff(line, axis=0).T).min()) for line in lines)
     rows_of_elements = options.joints == "rows"
@@ -137,6 +129,20 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     grounded = (assembly.a[joint] == GROUND) | (assembly.b[joint] == GROUND)
     _tell_of_idle_joints(mesh, row[grounded])
     return mesh
+
+
+def _sizes(assembly: Assembly, options: MeshOptions) -> tuple[float, int, list[float]]:
+    """Size of the elements [m], greatest number of them along a joint, and size in each stone [m]; BadGeometry beyond LARGEST_MESH."""
+    size, most = options.size, LARGEST_MESH
+    if size is None:
+        size, most = float(np.median(assembly.length)) / DIVISIONS, DIVISIONS
+    sizes = [max(size, float(assembly.length[assembly.joints_of(i)].max()) / most) for i in range(len(assembly.mass))]
+    count = sum(abs(signed_area(o)) / s**2 for o, s in zip(assembly.outlines, sizes, strict=True))
+    if count > LARGEST_MESH:
+        raise BadGeometry(
+            f"the mesh would have about {count:.2g} elements of {size:g} m; at most {LARGEST_MESH:g} are allowed: use larger elements"
+        )
+    return size, most, sizes
 
 
 def _tell_of_idle_joints(mesh: Mesh, row: np.ndarray) -> None:

@@ -61,13 +61,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
             ("analysis", "mesh", "size"),
         )
     warnings = plan.roof_remarks
-    junctions = {}
-    for a, b in itertools.combinations(range(len(plan.walls)), 2):
-        one, two = plan.walls[a], plan.walls[b]
-        if (at := meeting(one, two)) is not None:
-            junctions[a, b] = at
-        elif (gap := nearly_meeting(one, two)) is not None:
-            warnings.append(f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart, so they do not meet and are not connected")
+    junctions = _junctions(plan, warnings)
     _check_corners(plan, junctions)
     grids = _grids(plan, junctions, size, warnings)
     xyz, number = _join(plan, grids, junctions)
@@ -147,6 +141,18 @@ def _wall_parts(plan: Plan, grids: list[_Grid], junctions: dict, number: np.ndar
         with blaming("walls", w):
             parts.append(_wall_part(plan, w, grids, junctions, number, names))
     return parts
+
+
+def _junctions(plan: Plan, warnings: list[str]) -> dict:
+    """Where walls meet, by their indices; warnings: of those that nearly do."""
+    found = {}
+    for a, b in itertools.combinations(range(len(plan.walls)), 2):
+        one, two = plan.walls[a], plan.walls[b]
+        if (at := meeting(one, two)) is not None:
+            found[a, b] = at
+        elif (gap := nearly_meeting(one, two)) is not None:
+            warnings.append(f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart, so they do not meet and are not connected")
+    return found
 
 
 def _check_corners(plan: Plan, junctions: dict) -> None:
