@@ -108,8 +108,8 @@ contains
    end subroutine at_rest
 
    !> Push by a growing multiple of a pattern, see push_frame
-   subroutine push(handle, n, count, most, pattern, control, target, steps, drop, states, ended, loose, curve, displacement, &
-      force, drift, state, status)
+   subroutine push(handle, n, count, most, pattern, control, target, steps, drop, states, ended, curve, displacement, force, &
+      drift, state, status)
       use common_handles, only : handle_leave
       use common_status, only : status_invalid_argument
       use frame_handle, only : frame_take
@@ -125,8 +125,8 @@ contains
       integer(c_int), intent(in) :: steps
       real(c_double), intent(in) :: drop                     !! share of the greatest multiple at which it ends
       integer(c_int), intent(out) :: states
-      integer(c_int), intent(out) :: ended                    !! list frame_stop
-      integer(c_int), intent(out) :: loose                    !! freedom from 1 that moves most without equilibrium; else 0
+      !> List frame_stop; freedom from 1 that moves most without equilibrium, else 0
+      integer(c_int), intent(out) :: ended(2)
       real(c_double), intent(out) :: curve(2, most)          !! control displacement, multiple
       real(c_double), intent(out) :: displacement(n, most)
       real(c_double), intent(out) :: force(3, count, most)   !! N, moments at both ends
@@ -138,7 +138,6 @@ contains
       !f2py threadsafe
       states = 0
       ended = 0
-      loose = 0
       curve = 0.0_c_double
       displacement = 0.0_c_double
       force = 0.0_c_double
@@ -151,11 +150,11 @@ contains
       else if (status == 0) then
          call push_path_new(n, count, most, path, status)
          if (status == 0) call push_frame(model, pattern, control, target, int(steps), drop, &
-            path, ended, status)
+            path, ended(1), status)
       end if
       if (status == 0) then
          states = path%count
-         loose = path%loose
+         ended(2) = path%loose
          curve(:, :) = path%curve
          displacement(:, :) = path%displacement
          force(:, :, :) = path%force

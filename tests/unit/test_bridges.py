@@ -425,7 +425,7 @@ def test_a_train_of_the_deck_is_the_one_of_the_code() -> None:
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"train": "LM1", "force": 1e5}, "train replaces"),
+        ({"train": "LM1", "force": 1e5}, "`train` replaces"),
         ({"axles": [0.0, 1.0], "axle_loads": [1e5]}, "one load above 0 for each"),
         ({"uniform": [{"load": 1e4}]}, "requires axle_loads"),
         ({"axles": []}, "expected at least one axle"),

@@ -173,7 +173,7 @@ class Frame(Owner):
         most = 2000 + 2 * steps if most is None else most
         room_for(self.n + 5 * self.count, most)
         own = real("pattern", pattern, (self.n,)), real("control", control, (self.n,))
-        count, stop, loose, curve, displacement, force, drift, state, status = long_call(
+        count, (stop, loose), curve, displacement, force, drift, state, status = long_call(
             _core.api_frame.push, self.handle, self.count, most, *own, float(target), int(steps), float(drop)
         )
         check(status, "pushover of a frame")
