@@ -193,7 +193,7 @@ def test_a_portal_of_piers_and_a_reinforced_ring_beam_is_a_mechanism_by_hand():
     beam = {"storey": 1, "depth": 0.3, "material": "strong", "walls": ["wall"]}
     walls = [{"name": "wall", "start": [0, 0], "end": [5, 0], "thickness": 0.3, "openings": high}]
     shears = []
-    for area in (None, 2e-5, 4e-5, 4e-3):
+    for area in (None, 2e-5, 4e-5, 2e-3):
         bars = {} if area is None else {"reinforcement": BARS | {"area": area}}
         made = building(
             walls, ring_beams=[beam | bars], materials={"strong": {"young": 30e9, "poisson": 0.2, "compressive_strength": 20e6}}
@@ -230,6 +230,22 @@ def test_reinforcement_needs_the_strength_of_concrete_and_room():
         building(walls, ring_beams=[beam]).frame(FREE)
     with pytest.raises(DeckError, match="does not fit in a beam with a depth of"):
         building(walls, ring_beams=[beam | {"reinforcement": BARS | {"cover": 0.15}}])
+
+
+def test_a_ring_beam_with_too_much_reinforcement_is_refused():
+    """Neutral axis A f_y / 2 / (0.85 f_c b) / 0.8 at 0.45 of 0.26 m: A = 23.9 cm^2, also as text with a unit."""
+    walls = [{"name": "wall", "start": [0, 0], "end": [5, 0], "thickness": 0.3, "openings": [DOOR]}]
+    strong = {"strong": {"young": 30e9, "poisson": 0.2, "compressive_strength": 20e6}}
+    limit = 0.45 * 0.26 * 0.8 * 0.85 * 20e6 * 0.3 * 2.0 / 400e6
+
+    def made(area: object) -> None:
+        beam = {"storey": 1, "depth": 0.3, "material": "strong", "reinforcement": BARS | {"area": area}}
+        building(walls, ring_beams=[beam], materials=strong).frame(FREE)
+
+    made(0.999 * limit)
+    made(f"{0.999e4 * limit} cm^2")
+    with pytest.raises(BadGeometry, match=r"wall 'wall': with bars of 23.9 cm\^2 in all the neutral axis is at 0.45 of the effective"):
+        made(1.001 * limit)
 
 
 def test_a_ring_beam_is_no_masonry_of_a_spandrel_below_a_door():

@@ -42,6 +42,8 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
+#: Times that the intervals beside the least factors are halved, and factors over the least beside which they are
+HALVINGS, NEARLY = 4, 1.05
 PATTERNS = 500  # patterns of even loads that are tried at a place
 #: What makes the model of a bridge whole
 MODEL = (
@@ -269,7 +271,11 @@ def run(context: Context, options: MovingLoad) -> Result:
     job, reduced, train, chain = job_of(building, options)
     assembly, dead, friction, places, ways, (low, high) = job.assembly, job.dead, job.friction, job.places, job.ways, job.span
     strip = assembly.depth / (options.width or assembly.depth)
-    swept = sweep(context, "moving-load", job, len(places), "moving load", slow=True).whole()
+    found = sweep(context, "moving-load", job, len(places), "moving load", slow=True).whole()
+    swept = {name: found[name] for name in ("capacity", "factor", "mechanism", "gap", "line", "normal")}
+    if options.places is None:
+        job, swept = _refined(job, swept)
+        places, ways = job.places, job.ways
     mechanisms, gap, factor = swept["mechanism"].tolist(), float(swept["gap"].max()), swept["factor"]
     capacity = swept["capacity"] / strip if train.known else swept["capacity"]
     if options.force is not None:  # all of it, also where an axle is not on the way yet
@@ -402,7 +408,7 @@ def _permissible(context: Context, options: MovingLoad, service: Serviceability,
 def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
     """Places of the first axle [m] and which way it heads, 1 or -1: all those at which an axle, or an end of an even load, is on the way.
 
-    Loads far apart cross one after the other. Of each group there are `count` places, and more where it is longer than the way.
+    Loads far apart cross one after the other. The places of each group are as close as `count` places on the way.
     """
     span, marks = high - low, train.marks
     if options.places is not None:
@@ -427,10 +433,31 @@ def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple
 
 
 def _crossing(count: int, first: float, last: float, span: float) -> np.ndarray:
-    """Even places from first to last [m], a hair inside, so that an axle at the ends is still on a block."""
-    places = np.linspace(first, last, max(count, int(np.ceil(0.5 * count * (last - first) / span))))
+    """Even places from first to last [m], at most span / (count - 1) apart, a hair inside, so that an axle at the ends is on a block."""
+    places = np.linspace(first, last, int(np.ceil(1.0 + (count - 1) * (last - first) / span - NIL)))
     places[0], places[-1] = places[0] + 1e-9 * span, places[-1] - 1e-9 * span
     return places
+
+
+def _refined(job: Places, swept: dict[str, np.ndarray]) -> tuple[Places, dict[str, np.ndarray]]:
+    """Further places around those of least factor: the intervals beside each are halved, and those beside the least of them again."""
+    for _ in range(HALVINGS):
+        more: list[tuple[float, float]] = []
+        for way in np.unique(job.ways):
+            own = np.flatnonzero(job.ways == way)
+            own = own[np.argsort(job.places[own])]
+            place, factor = job.places[own], np.concatenate([[np.inf], swept["factor"][own], [np.inf]])
+            low = np.flatnonzero((factor[1:-1] <= np.minimum(factor[:-2], factor[2:])) & (factor[1:-1] <= NEARLY * swept["factor"].min()))
+            beside = np.unique([k for i in low for k in (i - 1, i) if 0 <= k < len(place) - 1])
+            more += [(0.5 * (place[k] + place[k + 1]), way) for k in beside if np.isfinite(swept["factor"]).any()]
+        if not more:
+            break
+        found = replace(job, places=np.array([x for x, _ in more]), ways=np.array([way for _, way in more])).run(0, len(more), 1)
+        job = replace(job, places=np.append(job.places, [x for x, _ in more]), ways=np.append(job.ways, [way for _, way in more]))
+        order = np.lexsort((job.ways * job.places, -job.ways))
+        job = replace(job, places=job.places[order], ways=job.ways[order])
+        swept = {name: np.concatenate([values, found[name]])[order] for name, values in swept.items()}
+    return job, swept
 
 
 def _standing(job: Places, k: int, worst: Collapse) -> np.ndarray:

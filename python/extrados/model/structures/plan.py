@@ -17,6 +17,10 @@ from extrados.schema.table import Table, key
 
 #: Distance within which two walls meet [m]
 MEETS = 1e-6
+#: Greatest ratio of neutral axis to effective depth of a reinforced ring beam, EN 1992-1-1, 5.5(4) (verify clause)
+DEEPEST_AXIS = 0.45
+#: Depth of the rectangular stress block over that of the neutral axis, EN 1992-1-1, (3.19), concrete up to 50 MPa
+BLOCK_DEPTH = 0.8
 #: Cosine of the angle of walls that run side by side
 PARALLEL = 0.99
 #: Greatest rise of a gable over the length of its wall; of a roof with the greatest pitch, 75 degrees, it is 1.87
@@ -241,7 +245,7 @@ class Prestress(Table):
 class Reinforcement(Table):
     """Longitudinal bars of a ring beam of concrete, half of them at its upper and half at its lower face."""
 
-    area: Annotated[float, Field(gt=0)] = key(about="cross-section of all bars in m^2")
+    area: Annotated[Area, Field(gt=0)] = key(about="cross-section of all bars")
     yield_strength: Stress = key(about="yield strength of the bars", gt=0)
     cover: Length = key(0.04, "distance of the bars from the upper and lower face of the beam", gt=0)
 
@@ -253,7 +257,11 @@ class Reinforcement(Table):
     def plastic_moment(self, depth: float, width: float, concrete: float) -> float:
         """Moment [N m] of a section by the stress block of 0.85 of a compressive strength [Pa]; bars in compression are neglected."""
         force = 0.5 * self.tension
-        return force * max(depth - self.cover - 0.5 * force / (0.85 * concrete * width), 0.0)
+        return force * (depth - self.cover - 0.5 * force / (0.85 * concrete * width))
+
+    def relative_axis(self, depth: float, width: float, concrete: float) -> float:
+        """Depth of the neutral axis over the effective depth [-] of a section by the same stress block."""
+        return 0.5 * self.tension / (0.85 * concrete * width) / BLOCK_DEPTH / (depth - self.cover)
 
 
 class RingBeam(Table):
@@ -385,7 +393,7 @@ class Plan(Structure):
         for wall in (one, two):
             if wall.gable is not None and self.reach(wall)[1] == floor.storey:
                 raise ValueError(
-                    f"floors[{k}].bears_on: {floor.roof} bear on the walls of the eaves, but wall '{wall.name}' has a gable on top of storey "
+                    f"floors[{k}].bears_on: {floor.roof} rest on the walls of the eaves, but wall '{wall.name}' has a gable on top of storey "
                     f"{floor.storey}. Give the two walls without gables, or a roof of purlins"
                 )
 

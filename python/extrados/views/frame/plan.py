@@ -14,7 +14,7 @@ from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.geometry.polygons import signed_area
 from extrados.model.properties import Material
-from extrados.model.structures.plan import MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, meeting, nearly_meeting
+from extrados.model.structures.plan import DEEPEST_AXIS, MEETS, PARALLEL, Plan, PlanWall, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
 from extrados.views.frame.division import Division, parts_around_openings
 from extrados.views.frame.flanges import Flange, effective_part
@@ -475,6 +475,14 @@ class _Maker(Division):
             if concrete is None:
                 raise BadGeometry(
                     f"ring beam of storey {beam.storey}: its reinforcement requires a compressive_strength in [materials.{beam.material}]",
+                    ("structure", "ring_beams", self.plan.ring_beams.index(beam)),
+                )
+            axis = beam.reinforcement.relative_axis(beam.depth, strip.thickness, concrete)
+            if axis > DEEPEST_AXIS:
+                raise BadGeometry(
+                    f"ring beam of storey {beam.storey}, wall '{wall.name}': with bars of {1e4 * beam.reinforcement.area:.3g} cm^2 in all the "
+                    f"neutral axis is at {axis:.2f} of the effective depth; above {DEEPEST_AXIS:g} the concrete crushes before the hinge "
+                    "rotates. Reduce reinforcement.area, or increase depth or the compressive_strength of its material",
                     ("structure", "ring_beams", self.plan.ring_beams.index(beam)),
                 )
             moment += beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete)
