@@ -314,7 +314,7 @@ contains
       call record_joints(run%model%set, run%model%contacts, run%record%joint(:, :, run%record%points))
    end subroutine record_state
 
-   !> Forces of the joints at the last forces, and what they lost so far
+   !> Forces of the joints in the last step, and the energy that they have dissipated
    pure subroutine record_joints(set, contacts, joint)
       type(body_set), intent(in) :: set
       type(contact_set), intent(in) :: contacts

@@ -1,6 +1,6 @@
 """Limit analysis of solids whose contacts crush: forces at the corners, within patches of bounded pressure, by second-order cones.
 
-A quadrangle of area A and strength f bears a compression N with its centre at c if a patch of area N / f about c lies within it. The
+A quadrangle of area A and strength f carries a compression N with its centre at c if a patch of area N / f about c lies within it. The
 patch is the contact itself, shortened by s1 and s2 along two axes of its plane: s1 s2 f A >= N. With S = N s and C = N (c - middle), all of
 
     N h_e - nu_e . C - S1 nu_e1 q_1 - S2 nu_e2 q_2 >= 0   (sides e with outward normals nu and distances h, corners q from the middle)
@@ -29,7 +29,7 @@ from extrados.model.geometry.solids.strands import Strand
 
 DIVISIONS = 12  # of the sides of triangles over which the power of crushing is summed
 SAME = 1e-9  # of the sides of a contact
-MOST = 1e4  # scales of force that a contact bears at most: patches that are smaller still are beyond the solver
+MOST = 1e4  # greatest force of a contact over the scale of force: the solver cannot resolve smaller patches
 RINGS, ROUND = 8, 32  # cells from the middle of a polygon to its sides, and about it at least
 
 

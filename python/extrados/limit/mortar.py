@@ -1,6 +1,6 @@
 """Mortar of the contacts of solids in limit analysis: cohesion and tension that last, in terms of dry contacts.
 
-A point of a contact bears |tau| <= c + mu sigma and sigma >= -f. With s = sigma + f this is |tau| <= mu s + (c - mu f), s >= 0: a dry
+At a point of a contact |tau| <= c + mu sigma and sigma >= -f. With s = sigma + f this is |tau| <= mu s + (c - mu f), s >= 0: a dry
 contact under a compression f A more at its middle, beside shear of c - mu f that no pressure needs. The first is a load, the second
 acts as dowels do. Where f exceeds c / mu, no point bears more tension than c / mu.
 

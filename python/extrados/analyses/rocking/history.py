@@ -57,7 +57,7 @@ def rock(
 ) -> Ran:
     """The response of a rocker, on rigid contacts from where a condition of its mechanism fails; width: see run_history.
 
-    demand: friction that a response requires at its output times (times), where the joints are not watched; it is looked at by a step
+    demand: friction that a response requires at its output times (times), if the joints are not checked during the run; it is calculated with a step
     of its own (watch_step)."""
 
     def until(time: float, step: float = options.output_step) -> Response:

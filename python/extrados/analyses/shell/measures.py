@@ -137,7 +137,7 @@ def _joints(model: ShellModel, curve: Curve, state: State) -> list[dict[str, Any
 
 
 def _feet(context: Context, model: ShellModel, options: Pushover, curve: Curve, state: State) -> list[dict[str, Any]]:
-    """What each foot of a vault bears in a state: thrust outward and weight."""
+    """Forces of each springing of a vault on its support in a state: outward thrust and weight."""
     borne = model.borne(options, curve, state, context.threads)
     by = {(ground.foot, ground.way): borne[k] for ground, k in model.grounds.items() if ground.x is None}
     return [

@@ -49,7 +49,7 @@ def _stage_told(stage: dict[str, Any]) -> str:
 
 
 def pressing(row: dict[str, Any], weight: float) -> str:
-    """What a foot hands to the ground; what is only rounding beside the weight is not told."""
+    """Forces of a springing on the ground in words; rounding errors beside the weight are omitted."""
     parts = []
     for force, ways in ((row["thrust_N"], ("outward", "inward")), (row["vertical_N"], ("down", "up"))):
         if abs(force) > ROUNDING * weight:
@@ -58,7 +58,7 @@ def pressing(row: dict[str, Any], weight: float) -> str:
 
 
 def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any], word: str, grouped: bool) -> str:
-    """What a push of a building or a vault says; of ground that gives way what its feet bear. grouped: its parts are groups of
+    """Conclusion of a pushover of a building or a vault; on a compliant base with the forces of the springings. grouped: its parts are groups of
     a mesh file."""
     main = next((stage for stage in numbers.get("stages", []) if not stage["prefix"]), None)
     feet = "; ".join(f"its foot {row['foot']} {pressing(row, numbers['weight_N'])}" for row in curve.get("feet", []))
@@ -127,7 +127,7 @@ def remarks_of_curve(model: ShellModel, curve: Curve) -> list[str]:
     events, sense = curve.events, f" (stage {curve.name})" if curve.name else f" (push to {curve.sense})"
     said = [far] if (far := out_of_reach(curve)) else []
     if model.driven or (curve.name and events.reason == "target load"):
-        return said  # a stage that ends where it is told to
+        return said  # a stage that ends at its target
     if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
         said.append(
             f"the base shear{sense} had not passed a peak when the run ended ({events.reason or 'number of events'}). Its "

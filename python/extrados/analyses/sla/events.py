@@ -440,7 +440,7 @@ class _Run:
             batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
 
     def _renew(self, done: int, chain: Chain | None) -> bool:
-        """Begin anew from the damage, since what is on its way from one point to others has no name; keep the run. False where a node is free."""
+        """Restart from the damage alone, because forces being redistributed between points are not stored. The record of the run is kept. False if a node is free."""
         damage, standing = self.core_model.damage(), self.core_model.standing()
         try:
             self.core_model.renew(damage, standing)
