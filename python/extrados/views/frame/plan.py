@@ -22,7 +22,7 @@ from extrados.views.frame.frame import EquivalentFrame, PointMass, Strip, Trace
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.spandrels import BLOCK, flexural_strength, shear_strength, strut_of, strut_strength
 from extrados.views.mesh.triangles import fill_ring
-from extrados.views.shell.plan import RIGID_THICKNESS, RIGID_YOUNG
+from extrados.views.shell.plan_floors import RIGID_THICKNESS, RIGID_YOUNG
 
 #: Shear factor of rectangles
 SHEAR_FACTOR = 1.2

@@ -1,0 +1,174 @@
+"""Floors, roofs and gables of a plan: membranes, joists, masses and forces."""
+
+import numpy as np
+
+from extrados.model.errors import BadGeometry
+from extrados.model.properties import Material
+from extrados.model.structures.plan import MEETS, Plan, StoreyFloor
+from extrados.schema.constants import GRAVITY
+from extrados.views.mesh.triangles import fill_ring
+from extrados.views.shell.mesh import ShellBar, ShellPart
+from extrados.views.shell.plan_grid import WallGrid, index_of, level_nodes
+
+#: What a rigid floor is: a concrete slab
+RIGID_YOUNG, RIGID_THICKNESS = 30e9, 0.2
+
+
+#: Nodes (n, 3) [m] with their masses (n) [kg] and forces (n, 3) [N]
+Nodes = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def add_gable(
+    plan: Plan, w: int, grid: WallGrid, number: np.ndarray, xyz: np.ndarray, parts: list[ShellPart], names: list[str], size: float
+) -> np.ndarray:
+    """Triangles of the triangular top of a wall, on the nodes of its highest level; the nodes with those of the gable."""
+    wall = plan.walls[w]
+    last = plan.reach(wall)[1]
+    foot, s = level_nodes(plan, last, grid, number)
+    left, ridge, right = np.array(wall.gable_outline)
+    sides = []
+    for a, b in ((right, ridge), (ridge, left)):
+        share = np.linspace(0.0, 1.0, max(1, round(float(np.linalg.norm(b - a)) / size)) + 1)[1:, None]
+        if np.linalg.norm(b - a) > MEETS:
+            sides.append(a + share * (b - a))
+    slope = np.concatenate(sides)[:-1]  # the left eave is a node of the wall
+    if np.linalg.norm(ridge - right) < MEETS:
+        slope = np.concatenate([[ridge], slope])
+    place, triangles = fill_ring(np.concatenate([np.column_stack([s, np.zeros(len(s))]), slope]), size)
+    new = place[len(s) :]
+    nodes = np.concatenate([foot, len(xyz) + np.arange(len(new))])
+    name = plan.material_of(wall, last)
+    count = len(triangles)
+    parts.append(
+        ShellPart(
+            f"{wall.name} gable",
+            "T3",
+            nodes[triangles],
+            np.full(count, plan.thickness_of(wall, last)),
+            np.full(count, 0 if name is None else index_of(name, names, f"wall '{wall.name}'")),
+            np.zeros(count, dtype=bool),
+            np.ones(count),
+            wall=w,
+        )
+    )
+    on_plan = np.asarray(wall.start) + new[:, :1] * wall.direction
+    return np.concatenate([xyz, np.column_stack([on_plan, plan.levels[last] + new[:, 1]])])
+
+
+def ring_of_floor(plan: Plan, floor: StoreyFloor, grids: list[WallGrid], number: np.ndarray, xyz: np.ndarray) -> list[int]:
+    """The nodes on the walls around a floor in order, counter-clockwise."""
+    what = f"floor on storey {floor.storey}"
+    walls = plan.around(floor)
+    nodes: list[int] = []
+    for w, start, end in walls:
+        own, s = level_nodes(plan, floor.storey, grids[w], number)
+        if not len(own):
+            raise BadGeometry(f"{what}: wall '{plan.walls[w].name}' has no masonry there")
+        inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
+        order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
+        nodes += own[inside][order].tolist()
+    ring = [n for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True) if np.linalg.norm(xyz[n] - xyz[before]) > MEETS]
+    if len(ring) < 3 or len(set(ring)) < len(ring):
+        twice = next((n for k, n in enumerate(ring) if n in ring[:k]), None)
+        at = "" if twice is None else f" twice at ({xyz[twice, 0]:.3g}, {xyz[twice, 1]:.3g}) m"
+        raise BadGeometry(
+            f"{what}: the walls {', '.join(plan.walls[w].name for w, _, _ in walls)} do not form a simple ring: it passes{at or ' no area'}. "
+            "Name the walls around the floor in order by `walls`"
+        )
+    x, y = xyz[ring, 0], xyz[ring, 1]
+    if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
+        ring.reverse()
+    return ring
+
+
+def add_floor(
+    plan: Plan,
+    floor: StoreyFloor,
+    ring: list[int],
+    grids: list[WallGrid],
+    number: np.ndarray,
+    nodes: Nodes,
+    parts: list[ShellPart],
+    materials: list[Material],
+    bars: list[ShellBar],
+    size: float,
+) -> Nodes:
+    """Elements, bars and masses of a floor; the nodes with those within it. ring: the nodes of the walls around it."""
+    xyz, mass, push = nodes
+    level = float(plan.levels[floor.storey])
+    outline = xyz[ring, :2]
+    x, y = outline.T
+    area = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    name = f"floor {floor.storey}"
+    ends = plan.around(floor)
+    bearing = [w for w, _, _ in plan.bearing(floor, ends)]
+    if floor.load > 0.0:
+        shares = np.sum([_shares(plan, floor, w, ring, grids, number, len(xyz)) for w in bearing], axis=0)
+        mass = mass + floor.weight * area / GRAVITY * shares / shares.sum()
+    for w, _, _, force in plan.thrusts(floor, ends):
+        shares = _shares(plan, floor, w, ring, grids, number, len(xyz))
+        push = push.copy()
+        push[:, :2] += shares[:, None] / shares.sum() * force
+    if floor.kind in ("flexible", "rigid"):
+        thickness = floor.flatness * (RIGID_THICKNESS if floor.thickness is None else floor.thickness)
+        young = floor.young if floor.kind == "flexible" else RIGID_YOUNG
+        inner, triangles = fill_ring(outline, size)
+        new = inner[len(ring) :]
+        place = np.concatenate([ring, len(xyz) + np.arange(len(new))]).astype(int)
+        xyz = np.concatenate([xyz, np.column_stack([new, np.full(len(new), level)])])
+        mass = np.concatenate([mass, np.zeros(len(new))])
+        push = np.concatenate([push, np.zeros((len(new), 3))])
+        count = len(triangles)
+        parts.append(
+            ShellPart(
+                name,
+                "T3",
+                place[triangles],
+                np.full(count, thickness),
+                np.full(count, len(materials)),
+                np.ones(count, dtype=bool),
+                np.ones(count),
+                bends=False,
+            )
+        )
+        materials.append(Material(density=0.0, young=young, poisson=floor.poisson))
+    elif floor.kind == "joists":
+        bars += _joists(plan, floor, grids, number, xyz, name, ring)
+    return xyz, mass, push
+
+
+def _shares(plan: Plan, floor: StoreyFloor, w: int, ring: list[int], grids: list[WallGrid], number: np.ndarray, count: int) -> np.ndarray:
+    """Length (count) [m] of a wall beside a floor at each of the nodes."""
+    shares = np.zeros(count)
+    own, s = level_nodes(plan, floor.storey, grids[w], number)
+    on = np.isin(own, ring)
+    half = np.diff(s[on]) / 2.0
+    np.add.at(shares, own[on], np.append(half, 0.0) + np.append(0.0, half))
+    if not shares.sum() > 0.0:
+        raise BadGeometry(f"floor on storey {floor.storey}: wall '{plan.walls[w].name}' has no masonry there to carry its load")
+    return shares
+
+
+def _joists(
+    plan: Plan, floor: StoreyFloor, grids: list[WallGrid], number: np.ndarray, xyz: np.ndarray, name: str, ring: list[int]
+) -> list[ShellBar]:
+    """Joists as bars from each node of a wall across to the nearest of the other, of the area that stands for it."""
+    one, two = (next(i for i, w in enumerate(plan.walls) if w.name == word) for word in floor.bears_on)
+    own, s = level_nodes(plan, floor.storey, grids[one], number)
+    far, _ = level_nodes(plan, floor.storey, grids[two], number)
+    own, s = own[np.isin(own, ring)], s[np.isin(own, ring)]
+    across = np.array([-plan.walls[one].direction[1], plan.walls[one].direction[0]])
+    material = Material(density=0.0, young=floor.young)
+    half = np.diff(s) / 2.0
+    wide = np.append(half, 0.0) + np.append(0.0, half)
+    made = []
+    for n, width in zip(own.tolist(), wide.tolist(), strict=True):
+        gap = xyz[far, :2] - xyz[n, :2]
+        aside = np.abs(gap @ plan.walls[one].direction)
+        to = int(far[aside.argmin()])
+        if aside.min() > 0.25 * max(abs(float(gap[aside.argmin()] @ across)), MEETS) or to == n:
+            continue  # no wall opposite
+        made.append(ShellBar(f"{name}, joists", (n, to), floor.joist_area * width / floor.joist_spacing, material))
+    if not made:
+        raise BadGeometry(f"{name}: no joist spans from wall '{floor.bears_on[0]}' to '{floor.bears_on[1]}'")
+    return made
