@@ -417,16 +417,16 @@ def zones_of_thrust_carry_their_forces(deck: Deck, strength: float, depth: float
     "moving-load", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), st.integers(5, 9), st.booleans(), number(0.1, 0.6)), 1e-5
 )
 def places_of_a_train(deck: Deck, count: int, both: bool, apart: float, within: float) -> None:
-    """Places of a train go from the first axle on the one end to the last on the other, evenly but for intervals that are halved, again and
-    again, beside the lowest factors; each by itself has the same factor; the least governs, with a place on either side of it."""
+    """Places of a train go evenly from the first axle on the one end to the last on the other, with more beside the lowest factors; each
+    by itself has the same factor; the least governs."""
     table = {"axle_loads": [2e4, 3e4], "axles": [0.0, apart], "both_ways": both}
     answer = ask(deck, "moving-load", count=count, **table)
     ok(answer)
     a = {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
     ahead = a["place"][: 1 + int(np.argmax(a["place"]))]
     steps = np.diff(ahead)
-    halved = np.log2(steps.max() / steps)
-    near("steps", halved, halved.round(), 1e-6, 1.0)
+    even = np.linspace(ahead[0], ahead[-1], 1 + round(float((ahead[-1] - ahead[0]) / steps.max())))
+    near("even places", np.array([ahead[np.abs(ahead - x).argmin()] for x in even]), even, 1e-6, 1.0)
     must(len(ahead) > count and steps.max() > 7.0 * steps.min(), f"{count} places are asked, and no interval is halved: {ahead}")
     if both:
         near("back", a["place"][len(ahead) :][[0, -1]], (ahead[0] + ahead[-1] - apart) - ahead[[0, -1]], 1e-6, 1.0)

@@ -273,6 +273,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     strip = assembly.depth / (options.width or assembly.depth)
     found = sweep(context, "moving-load", job, len(places), "moving load", slow=True).whole()
     swept = {name: found[name] for name in ("capacity", "factor", "mechanism", "gap", "line", "normal")}
+    even = job
     if options.places is None:
         job, swept = _refined(job, swept)
         places, ways = job.places, job.ways
@@ -297,7 +298,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     if train.known:
         asked |= {"adequacy_factor": float(factor[k]), "train": train.name, "live_load_factor": live}
     if options.serviceability is not None:
-        asked |= _permissible(context, options, options.serviceability, job, strip)
+        asked |= _permissible(context, options, options.serviceability, even, strip)
     if job.associated and friction is not None:
         asked["dilating_joints"] = reduced.dilating(mechanism)
     r = out.MovingLoad(
@@ -400,7 +401,10 @@ def _permissible(context: Context, options: MovingLoad, service: Serviceability,
     given, live = train_of(options, assembly.depth), service.live * options.factors.dynamic * strip
     train = replace(job.train, forces=given.forces * live, even=given.even * (1.0, 1.0, live))
     one = replace(job, assembly=assembly, friction=friction, strength=stress, dead=dead, train=train)
-    factor = sweep(context, "permissible", one, len(one.places), "permissible limit state", slow=True).whole()["factor"]
+    swept = {"factor": sweep(context, "permissible", one, len(one.places), "permissible limit state", slow=True).whole()["factor"]}
+    if options.places is None:
+        one, swept = _refined(one, swept)
+    factor = swept["factor"]
     k = int(factor.argmin())
     return found | {"permissible_factor": float(factor[k]), "permissible_place_m": float(one.places[k])}
 
@@ -440,24 +444,53 @@ def _crossing(count: int, first: float, last: float, span: float) -> np.ndarray:
 
 
 def _refined(job: Places, swept: dict[str, np.ndarray]) -> tuple[Places, dict[str, np.ndarray]]:
-    """Further places around those of least factor: the intervals beside each are halved, and those beside the least of them again."""
+    """Further places around those of least factor: the intervals beside each are halved, and those beside the least of them again.
+
+    Without fill the factor jumps where an axle goes from one block to the next: then also a hair before and behind each such place.
+    """
+    widest = 1.01 * max(np.median(np.abs(np.diff(job.places[job.ways == way]))) if (job.ways == way).sum() > 1 else 0.0 for way in (1, -1))
     for _ in range(HALVINGS):
-        more: list[tuple[float, float]] = []
-        for way in np.unique(job.ways):
-            own = np.flatnonzero(job.ways == way)
-            own = own[np.argsort(job.places[own])]
-            place, factor = job.places[own], np.concatenate([[np.inf], swept["factor"][own], [np.inf]])
-            low = np.flatnonzero((factor[1:-1] <= np.minimum(factor[:-2], factor[2:])) & (factor[1:-1] <= NEARLY * swept["factor"].min()))
-            beside = np.unique([k for i in low for k in (i - 1, i) if 0 <= k < len(place) - 1])
-            more += [(0.5 * (place[k] + place[k + 1]), way) for k in beside if np.isfinite(swept["factor"]).any()]
-        if not more:
-            break
-        found = replace(job, places=np.array([x for x, _ in more]), ways=np.array([way for _, way in more])).run(0, len(more), 1)
-        job = replace(job, places=np.append(job.places, [x for x, _ in more]), ways=np.append(job.ways, [way for _, way in more]))
-        order = np.lexsort((job.ways * job.places, -job.ways))
-        job = replace(job, places=job.places[order], ways=job.ways[order])
-        swept = {name: np.concatenate([values, found[name]])[order] for name, values in swept.items()}
+        more = [(0.5 * (low + high), way) for low, high, way in _lowest(job, swept["factor"], widest)]
+        job, swept = _with_places(job, swept, more)
+    if job.assembly.earth is None:
+        _, x1, block = job.pieces
+        ends = x1[:-1][np.diff(block) != 0]
+        at = [(ends[:, None] + way * job.train.axles).ravel() for way in (1.0, -1.0)]
+        hair = 1e-6 * (job.span[1] - job.span[0])
+        more = [
+            (place + side * hair, way)
+            for low, high, way in _lowest(job, swept["factor"], widest)
+            for place in at[0 if way > 0 else 1]
+            if low < place < high
+            for side in (-1.0, 1.0)
+        ]
+        job, swept = _with_places(job, swept, more[:MOST_PLACES])
     return job, swept
+
+
+def _lowest(job: Places, factor: np.ndarray, widest: float) -> list[tuple[float, float, float]]:
+    """Intervals of places (from, to [m], way) beside the local minima that are near to the least; those wider than `widest` carry no load."""
+    found = []
+    for way in np.unique(job.ways):
+        own = np.flatnonzero(job.ways == way)
+        own = own[np.argsort(job.places[own])]
+        place, padded = job.places[own], np.concatenate([[np.inf], factor[own], [np.inf]])
+        low = np.flatnonzero((padded[1:-1] <= np.minimum(padded[:-2], padded[2:])) & (padded[1:-1] <= NEARLY * factor.min()))
+        beside = sorted({int(k) for i in low for k in (i - 1, i) if 0 <= k < len(place) - 1}) if np.isfinite(factor).any() else []
+        found += [(place[k], place[k + 1], float(way)) for k in beside if place[k + 1] - place[k] <= widest]
+    return found
+
+
+def _with_places(job: Places, swept: dict[str, np.ndarray], more: list[tuple[float, float]]) -> tuple[Places, dict[str, np.ndarray]]:
+    """The job and its rows with further places (place [m], way), in the order in which the train passes them."""
+    if not more:
+        return job, swept
+    places, ways = np.array(more).T
+    found = replace(job, places=places, ways=ways).run(0, len(more), 1)
+    places, ways = np.append(job.places, places), np.append(job.ways, ways)
+    order = np.lexsort((ways * places, -ways))
+    swept = {name: np.concatenate([values, found[name]])[order] for name, values in swept.items()}
+    return replace(job, places=places[order], ways=ways[order]), swept
 
 
 def _standing(job: Places, k: int, worst: Collapse) -> np.ndarray:
