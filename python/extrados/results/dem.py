@@ -39,7 +39,7 @@ class Variation(ResultModel):
     outcome: str = fact("outcome: at-rest, slid, rocked or collapse; or the reason why this run is not reliable")
     peak_rotation_rad: float = fact("greatest rotation of any block", "rad")
     bounces: int = fact("number of times that blocks separated from the ground or from each other")
-    airborne_time_s: float = fact("longest time during which a block had no contact", "s")
+    airborne_time_s: float = fact("total time without contact, the greatest of all blocks", "s")
     peak_slip_m: float = fact("greatest slip of the joints that are still in contact", "m")
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
 
@@ -127,7 +127,7 @@ class BlocksRun(KindResults):
     joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
     energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
     bounces: int = fact("number of times that blocks separated from the ground or from each other")
-    airborne_time_s: float = fact("longest time during which a block had no contact", "s")
+    airborne_time_s: float = fact("total time without contact, the greatest of all blocks", "s")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )

@@ -12,9 +12,9 @@ from extrados.results.model import Array
 from extrados.schema.constants import GRAVITY
 
 MOST_PAIRS = 20  # of results
-#: A block is carried by contacts formed later if its pairs are without force for so many times its longest flight and so long [s]:
-#: impacts between output times are not seen
-MARGIN, LEAST_SPAN = 2.0, 0.1
+#: A block is carried by contacts formed later if its pairs are without force for so much longer than all of its flights together [s]:
+#: contact between output times is not seen
+LEAST_SPAN = 0.1
 
 
 def reactions(model: Model | SolidModel, run: dem_run.FoundRun) -> np.ndarray:
@@ -65,14 +65,15 @@ def _anchor_places(model: Model | SolidModel, run: dem_run.FoundRun, ties: dem_r
 
 
 def carried_elsewhere(model: Model | SolidModel, run: dem_run.FoundRun) -> list[str]:
-    """Names of the blocks that rest on contacts formed later, such as those with a floor: all of its pairs as drawn are without force for
-    longer than it ever was without contact."""
+    """Names of the blocks that rest on contacts formed later, such as those with a floor: all of its pairs as drawn are without force
+    for longer than all of its time without contact."""
     loaded = (run.joint_force != 0.0).any(axis=2)
     found = []
     for k in range(model.count):
         when = run.time[loaded[:, (run.joint_body == k).any(axis=1)].any(axis=1)]
         bounds = np.concatenate([run.time[:1], when, run.time[-1:]])
-        if np.diff(bounds).max(initial=0.0) > MARGIN * float(run.airborne[k]) + LEAST_SPAN:
+        steps = 2.0 * float(np.diff(run.time).max(initial=0.0))
+        if np.diff(bounds).max(initial=0.0) > float(run.airborne[k]) + steps + LEAST_SPAN:
             found.append(model.body_names[k])
     return found
 

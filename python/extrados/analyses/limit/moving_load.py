@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import dataclass, replace
+from typing import NoReturn
 
 import numpy as np
 
@@ -93,8 +94,8 @@ class Places:
     def collapse(self, k: int) -> Collapse | None:
         """Collapse under the train; None where it brings nothing down.
 
-        Even loads that stand only where they are adverse, and the mechanism that they belong to, are found in turn: each step
-        lessens the factor of its start, and the least of all counts.
+        Even loads only on adverse lengths, and the mechanism that they belong to, are found in turn until a pattern repeats, or
+        PATTERNS are tried; the least factor counts.
         """
         axles, (force, x, block) = self._axles(k), self._even(k)
         best: Collapse | None = None
@@ -283,9 +284,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         capacity = factor * options.force * factors.live * factors.dynamic
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
-        if not any(train.within(low, high, place if way > 0 else low + high - place) for place, way in zip(places, ways, strict=True)):
-            raise Refused(f"places: the loads do not act on the {structure.word} at any of these positions", ("analysis", "places"))
-        raise Refused(f"no load of this kind causes collapse of the {structure.word}, because such loads only compress the joints", WHOLE)
+        _refuse_unlimited(structure.word, job, train)
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
         raise NoAnswer(f"the load at {places[k]:.4g} m causes collapse in the sweep, but not in the second calculation at this position")
@@ -378,6 +377,14 @@ def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heav
             np.cumsum([0, *map(len, chains)]), ("chain_edge",), "", "index of the first joint of each chain; the last value is the end"
         ),
     }
+
+
+def _refuse_unlimited(word: str, job: Places, train: Train) -> NoReturn:
+    """Say why no position limits the load: none has a load on the structure, or loads only compress it."""
+    low, high = job.span
+    if not any(train.within(low, high, place if way > 0 else low + high - place) for place, way in zip(job.places, job.ways, strict=True)):
+        raise Refused(f"places: the loads do not act on the {word} at any of these positions", ("analysis", "places"))
+    raise Refused(f"no load of this kind causes collapse of the {word}, because such loads only compress the joints", WHOLE)
 
 
 def _permissible(context: Context, options: MovingLoad, service: Serviceability, job: Places, strip: float) -> dict[str, object]:
