@@ -205,7 +205,10 @@ def plane_mortar(one: Assembly, friction: float, cohesion: float, tension: float
             right.append(cohesion * area[j])
     bounds = [b for a in area for b in ((-0.5 * tension * a, None), (-0.5 * tension * a, None), (None, None))] + [(None, None)]
     cost = np.append(np.zeros(3 * joints), -1.0)
-    found = linprog(cost, A_ub=np.array(limits), b_ub=right, A_eq=columns, b_eq=-dead, bounds=bounds, method="highs")
+    unit = float(weight.sum())  # forces of the order of one
+    bounds = [tuple(None if side is None else side / unit for side in pair) for pair in bounds]
+    columns[:, -1] /= unit
+    found = linprog(cost, A_ub=np.array(limits), b_ub=np.array(right) / unit, A_eq=columns, b_eq=-dead / unit, bounds=bounds, method="highs")
     assert found.status == 0
     return -float(found.fun)
 
