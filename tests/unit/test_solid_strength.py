@@ -208,7 +208,9 @@ def plane_mortar(one: Assembly, friction: float, cohesion: float, tension: float
     unit = float(weight.sum())  # forces of the order of one
     bounds = [tuple(None if side is None else side / unit for side in pair) for pair in bounds]
     columns[:, -1] /= unit
-    found = linprog(cost, A_ub=np.array(limits), b_ub=np.array(right) / unit, A_eq=columns, b_eq=-dead / unit, bounds=bounds, method="highs")
+    found = linprog(
+        cost, A_ub=np.array(limits), b_ub=np.array(right) / unit, A_eq=columns, b_eq=-dead / unit, bounds=bounds, method="highs"
+    )
     assert found.status == 0
     return -float(found.fun)
 
