@@ -56,5 +56,5 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
             raise error from None
         return solids_of_section(building)
     single, remarks = without_doubles(stones, tolerance)
-    made = assemble(single, tolerance, drawing.foundation_levels, name)
+    made = assemble(single, tolerance, drawing.foundation_levels, name, mortar=drawing.mortar_gap or 0.0)
     return replace(made, remarks=(*remarks, *made.remarks))

@@ -8,9 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from extrados.model.errors import BadGeometry
+from extrados.model.geometry.mortar import closed, told
+from extrados.model.geometry.snapping import snapped
 from extrados.model.geometry.solids.contacts import GROUND, Touching, slant, touching
 from extrados.model.geometry.solids.polyhedra import Polyhedron, inertia_of, moments
-from extrados.model.geometry.solids.snapping import snapped
 
 MOST_SOLIDS = 20000
 ROUNDING = 1e-9  # of the size: corners that would move by less stay
@@ -154,6 +155,7 @@ def assemble(
     ground: Sequence[float] | None = None,
     what: str = "structure",
     seats: Sequence[tuple[int, np.ndarray]] = (),
+    mortar: float = 0.0,
 ) -> SolidAssembly:
     """Blocks on the ground with the contacts found among them.
 
@@ -161,7 +163,8 @@ def assemble(
     where it is narrower; None for a structure made by rule.
     ground: heights [m] at which every level sole that no stone bears stands on the ground; None for the lowest of all,
     unless some stones are the ground themselves, or there are seats. seats: faces that stand on the ground whichever way
-    they look, as springings do: a block and corners (k, 3), counter-clockwise from within it. BadGeometry tells overlaps, and stones that touch nothing, in words.
+    they look, as springings do: a block and corners (k, 3), counter-clockwise from within it. mortar [m]: joints up to that wide
+    are closed by moving both faces to their middle. BadGeometry tells overlaps, and stones that touch nothing, in words.
     """
     if len(stones) > MOST_SOLIDS:
         raise BadGeometry(f"{what}: {len(stones)} solids exceed the limit of {MOST_SOLIDS}")
@@ -176,18 +179,21 @@ def assemble(
     size = float(np.ptp(ends, axis=0).max())
     close = EXACT * size if tolerance is None else tolerance
     near = min(NEARLY * close, max(WIDE, 2.0 * close))
+    notes: tuple[str, ...] = ()
+    if mortar > 0.0:
+        parts, notes = _with_closed_joints(parts, owner, mortar, close)
     drawn = found = touching(parts, owner, close, near)
     free = len(blocks) == len(stones) and not seats
     levels = ground if ground is not None else ([_lowest(parts, owner < len(blocks), close)] if free else [])
-    notes: tuple[str, ...] = ()
     moved = 0.0
     if tolerance is not None and not found.overlaps:
         order = np.argsort(found.apart, kind="stable").tolist()
         on_ground = _soles(parts, owner, len(blocks), levels, close, found)
-        fitting, moved = snapped(parts, [found.faces[j] for j in order], on_ground, close)
+        places, moved = snapped(parts, [found.faces[j] for j in order], on_ground, close)
         if moved > ROUNDING * size:
-            parts, found = fitting, touching(fitting, owner, close, near)
-            notes = (
+            parts = [Polyhedron(vertices, part.faces) for vertices, part in zip(places, parts, strict=True)]
+            found = touching(parts, owner, close, near)
+            notes += (
                 f"Corners were moved by up to {1e3 * moved:.3g} mm (contact_tolerance {1e3 * close:.3g} mm) onto the planes of their faces",
             )
     last = np.cumsum([len(s.parts) for s in blocks])
@@ -227,6 +233,18 @@ def assemble(
         deviation=moved,
     )
     return made
+
+
+def _with_closed_joints(
+    parts: Sequence[Polyhedron], owner: np.ndarray, mortar: float, close: float
+) -> tuple[list[Polyhedron], tuple[str, ...]]:
+    """Parts whose faces across joints of mortar [m] meet in the middle of these, and a note on the joints."""
+    met = touching(parts, owner, close, mortar + close, mortar + close)
+    gaps = np.array(met.apart)
+    places = closed(parts, met.faces, gaps, mortar, close)
+    grown = [Polyhedron(vertices, part.faces) for vertices, part in zip(places, parts, strict=True)]
+    volumes = [sum(moments(part.vertices, part.triangles)[0] for part in those) for those in (parts, grown)]
+    return grown, told(gaps[gaps > close], mortar, volumes[1] / volumes[0])
 
 
 def joint_names(names: Sequence[str], a: np.ndarray, b: np.ndarray, normal: np.ndarray) -> list[str]:
@@ -311,7 +329,9 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     near = {k: gap for one, two, gap in met.gaps for k in (one, two)}
     narrow = _widest(met.slivers)
     for k in lonely[:MOST_TOLD]:
-        told = f"; the nearest face is {1e3 * near[k]:.3g} mm away: contact_tolerance" if k in near else ""
+        told = (
+            f"; the nearest face is {1e3 * near[k]:.3g} mm away: contact_tolerance, or mortar_gap for joints of mortar" if k in near else ""
+        )
         if k in narrow:
             told = (
                 f": the width of its widest contact is {1e3 * narrow[k]:.3g} mm, less than {1e3 * close:.3g} mm{cure}, so this "
@@ -335,7 +355,7 @@ def _nearly(names: Sequence[str], gaps: Sequence[tuple[int, int, float]]) -> tup
     return (
         (
             f"{len(gaps)} pairs of blocks have faces that nearly touch but form no contact. They are at most {1e3 * gap:.3g} "
-            f"mm apart ({names[one]} and {other}); contact_tolerance closes them"
+            f"mm apart ({names[one]} and {other}); contact_tolerance closes them, or mortar_gap if they are joints of mortar"
         ),
     )
 
