@@ -17,7 +17,7 @@ from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.drawing import Drawing, Polygon
 from extrados.model.geometry.inspection import inspect
 from extrados.model.geometry.polygons import signed_area
-from extrados.model.geometry.solids.assembly import SolidAssembly, Stone, assemble
+from extrados.model.geometry.solids.assembly import SolidAssembly, Stone, assemble, with_closed_joints
 from extrados.model.geometry.solids.meshes import read_obj, stones_of
 from extrados.model.geometry.solids.polyhedra import Polyhedron, cut
 from extrados.model.structures.arch import make_arch
@@ -82,19 +82,20 @@ def test_a_corner_with_joints_of_mortar(gap: float, noise: float, within: float)
     tolerance = max(4.0 * noise, 1e-4)
     text = obj(parted_solids(assemble(corner()), gap), noise, 1)
     stones = stones_of(read_obj(text, "w.obj"), 2000.0, None, "w.obj", tolerance)
-    made = assemble(stones, tolerance, mortar=gap + 2.0 * noise)
+    grown, notes = with_closed_joints(stones, gap + 2.0 * noise, tolerance)
+    made = assemble(grown, tolerance)
     assert len(made.a) == 55 and pushed(made, 90.0, 270.0) == pytest.approx(CLEAN, rel=within)
     assert made.mass.sum() == pytest.approx(assemble(corner()).mass.sum(), rel=1e-3)
-    assert made.notes[0].startswith("48 joints drawn as gaps of ") and "The volume of the blocks increased by" in made.notes[0]
+    assert notes[0].startswith("48 joints drawn as gaps of ") and "The volume of the blocks increased by" in notes[0]
     with pytest.raises(BadGeometry, match="touches neither"):
-        assemble(stones, tolerance, mortar=0.5 * gap)
+        assemble(with_closed_joints(stones, 0.5 * gap, tolerance)[0], tolerance)
 
 
 def test_a_drawing_without_gaps_stays() -> None:
     stones = corner()
-    made = assemble(stones, 1e-4, mortar=0.01)
-    assert made.notes == ("mortar_gap 10 mm: no joint is drawn as a gap",)
-    assert all((one.vertices == two.parts[0].vertices).all() for one, two in zip(made.parts, stones, strict=True))
+    made, notes = with_closed_joints(stones, 0.01, 1e-4)
+    assert notes == ("mortar_gap 10 mm: no joint is drawn as a gap",)
+    assert all((one.parts[0].vertices == two.parts[0].vertices).all() for one, two in zip(made, stones, strict=True))
 
 
 def test_a_deck_of_stones_in_mortar(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -155,7 +155,6 @@ def assemble(
     ground: Sequence[float] | None = None,
     what: str = "structure",
     seats: Sequence[tuple[int, np.ndarray]] = (),
-    mortar: float = 0.0,
 ) -> SolidAssembly:
     """Blocks on the ground with the contacts found among them.
 
@@ -163,8 +162,7 @@ def assemble(
     where it is narrower; None for a structure made by rule.
     ground: heights [m] at which every level sole that no stone bears stands on the ground; None for the lowest of all,
     unless some stones are the ground themselves, or there are seats. seats: faces that stand on the ground whichever way
-    they look, as springings do: a block and corners (k, 3), counter-clockwise from within it. mortar [m]: joints up to that wide
-    are closed by moving both faces to their middle. BadGeometry tells overlaps, and stones that touch nothing, in words.
+    they look, as springings do: a block and corners (k, 3), counter-clockwise from within it. BadGeometry tells overlaps, and stones that touch nothing, in words.
     """
     if len(stones) > MOST_SOLIDS:
         raise BadGeometry(f"{what}: {len(stones)} solids exceed the limit of {MOST_SOLIDS}")
@@ -179,12 +177,10 @@ def assemble(
     size = float(np.ptp(ends, axis=0).max())
     close = EXACT * size if tolerance is None else tolerance
     near = min(NEARLY * close, max(WIDE, 2.0 * close))
-    notes: tuple[str, ...] = ()
-    if mortar > 0.0:
-        parts, notes = _with_closed_joints(parts, owner, mortar, close)
     drawn = found = touching(parts, owner, close, near)
     free = len(blocks) == len(stones) and not seats
     levels = ground if ground is not None else ([_lowest(parts, owner < len(blocks), close)] if free else [])
+    notes: tuple[str, ...] = ()
     moved = 0.0
     if tolerance is not None and not found.overlaps:
         order = np.argsort(found.apart, kind="stable").tolist()
@@ -193,7 +189,7 @@ def assemble(
         if moved > ROUNDING * size:
             parts = [Polyhedron(vertices, part.faces) for vertices, part in zip(places, parts, strict=True)]
             found = touching(parts, owner, close, near)
-            notes += (
+            notes = (
                 f"Corners were moved by up to {1e3 * moved:.3g} mm (contact_tolerance {1e3 * close:.3g} mm) onto the planes of their faces",
             )
     last = np.cumsum([len(s.parts) for s in blocks])
@@ -235,16 +231,18 @@ def assemble(
     return made
 
 
-def _with_closed_joints(
-    parts: Sequence[Polyhedron], owner: np.ndarray, mortar: float, close: float
-) -> tuple[list[Polyhedron], tuple[str, ...]]:
-    """Parts whose faces across joints of mortar [m] meet in the middle of these, and a note on the joints."""
-    met = touching(parts, owner, close, mortar + close, mortar + close)
+def with_closed_joints(stones: Sequence[Stone], mortar: float, tolerance: float) -> tuple[list[Stone], tuple[str, ...]]:
+    """Stones whose faces across joints of mortar, up to that wide [m], meet in the middle of these, and a note on the joints. Gaps within
+    the tolerance [m] stay."""
+    parts = [part for stone in stones for part in stone.parts]
+    owner = np.repeat(np.arange(len(stones)), [len(s.parts) for s in stones])
+    met = touching(parts, owner, tolerance, mortar + tolerance, mortar + tolerance)
     gaps = np.array(met.apart)
-    places = closed(parts, met.faces, gaps, mortar, close)
+    places = closed(parts, met.faces, gaps, mortar, tolerance)
     grown = [Polyhedron(vertices, part.faces) for vertices, part in zip(places, parts, strict=True)]
     volumes = [sum(moments(part.vertices, part.triangles)[0] for part in those) for those in (parts, grown)]
-    return grown, told(gaps[gaps > close], mortar, volumes[1] / volumes[0])
+    made = [replace(stone, parts=[grown[k] for k in np.flatnonzero(owner == i)]) for i, stone in enumerate(stones)]
+    return made, told(gaps[gaps > tolerance], mortar, volumes[1] / volumes[0])
 
 
 def joint_names(names: Sequence[str], a: np.ndarray, b: np.ndarray, normal: np.ndarray) -> list[str]:
