@@ -30,7 +30,7 @@ def section_of_meshes(meshes: Sequence[Mesh], plane: Plane, unit: str | None, na
     scale, axes = UNITS[unit or "m"], ["xyz".index(letter) for letter in plane]
     (across,) = {0, 1, 2} - set(axes)
     if flat_plane(meshes) is not None:
-        blocks = []
+        blocks: list[Polygon] = []
         for mesh in meshes:
             pieces = [[face] for face in mesh.faces] if UNNAMED.fullmatch(mesh.stone) else [mesh.faces]
             for face in pieces:
