@@ -190,6 +190,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       tell("scene", words.opened === true, entry?.when);
       follow();
       if (words.to !== "hello") say(words.limit ?? "");
+      else if (!entry?.message.kept && app.handles.length) say(tr`Drag a circle or a diamond of the drawing to change a size.`);
       rest();
     }
     else if (words.to === "set" && words.deck) { // a motion alone has changed
