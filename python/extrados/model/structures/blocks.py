@@ -13,6 +13,7 @@ from extrados.model.errors import BadGeometry, NoView
 from extrados.model.files import LARGEST_FILE, read
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import with_chains
+from extrados.model.geometry.clouds import CLOUDS
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.contacts import MOST_NEIGHBOURS, box_pairs, shortest_joint
 from extrados.model.geometry.drawing import Drawing, Layer, Plane, Polygon, parsed, read_json
@@ -24,6 +25,7 @@ from extrados.model.geometry.solids.flat import flat_plane, section_of_meshes
 from extrados.model.geometry.solids.meshes import read_meshes
 from extrados.model.structure import Structure
 from extrados.model.structures.earthwork import Fill, Spandrels, Surfacing, covered, refuse_without_fill
+from extrados.model.structures.scan import Scan
 from extrados.schema.constants import IN_SPACE
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
@@ -139,7 +141,8 @@ class Blocks(Structure):
     kind: Literal["blocks"]
     file: str | None = key(
         None,
-        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; or solids as OBJ, STL or COMPAS JSON",
+        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; solids as OBJ, STL or COMPAS JSON; or, with "
+        "[structure.scan], a point cloud as PLY, XYZ, LAS or LAZ",
         max_length=500,
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
@@ -191,6 +194,7 @@ class Blocks(Structure):
         le=0.1,
     )
     depth: Length | None = key(None, "depth out of plane; default: that of the file, otherwise 1 m", gt=0)
+    scan: Scan | None = key(None, "courses of a point cloud, by which the scanned wall or barrel is cut into blocks")
     fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level above the highest block")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
     spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, considered by their weight")
@@ -205,6 +209,8 @@ class Blocks(Structure):
         for i, block in enumerate(self.block or []):
             if any(len(point) != 2 for point in block.points):
                 raise ValueError(f"block {i + 1}: a vertex does not have the form [x, y]")
+        if (self.scan is None) == (self.file is not None and self.file.lower().endswith(CLOUDS)):
+            raise ValueError(f"scan: the table [structure.scan] belongs to a file with a point cloud ({', '.join(CLOUDS)})")
         refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         names = [layer.name.upper() for layer in self.layer]
         if len(set(names)) < len(names):
@@ -227,13 +233,15 @@ class Blocks(Structure):
             return drawing, None
         if self.section is not None and sort not in SOLID:
             raise BadGeometry(f"{self.file}: the key `section` is for .dxf, .obj and .stl files", ("structure", "section"))
+        if sort in CLOUDS:
+            raise NoView(f"{self.file} contains a point cloud, which has no plane section; {IN_SPACE}", ("structure", "file"))
         if sort in SOLID:
             meshes = read_meshes(file)
             if plane := self.section or flat_plane(meshes):
                 return section_of_meshes(meshes, plane, self.unit, file.path.name)
             raise NoView(f"{self.file} contains solids, which have no plane section; {IN_SPACE}", ("structure", "file"))
         if sort != ".json":
-            raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")
+            raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file, or a point cloud ({', '.join(CLOUDS)})")
         if self.layers is not None or self.layer:
             raise BadGeometry(f"{self.file}: this file has no layers; layers belong to drawings (.dxf)")
         if is_compas(value := parsed(file)):

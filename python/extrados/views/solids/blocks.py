@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.files import LARGEST_FILE, read
+from extrados.model.geometry.clouds import read_cloud
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.drawing import UNITS, parsed
 from extrados.model.geometry.solids.assembly import SolidAssembly, assemble, with_closed_joints
@@ -28,6 +29,10 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
     sort = "" if file is None else file.path.suffix.lower()
     if file is not None and sort == ".json":
         value = parsed(file)
+    if file is not None and drawing.scan is not None:
+        points = read_cloud(file, UNITS[drawing.unit or "m"])
+        points = points @ Y_UP.T if drawing.up == "y" else points
+        return drawing.scan.solids(points, building.material.density, file.path.name)
     if file is None or not (sort in SOLID or is_compas(value)):
         if drawing.up is not None:
             raise BadGeometry("the key `up` is only for files of solids (OBJ, STL, COMPAS JSON)", ("structure", "up"))
