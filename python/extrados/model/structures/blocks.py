@@ -22,7 +22,7 @@ from extrados.model.geometry.inspection import Inspection, areas, inspect, refus
 from extrados.model.geometry.linework import MOST_PAIRS
 from extrados.model.geometry.polygons import properties
 from extrados.model.geometry.solids.flat import flat_plane, section_of_meshes
-from extrados.model.geometry.solids.meshes import read_meshes
+from extrados.model.geometry.solids.meshes import MODELS, read_meshes
 from extrados.model.structure import Structure
 from extrados.model.structures.earthwork import Fill, Spandrels, Surfacing, covered, refuse_without_fill
 from extrados.model.structures.scan import Scan
@@ -30,7 +30,7 @@ from extrados.schema.constants import IN_SPACE
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
 
-SOLID = (".obj", ".stl")  # files of solids, which have no plane section
+SOLID = (".obj", ".stl", *MODELS)  # files of solids, which have no plane section
 SMALL = 1e-4  # of the size of solids: the greatest tolerance that is a default
 MARKS = 0.01  # m: how far a line that marks joints may lie from their middles
 
@@ -141,7 +141,7 @@ class Blocks(Structure):
     kind: Literal["blocks"]
     file: str | None = key(
         None,
-        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; solids as OBJ, STL or COMPAS JSON; or, with "
+        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; solids as OBJ, STL, glTF (GLB), IFC or COMPAS JSON; or, with "
         "[structure.scan], a point cloud as PLY, XYZ, LAS or LAZ",
         max_length=500,
     )
@@ -149,7 +149,8 @@ class Blocks(Structure):
         None, "unit of a file that gives none (DXF without $INSUNITS, COMPAS, OBJ, STL)"
     )
     up: Literal["y", "z"] | None = key(
-        None, "axis that points up in a file of solids; default z. With y, the x axis remains and the z axis of the file becomes -y"
+        None,
+        "axis that points up in a file of solids; default z, for glTF y. With y, the x axis remains and the z axis of the file becomes -y",
     )
     section: Plane | None = key(
         None,
@@ -232,7 +233,7 @@ class Blocks(Structure):
             drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine, self.section)
             return drawing, None
         if self.section is not None and sort not in SOLID:
-            raise BadGeometry(f"{self.file}: the key `section` is for .dxf, .obj and .stl files", ("structure", "section"))
+            raise BadGeometry(f"{self.file}: the key `section` is for .dxf files and files of solids", ("structure", "section"))
         if sort in CLOUDS:
             raise NoView(f"{self.file} contains a point cloud, which has no plane section; {IN_SPACE}", ("structure", "file"))
         if sort in SOLID:
@@ -241,7 +242,7 @@ class Blocks(Structure):
                 return section_of_meshes(meshes, plane, self.unit, file.path.name)
             raise NoView(f"{self.file} contains solids, which have no plane section; {IN_SPACE}", ("structure", "file"))
         if sort != ".json":
-            raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file, or a point cloud ({', '.join(CLOUDS)})")
+            raise BadGeometry(f"{self.file}: expected a .json, .dxf or {', '.join(SOLID)} file, or a point cloud ({', '.join(CLOUDS)})")
         if self.layers is not None or self.layer:
             raise BadGeometry(f"{self.file}: this file has no layers; layers belong to drawings (.dxf)")
         if is_compas(value := parsed(file)):

@@ -16,6 +16,7 @@ from extrados.model.structures.blocks import SMALL, SOLID, Blocks
 from extrados.views.blocks import Masonry
 from extrados.views.solids.sections import solids_of_section
 
+Y_FORMATS = (".glb", ".gltf")  # by their standard
 #: Axes of a file whose y points up
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
@@ -47,7 +48,7 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         )
     if drawing.fill is not None:
         raise BadGeometry(f"{name}: the key `fill` is only for plane drawings", ("structure", "fill"))
-    if drawing.up == "y":
+    if (drawing.up or ("y" if sort in Y_FORMATS else "z")) == "y":
         meshes = [replace(mesh, points=mesh.points @ Y_UP.T) for mesh in meshes]
     tolerance = drawing.contact_tolerance
     if "contact_tolerance" not in drawing.model_fields_set:
