@@ -100,7 +100,10 @@ def walls_deflect_within_their_rigid_mechanism(deck: Deck, within: float) -> Non
     must(len(rows) == len(deck["structure"]["walls"]), f"{len(rows)} walls")
     for row in rows:
         at_most(f"wall '{row.wall}'", row.acceleration_g, max(row.rigid_acceleration_g, 0.0), within)
-        must(row.reached and (row.acceleration_g > 0.0 or row.rigid_acceleration_g < 0.02), f"wall '{row.wall}': {row.acceleration_g} g, {row.deflection_m} m")
+        must(
+            row.reached and (row.acceleration_g > 0.0 or row.rigid_acceleration_g < 0.02),
+            f"wall '{row.wall}': {row.acceleration_g} g, {row.deflection_m} m",
+        )
 
 
 @relation("frame-pushover", st.tuples(plans(), number(5.0, 85.0, 8)), 1e-4, share=0.3)
