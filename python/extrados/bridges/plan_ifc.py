@@ -50,7 +50,10 @@ def parse_ifc(content: bytes) -> dict[str, Any]:
         import ifcopenshell
     except ImportError:
         raise Unreadable("needs the extra ifc: pip install extrados[ifc]") from None
-    model = ifcopenshell.file.from_string(content.decode("utf-8", "replace"))
+    try:
+        model = ifcopenshell.file.from_string(content.decode("utf-8", "replace"))
+    except RuntimeError as error:
+        raise Unreadable(f"no IFC model of a schema that ifcopenshell reads, such as IFC2X3 or IFC4: {error}") from None
     scale = _scale(model)
     elevations = sorted({round(scale * float(s.Elevation or 0.0), 4) for s in model.by_type("IfcBuildingStorey")})
     walls, left, cut = [], 0, 0
