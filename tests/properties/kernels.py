@@ -109,14 +109,14 @@ TURNS = st.tuples(number(-180.0, 180.0), number(-180.0, 180.0), number(-180.0, 1
 
 @relation("dem", st.lists(st.tuples(SIZES, SIZES, TURNS, TURNS, MOTION, WAYS), min_size=6, max_size=6), 0.0, share=2.0)
 def blows_in_space(cases: list, within: float) -> None:
-    """Two free boxes that hit each other by corners, edges or faces keep both momenta, and lose what the ledger says; the ledger of two
-    of six may be off, as the runs then say or end by, or their energy depend on the order of the boxes, where a patch of contact jumps."""
-    off = [case for case in cases if not _keeps_its_ledger(*case)]
-    must(len(off) <= 2, f"the ledger does not close for {off}")
+    """Two free boxes that hit each other by corners, edges or faces keep both momenta, and lose what the ledger says, whichever is
+    named first."""
+    for case in cases:
+        _keeps_its_ledger(*case)
 
 
-def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, motion: tuple, how: dict) -> bool:
-    """Whether a blow loses what the ledger says; Broken where it does not keep momentum."""
+def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, motion: tuple, how: dict) -> None:
+    """Broken where a blow does not keep momentum, or does not lose what the ledger says."""
     speed, spin_a, spin_b, aside = motion
     way = np.array([1.0, 0.0, 0.0])
     first, second = (
@@ -127,7 +127,7 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
     corner_a, corner_b = first.vertices[first.vertices[:, 0].argmax()], second.vertices[second.vertices[:, 0].argmin()]
     shift = np.array([gap, *(corner_a - corner_b)[1:]]) + aside * 0.3 * np.array([0.0, 1.0, 0.6])
     second = second.moved(np.eye(3), shift)
-    found, closes = [], True
+    found = []
     for order in (1, -1):
         parts = [first, second][::order]
         mass, centre, inertia = zip(*(mass_properties([p], 2000.0) for p in parts), strict=True)
@@ -145,8 +145,6 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
             residual_limit=10.0,
         )
         run = dem3.run(solids, options, rate=rate)
-        if run.reason == "blow-up":
-            return False
         must(run.reason == "end", run.reason)
         v, place, turn = run.rate, run.place, run.turn
         about = turn @ np.array(inertia) @ np.swapaxes(turn, -1, -2)
@@ -162,14 +160,13 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
         left = run.energy["kinetic"] + run.energy["elastic"] + run.energy["friction"] + run.energy["damping"]
         if how["rigid"]:  # in the midst of a rebound half of its impulse is booked
             left = left[[0, -1]]
-        closes &= bool(np.abs(left - left[0]).max() < 0.03 * kinetic[0] and kinetic[-1] < 1.01 * kinetic[0])
+        near("ledger", left, np.full(len(left), left[0]), 0.03, kinetic[0])
+        at_most("kinetic energy", kinetic[-1], kinetic[0], 0.01)
         heat = abs(run.energy["friction"][-1]) / kinetic[0]
         must(heat < 1e-3 or how["friction"] > 0.0 or how["rigid"], f"friction loses {heat} without friction")
         found.append((place[-1][::order, :3], kinetic[-1], kinetic[0]))
-    if closes:
-        near("places in another order", found[0][0], found[1][0], 1e-2, 1.0)
-        closes = abs(found[0][1] - found[1][1]) <= 0.05 * found[0][2]
-    return closes
+    near("places in another order", found[0][0], found[1][0], 1e-2, 1.0)
+    near("energy in another order", found[0][1], found[1][1], 0.05, found[0][2])
 
 
 @relation(
