@@ -12,6 +12,7 @@ module sla_continuation
       stop_fraction => sla_stop_fraction, stop_load => sla_stop_load, stop_mechanism => sla_stop_mechanism, &
       stop_none => sla_stop_none
    use common_status, only : status_cancelled, status_ok, status_out_of_memory
+   use sla_bar, only : bar_group
    use sla_coaxial, only : by_secant
    use sla_group, only : friction_group, history_group, point_group, unbounded
    use sla_iterations, only : evaluate, explicit_step, few, growth, implicit_step, is_driven, longest_step, &
@@ -46,6 +47,8 @@ contains
          select type (group => model%mesh%holders(g)%group)
          class is (history_group)
             yes = yes .and. group%continues()
+         class is (bar_group)
+            yes = yes .and. group%is_elastic()
          class is (point_group)
             yes = .false.
          end select

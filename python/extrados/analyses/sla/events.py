@@ -13,7 +13,7 @@ import numpy as np
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.contact import NotCarried, settle
-from extrados.analyses.sla.curve import AXIAL, FALLEN, FAR, FELL, TOO_FAR, envelope, fallen, states
+from extrados.analyses.sla.curve import AXIAL, FALLEN, FAR, FELL, SLID_ALONG, SLID_OFF, TOO_FAR, envelope, fallen, states
 from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, EventModel, SlaModel
@@ -139,7 +139,7 @@ class Curve:
         """Was the greatest load a peak: did the load fall after it, or the structure become a mechanism under it?"""
         if self.peak < 0 or (self.name and not self.force(unit)[self.peak] > 0.0):
             return False  # a stage may begin under a load of the opposite sense and never leave it
-        if self.events.reason in ("mechanism", FELL, AXIAL) or self.flat():
+        if self.events.reason in ("mechanism", FELL, AXIAL, SLID_OFF, SLID_ALONG) or self.flat():
             return True
         return fallen(*self.envelope(unit)) or self.levels_off(unit)
 
@@ -171,7 +171,7 @@ class Curve:
         if events.interrupted:
             return False
         limited = events.reason in (SPENT, "")
-        if len(events) and self.state[-1] and not limited and events.reason not in ("mechanism", AXIAL, DRIFTED):
+        if len(events) and self.state[-1] and not limited and events.reason not in ("mechanism", AXIAL, DRIFTED, SLID_OFF, SLID_ALONG):
             return True
         if left:
             how = "before its target" if limited else "without an equilibrium state from which the run could continue"
@@ -432,6 +432,7 @@ class _Run:
                 self.way.states.append(_state(self.core_model, done - 1, part))
             load = (part.pull if self.model.driven else self.model.already + part.load * self.model.unit)[-1:]
             progress(done, self.options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
+            part.reason = part.reason or self.model.ends(part)
             if part.reason or part.interrupted or not (len(part) or self.core_model.iterates):
                 break
             if time.process_time() > self.ends_at:

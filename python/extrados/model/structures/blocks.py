@@ -175,6 +175,13 @@ class Blocks(Structure):
         gt=0,
         le=0.1,
     )
+    mortar_gap: Length | None = key(
+        None,
+        "greatest thickness of joints that are drawn as gaps. The faces on both sides of such a joint are moved to the middle of the "
+        "gap, so that the blocks touch. Default: gaps beyond contact_tolerance are open",
+        gt=0,
+        le=0.1,
+    )
     depth: Length | None = key(None, "depth out of plane; default: that of the file, otherwise 1 m", gt=0)
     fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level above the highest block")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
@@ -232,7 +239,7 @@ class Blocks(Structure):
                 loose=tuple(((x - corner[0], y - corner[1]), gap) for (x, y), gap in drawing.loose),
             )
         ground = None if self.ground is None else np.array(self.ground)
-        found = inspect(drawing, ground, self.contact_tolerance, self.foundation_levels, corner)
+        found = inspect(drawing, ground, self.contact_tolerance, self.foundation_levels, corner, self.mortar_gap or 0.0)
         return found, self.depth or depth or 1.0
 
     def inspection(self, folder: Path) -> Inspection | None:

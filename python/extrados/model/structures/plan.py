@@ -145,6 +145,13 @@ class Bed(Table):
     walls: list[str] = key([], "names of the walls through which the joint runs; default: all walls of the storey", max_length=200)
 
 
+class Seat(Table):
+    """Where the ends of a floor rest on its walls, without a connection."""
+
+    length: Length = key(about="length of the bearing across the wall", gt=0)
+    friction: float = key(about="coefficient of friction between floor and wall", gt=0)
+
+
 class StoreyFloor(Table):
     """A floor or roof on top of a storey: a membrane between walls, or joists, and what it carries."""
 
@@ -174,6 +181,11 @@ class StoreyFloor(Table):
     bears_on: list[str] = key(
         [], "walls that carry the load, in proportion to their length; default: all walls around the floor", max_length=100
     )
+    seat: Seat | None = key(
+        None,
+        "seat of the floor on the walls of `bears_on`: the floor is held by friction under its load alone, and slides off where the wall "
+        "moves away by more than the length; considered by shells. Default: the floor is connected to its walls",
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> "StoreyFloor":
@@ -191,6 +203,8 @@ class StoreyFloor(Table):
             raise ValueError(f"a roof of {self.roof} requires load, the weight per area of its slopes, above 0")
         if self.roof == "rafters" and self.kind == "joists":
             raise ValueError("joists tie the two walls: give roof = 'trusses', or another kind of floor")
+        if self.seat is not None and (self.kind == "none" or self.roof is not None or not self.load > 0.0 or not self.bears_on):
+            raise ValueError("seat: expected a level floor of kind 'joists', 'flexible' or 'rigid' with load above 0 and bears_on")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
             raise ValueError(f"walls: wall '{twice[0]}' occurs twice")
         return self

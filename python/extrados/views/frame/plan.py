@@ -286,6 +286,10 @@ class _Maker(Division):
 
     def _floor(self, floor: StoreyFloor) -> None:
         plan, level = self.plan, floor.storey
+        if floor.seat is not None:
+            self.remarks.append(
+                f"Floor on storey {level} is connected to its walls in the frame: its seat cannot slide. `pushover` with shells follows seats."
+            )
         around = plan.around(floor)
         rows = []
         for w, _, s in around:

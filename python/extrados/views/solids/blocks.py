@@ -8,7 +8,7 @@ from extrados.model.errors import BadGeometry, NoView
 from extrados.model.files import LARGEST_FILE, read
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.drawing import UNITS, parsed
-from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
+from extrados.model.geometry.solids.assembly import SolidAssembly, assemble, with_closed_joints
 from extrados.model.geometry.solids.meshes import read_meshes, read_solids, stones_of, without_doubles
 from extrados.model.structures.blocks import SMALL, SOLID, Blocks
 from extrados.views.blocks import Masonry
@@ -56,5 +56,8 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
             raise error from None
         return solids_of_section(building)
     single, remarks = without_doubles(stones, tolerance)
+    notes: tuple[str, ...] = ()
+    if drawing.mortar_gap is not None:
+        single, notes = with_closed_joints(single, drawing.mortar_gap, tolerance)
     made = assemble(single, tolerance, drawing.foundation_levels, name)
-    return replace(made, remarks=(*remarks, *made.remarks))
+    return replace(made, remarks=(*remarks, *made.remarks), notes=(*notes, *made.notes))
