@@ -62,9 +62,8 @@ export function solidPanel(app, stageBox) {
     if (seen.weight_N) rows.push(row(tr`Weight`, quantity(seen.weight_N, "N")));
     rows.push(row(tr`Size`, z === undefined ? `${number(x, 3)} by ${number(y, 3)} m` : `${number(x, 3)} by ${number(y, 3)} by ${number(z, 3)} m`));
     for (const [key, value] of Object.entries(seen.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
-    const parts = [h("p", { class: "verdict" }, OF[seen.of]), h("table", { class: "numbers" }, h("tbody", {}, rows)), h("p", { class: "remark" }, tr`No line of thrust is drawn: ${why}.`)];
+    const parts = [h("p", { class: "verdict" }, OF[seen.of]), h("table", { class: "numbers" }, h("tbody", {}, rows)), about(seen), h("p", { class: "remark" }, tr`No line of thrust is drawn: ${why}.`)];
     for (const text of seen.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
-    parts.push(about(seen));
     if (seen.of === "walls") parts.push(h("div", { class: "row" }, h("button", { class: "first", "data-plan": true, onclick: () => app.plan.begin() }, tr`✎ Draw the plan`)));
     if (seen.of === "solids") {
       parts.push(h("div", { class: "row" }, h("button", { class: "first", onclick: () => { app.say(tr`calculating the capacity …`); app.ask({ do: "push" }); } }, tr`Calculate capacity`), it.push ? h("button", { onclick: () => mechanism() }, tr`▶ Mechanism`) : null));
