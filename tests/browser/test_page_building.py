@@ -303,7 +303,9 @@ def test_a_block_is_clicked_and_the_tolerance_tried(page: Any) -> None:
     told = page.locator("[data-block]").inner_text()
     assert told.startswith("stone ") and " kg" in told and told.count("m²") >= 3, told
     page.screenshot(path=SHOTS / "block.png")
-    page.evaluate("window.extrados.change({ 'structure.contact_tolerance': 0.004 })")
+    page.click("text=Sizes")
+    page.fill("#field-structure-contact_tolerance", "4 mm")
+    page.press("#field-structure-contact_tolerance", "Enter")
     until(page, "window.extrados.scene.seen?.warnings.some(w => w.includes('contact_tolerance 4 mm'))")
     page.evaluate("window.extrados.change({ 'structure.mortar_gap': 0.001 })")
     until(page, "document.querySelector('.bad')?.textContent.includes('touches neither')")
