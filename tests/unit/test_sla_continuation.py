@@ -262,3 +262,13 @@ def test_damage_that_goes_ahead_in_staggered_steps_is_dissipated() -> None:
     r = run_deck(pier(0.2, 10.0, 0.25, crushing=True, target_displacement=2e-2)).results
     assert r["stop"] == "axial capacity lost"
     assert r["released_energy_J"] < 0.1 * r["dissipated_energy_J"]
+
+
+def test_a_film_has_states_on_the_whole_way_of_the_curve() -> None:
+    """Events and steps: no two pictures are further apart than two parts of the way and a step."""
+    plain, filmed = (run_deck(pier(0.1, 50.0, 0.25, target_displacement=3e-3, **more)) for more in ({}, {"animation": "gif"}))
+    events = array(filmed, "state_event") - 1
+    assert len(set(events.tolist())) == len(events) > 40 > len(array(plain, "state_event"))
+    way = array(filmed, "event_displacement")[events]
+    assert np.diff(way).max() <= 2.0 * 3e-3 / 80.0 + 2e-4
+    assert np.array_equal(array(filmed, "event_load"), array(plain, "event_load"))
