@@ -636,7 +636,7 @@ def run_reference_loads(
     goes_on = options.without_equilibrium == "continue" and core_model.continues and model.continues
     variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
     follow(core_model, model, options.continuation if goes_on else None)
-    if goes_on and model.steps_alone and not core_model.iterates:
+    if goes_on and (model.steps_alone or options.continuation == "dissipation") and not core_model.iterates:
         core_model.go_on(core_model.displacement(0.0))
     ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
     if ends_by_drift:
