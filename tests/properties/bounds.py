@@ -208,6 +208,7 @@ def energies(deck: Deck, motion: Deck, within: float) -> None:
             for name in ("friction_loss_J", "damping_loss_J"):
                 loss = getattr(r.results, name)
                 if keys is RIGID and loss < -within * scale:  # the work of contacts is of first order in the step
+                    at_most(f"{told}: {name}: at the time step of the analysis", 0.0, loss, 2.0 * within, scale)
                     finer = ask(moving, "dem", end_time=1.0, time_step=0.5 / r.results.steps, **keys)
                     ok(finer)
                     at_most(f"{told}: {name}: half the time step", 0.7 * loss, getattr(finer.results, name), 0.0)

@@ -164,7 +164,7 @@ def test_the_thrust_on_the_ground_of_one_block_is_its_push() -> None:
 @pytest.mark.parametrize(
     ("section", "words"),
     [
-        ({"name": "a", "x": 99.0}, "section 'a': no contact lies between blocks on both sides"),
+        ({"name": "a", "x": 99.0}, "section 'a': the cut crosses no contact between two blocks"),
         ({"name": "a", "joints": ["nowhere"]}, "names no contact 'nowhere'"),
     ],
 )

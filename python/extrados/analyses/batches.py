@@ -170,7 +170,7 @@ class _Batches:
                     self._put(first, arrays, path)
                     end = first + _rows(arrays)
                 else:  # of another run that was going on at the same time
-                    context.warnings.append(f"a saved batch overlaps others and is not used: it begins at member {first}")
+                    context.warnings.append(f"a saved batch overlaps another batch and is not used; it begins at member {first}")
         self.done = sum(self.rows.values())
         tell(self.done)
 

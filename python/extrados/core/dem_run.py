@@ -129,7 +129,7 @@ class Ties:
     a bound of 0 is slackness, at another one it yields, infinite never. first: its first point; closed: the last
     point is joined to the first. Anchors (anchors): point, body, -1 for the ground, place (anchors, 2 or 3) as drawn [m];
     anchors of one point share its force in equal parts. damping: c of a dashpot beside each, of a power of the rate of its
-    length [N (s/m)^power].
+    length [N (s/m)^power]. plastic: permanent elongation at the start (ties) [m].
     """
 
     stiffness: np.ndarray
@@ -143,6 +143,7 @@ class Ties:
     place: np.ndarray
     damping: np.ndarray | None = None
     power: np.ndarray | None = None
+    plastic: np.ndarray | float = 0.0
 
     def lengths(self) -> np.ndarray:
         """Length of each as drawn (ties) [m]."""
@@ -232,7 +233,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         local = place(ties.place[on], ties.body[on])
         own[on, : local.shape[1]] = local
         most = np.finfo(float).max
-        values = [ties.stiffness, ties.lengths(), ties.prestress, np.maximum(ties.least, -most), np.minimum(ties.most, most)]
+        values = [ties.stiffness, ties.lengths() + ties.plastic, ties.prestress, np.maximum(ties.least, -most), np.minimum(ties.most, most)]
         values += [np.zeros(n) if ties.damping is None else ties.damping, np.ones(n) if ties.power is None else ties.power]
         status = _core.api_dem_run.ties(
             self.handle,

@@ -20,12 +20,14 @@ from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.ties import NO_TIES, element_ties, section_strands
 from extrados.analyses.dem.trial import Begin, Trial, core_options, domain_of
 from extrados.analyses.rocking.conditions import astray_of
 from extrados.core import dem
 from extrados.core import mechanism as core_mechanism
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground
+from extrados.core.restraints import LENGTH
 from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, ensemble, history
 from extrados.core.stack import StackResponse, stack_history
 from extrados.limit.linkage import Linkage
@@ -107,6 +109,12 @@ class Leaving:
     def critical(self) -> float:
         """The least critical rotation [rad]."""
         return min(self.limits)
+
+    def plastic(self, ground: Ground, time: float, scale: float) -> np.ndarray:
+        """Permanent elongations of the restraints at a time [s] (restraints) [m]."""
+        if not self.body.restraints or time <= 0.0:
+            return np.zeros(self.body.restraints)
+        return self.respond(ground, time, time, scale).permanent
 
     @property
     def farthest(self) -> float:
@@ -205,6 +213,10 @@ class StackLeaving:
         rocks = bool(self.start) or (bool(time) and self._until(ground, time or 0.0, scale).outcome != "no-hinging")
         return Left(time, rocks, outcome, float(found.peak[0]), float(found.peak_ratio[0]))
 
+    def plastic(self, _ground: Ground, _time: float, _scale: float) -> np.ndarray:
+        """See Leaving: nothing holds them."""
+        return np.zeros(0)
+
     def greatest(self, rotation: np.ndarray) -> tuple[float, float]:
         """See Leaving: of the lower block as one with the upper, or of the upper against the lower, as in the core."""
         if not rotation.size:
@@ -263,6 +275,11 @@ class Contacts:
         """Bodies of the core."""
         return self.model.bodies()
 
+    def reached(self, ground: Ground, time: float, scale: float = 1.0) -> "Contacts":
+        """The same with ties as long as they have become at a time [s] under the motion times a factor."""
+        ties = self.model.ties.yielded(self.leaving.plastic(ground, time, scale))
+        return self if ties is self.model.ties else replace(self, model=replace(self.model, ties=ties))
+
     def begin(self, ground: Ground, time: float) -> Begin:
         """The beginning of a run of contacts."""
         bodies = len(self.model.rigid.mass)
@@ -270,21 +287,24 @@ class Contacts:
 
 
 def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolerance: float = 1e-8) -> Contacts | None:
-    """The blocks of a rocking structure on rigid contacts; None where its joints are not watched, where it is not made of blocks,
-    or where the equations are those of slender blocks."""
-    watch = rocker.watch
+    """The blocks of a rocking structure on rigid contacts, with its ties and dampers; None where its joints are not watched, where it is
+    not made of blocks, where a wall or an added hinge acts on it, or where the equations are those of slender blocks."""
+    watch, held = rocker.watch, rocker.restraints
     pair = rocker.model if isinstance(rocker.model, StackModel) else None
     if pair is None and (watch is None or not len(watch.joints) or linear):
+        return None
+    if held is not None and (not all(held.open_sides) or any(one.sort != LENGTH for one in held.members)):
         return None
     try:
         blocks = building.blocks() if pair is None else pair.assembly
         floor = level_of(blocks)
         rigid = building.rigid((), floor)
-    except BadGeometry:
+        ties = NO_TIES if held is None else element_ties(building, section_strands(building), rigid.body_of_block, has_rates=True)
+    except (BadGeometry, Refused):
         return None
     values = joint_values(building, rigid=True)
     nothing = np.zeros_like(values.cohesion)  # a mechanism has no mortar either
-    model = Model(blocks, rigid, replace(values, cohesion=nothing, tension=nothing))
+    model = Model(blocks, rigid, replace(values, cohesion=nothing, tension=nothing), ties)
     if pair is not None:
         return Contacts(StackLeaving(rocker.body, pair, rocker.start_rotation, rocker.time_unit, tolerance), model, floor)
     assert watch is not None
@@ -384,10 +404,10 @@ class Fates:
     def follow(self, ground: Ground, scale: float, end: float, threads: int = 1) -> Fate:
         """The run of a motion times a factor, whose mechanism is followed until `end` [s]; its outcome is UNKNOWN where contacts have no
         result."""
-        c = self.contacts
-        left = c.leaving.leave(ground, end, scale)
+        left = self.contacts.leaving.leave(ground, end, scale)
         if left.time is None:  # at the edge of its tolerance
             return Fate(left.outcome, left.peak, left.ratio)
+        c = self.contacts.reached(ground, left.time, scale)
         shift, rate = c.begin(ground, left.time).state(scale)
         many = len(c.bodies.mass) >= BODIES_FOR_THREADS
         rest = max(ground.end, left.time) + self.options.end_time - left.time

@@ -1,15 +1,13 @@
 """Two stacked blocks, on rigid contacts from where a joint slides or parts as a whole."""
 
-import numpy as np
-
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking import stack
-from extrados.analyses.rocking.conditions import of_pair
+from extrados.analyses.rocking.conditions import demand_of, of_pair
 from extrados.analyses.rocking.hand_over import Contacts, Left, contacts_of, follow_contacts, outcome_of, stored
 from extrados.analyses.rocking.shapes import on_contacts
 from extrados.analyses.rocking.tables import Rocking
-from extrados.core.rocking import OUTCOMES, JointDemand, ensemble
+from extrados.core.rocking import OUTCOMES, JointDemand
 from extrados.results import rocking as out
 from extrados.results.model import Result
 from extrados.views.rockers.rocker import Rocker
@@ -18,11 +16,9 @@ from extrados.views.rockers.rocker import Rocker
 def run(context: Context, options: Rocking) -> Result:
     """What `stack.run` finds with its conditions; where one fails, the rest of the motion on rigid contacts."""
     rocker = context.building.rocker(options.form == "linear", soft_base=True)
-    ground, one = context.motion.ground, np.zeros(1, dtype=int)
+    ground = context.motion.ground
     end = options.end_time or context.motion.end + stack.SETTLE * rocker.time_unit
-    demand = ensemble(
-        [rocker.body], [ground], one, one, [1.0], end, start_rotation=rocker.start_rotation, tolerance=options.tolerance, threads=1
-    ).joints
+    demand = demand_of(rocker, ground, end, options.tolerance).joints
     contacts = contacts_of(rocker, context.building, tolerance=options.tolerance) if options.hand_over else None
     left = None if contacts is None else contacts.leaving.leave(ground, end, 1.0)
     if contacts is not None and left is not None and left.time is not None:

@@ -15,11 +15,13 @@ from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import with_chains
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.contacts import MOST_NEIGHBOURS, box_pairs, shortest_joint
-from extrados.model.geometry.drawing import Drawing, Layer, Polygon, parsed, read_json
+from extrados.model.geometry.drawing import Drawing, Layer, Plane, Polygon, parsed, read_json
 from extrados.model.geometry.dxf import SAGITTA, read_dxf
 from extrados.model.geometry.inspection import Inspection, areas, inspect, refuse
 from extrados.model.geometry.linework import MOST_PAIRS
 from extrados.model.geometry.polygons import properties
+from extrados.model.geometry.solids.flat import flat_plane, section_of_meshes
+from extrados.model.geometry.solids.meshes import read_meshes
 from extrados.model.structure import Structure
 from extrados.model.structures.earthwork import Fill, Spandrels, Surfacing, covered, refuse_without_fill
 from extrados.schema.constants import IN_SPACE
@@ -146,6 +148,12 @@ class Blocks(Structure):
     up: Literal["y", "z"] | None = key(
         None, "axis that points up in a file of solids; default z. With y, the x axis remains and the z axis of the file becomes -y"
     )
+    section: Plane | None = key(
+        None,
+        "plane of a file in space that is the section: its second letter is the vertical axis. Default: for DXF, and for OBJ and STL "
+        "without volume, the plane in which everything lies. With this key, solids of OBJ and STL that are prisms across the plane are "
+        "read as a section",
+    )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
     layer: list[LayerTable] = key([], "layers of the drawing with a material or another meaning, [[structure.layer]]", max_length=200)
     join_tolerance: Length = key(1e-3, "distance below which ends of loose lines and arcs of a drawing count as one point", gt=0, le=0.1)
@@ -172,6 +180,13 @@ class Blocks(Structure):
         "are ignored; contacts of solids that are narrower than this value carry no force. `check` reports the "
         "tolerance that would close each gap. The default for solids is at most 1/10000 of "
         "their size",
+        gt=0,
+        le=0.1,
+    )
+    mortar_gap: Length | None = key(
+        None,
+        "greatest thickness of joints that are drawn as gaps. The faces on both sides of such a joint are moved to the middle of the "
+        "gap, so that the blocks touch. Default: gaps beyond contact_tolerance are open",
         gt=0,
         le=0.1,
     )
@@ -208,9 +223,14 @@ class Blocks(Structure):
         if sort == ".dxf":
             meaning = {layer.name: Layer(layer.role, layer.material) for layer in self.layer}
             fine = min(SAGITTA, max(0.5 * self.contact_tolerance, 1e-6))
-            drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine)
+            drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine, self.section)
             return drawing, None
+        if self.section is not None and sort not in SOLID:
+            raise BadGeometry(f"{self.file}: the key `section` is for .dxf, .obj and .stl files", ("structure", "section"))
         if sort in SOLID:
+            meshes = read_meshes(file)
+            if plane := self.section or flat_plane(meshes):
+                return section_of_meshes(meshes, plane, self.unit, file.path.name)
             raise NoView(f"{self.file} contains solids, which have no plane section; {IN_SPACE}", ("structure", "file"))
         if sort != ".json":
             raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")
@@ -232,7 +252,7 @@ class Blocks(Structure):
                 loose=tuple(((x - corner[0], y - corner[1]), gap) for (x, y), gap in drawing.loose),
             )
         ground = None if self.ground is None else np.array(self.ground)
-        found = inspect(drawing, ground, self.contact_tolerance, self.foundation_levels, corner)
+        found = inspect(drawing, ground, self.contact_tolerance, self.foundation_levels, corner, self.mortar_gap or 0.0)
         return found, self.depth or depth or 1.0
 
     def inspection(self, folder: Path) -> Inspection | None:

@@ -8,6 +8,7 @@ import numpy as np
 from extrados.core.soft_base import SoftBase, base_held
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.geometry.assembly import Assembly
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.model.structures.block import BlockAssembly
 from extrados.schema.constants import GRAVITY
 from extrados.views.blocks import Masonry
@@ -35,6 +36,11 @@ class SoftBaseModel:
     def weight(self) -> float:
         """[N]"""
         return float(self.block.mass[0]) * GRAVITY
+
+    def friction(self, given: float | np.ndarray | None) -> float:
+        """Friction of the base, infinite where it does not slide; given: of the joints of the block, or of all."""
+        least = np.inf if given is None else float(np.min(given))
+        return least if least < NO_SLIDING_COEFFICIENT else np.inf
 
     @property
     def limit(self) -> np.ndarray:

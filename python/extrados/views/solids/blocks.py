@@ -8,7 +8,8 @@ from extrados.model.errors import BadGeometry, NoView
 from extrados.model.files import LARGEST_FILE, read
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.drawing import UNITS, parsed
-from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
+from extrados.model.geometry.solids.assembly import SolidAssembly, assemble, with_closed_joints
+from extrados.model.geometry.solids.flat import flat_plane
 from extrados.model.geometry.solids.meshes import read_meshes, read_solids, stones_of, without_doubles
 from extrados.model.structures.blocks import SMALL, SOLID, Blocks
 from extrados.views.blocks import Masonry
@@ -32,13 +33,15 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
             raise BadGeometry("the key `up` is only for files of solids (OBJ, STL, COMPAS JSON)", ("structure", "up"))
         return solids_of_section(building)
     name = file.path.name
+    meshes = read_meshes(file) if sort in SOLID else read_solids(value, name)
+    if sort in SOLID and (drawing.section is not None or flat_plane(meshes)):
+        return solids_of_section(building)
     if drawing.layers is not None or drawing.layer or drawing.ground is not None or drawing.origin is not None:
         raise BadGeometry(
             f"{name}: the keys `layers`, `ground` and `origin` are only for plane drawings; solids are supported by foundation_levels"
         )
     if drawing.fill is not None:
         raise BadGeometry(f"{name}: the key `fill` is only for plane drawings", ("structure", "fill"))
-    meshes = read_meshes(file) if sort in (".obj", ".stl") else read_solids(value, name)
     if drawing.up == "y":
         meshes = [replace(mesh, points=mesh.points @ Y_UP.T) for mesh in meshes]
     tolerance = drawing.contact_tolerance
@@ -56,5 +59,8 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
             raise error from None
         return solids_of_section(building)
     single, remarks = without_doubles(stones, tolerance)
+    notes: tuple[str, ...] = ()
+    if drawing.mortar_gap is not None:
+        single, notes = with_closed_joints(single, drawing.mortar_gap, tolerance)
     made = assemble(single, tolerance, drawing.foundation_levels, name)
-    return replace(made, remarks=(*remarks, *made.remarks))
+    return replace(made, remarks=(*remarks, *made.remarks), notes=(*notes, *made.notes))
