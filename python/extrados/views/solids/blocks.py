@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.files import LARGEST_FILE, read
+from extrados.model.geometry.clouds import read_cloud
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.drawing import UNITS, parsed
 from extrados.model.geometry.solids.assembly import SolidAssembly, assemble, with_closed_joints
@@ -15,6 +16,7 @@ from extrados.model.structures.blocks import SMALL, SOLID, Blocks
 from extrados.views.blocks import Masonry
 from extrados.views.solids.sections import solids_of_section
 
+Y_FORMATS = (".glb", ".gltf")  # by their standard
 #: Axes of a file whose y points up
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
@@ -28,6 +30,10 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
     sort = "" if file is None else file.path.suffix.lower()
     if file is not None and sort == ".json":
         value = parsed(file)
+    if file is not None and drawing.scan is not None:
+        points = read_cloud(file, UNITS[drawing.unit or "m"])
+        points = points @ Y_UP.T if drawing.up == "y" else points
+        return drawing.scan.solids(points, building.material.density, file.path.name)
     if file is None or not (sort in SOLID or is_compas(value)):
         if drawing.up is not None:
             raise BadGeometry("the key `up` is only for files of solids (OBJ, STL, COMPAS JSON)", ("structure", "up"))
@@ -42,7 +48,7 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         )
     if drawing.fill is not None:
         raise BadGeometry(f"{name}: the key `fill` is only for plane drawings", ("structure", "fill"))
-    if drawing.up == "y":
+    if (drawing.up or ("y" if sort in Y_FORMATS else "z")) == "y":
         meshes = [replace(mesh, points=mesh.points @ Y_UP.T) for mesh in meshes]
     tolerance = drawing.contact_tolerance
     if "contact_tolerance" not in drawing.model_fields_set:
