@@ -37,6 +37,7 @@ from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results.dem import DemRun
 from extrados.results.model import Array, Result
 from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, SLID, WholeOutcome
+from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 from extrados.views.rockers.rocker import Rocker
 from extrados.views.rockers.soft_base import SoftBaseModel
@@ -51,6 +52,8 @@ COARSE = 0.02
 #: one up to which a recovery is accepted at this step. In 258 motions of one cycle the least rotations of wrong recoveries were 0.72, 1.1,
 #: 2.4 and 2.8. Coarse steps lose more energy, but may also err to a collapse: it is accepted only if the next step collapses too.
 STEPS = ((0.04, 0.4), (0.02, 0.7), (0.01, 1.2), (0.005, 1.8), (0.0, np.inf))
+#: Share of the energy barrier below which blocks recover after the motion, in maps and ensembles
+SAFE = 0.1
 #: Blocks have collapsed beyond a fifth of the size, and so many times as far as at the critical rotation, from which they may recover
 FALLEN, BEYOND = 0.2, 1.5
 #: Rotation from which a block at the end of a run has overturned, where no critical rotation exceeds it [rad]
@@ -126,14 +129,13 @@ class Leaving:
         return max(self.limits)
 
     @property
-    def reach(self) -> float:
-        """Greatest displacement of the centre of a block at the critical rotations [m]."""
-        n, found = len(self.blocks.mass), 0.0
+    def unstable(self) -> np.ndarray:
+        """Displacements (sides, blocks, 2) of the centres at the critical rotations [m]."""
+        n, found = len(self.blocks.mass), []
         for one, limit in zip(self.linkages, self.limits, strict=True):
             place = core_mechanism.follow(one, [limit * (1.0 - 1e-9)])[0]  # it may lock at the critical rotation itself
-            away = one.blocks(self.blocks, place)[0, :n, :2] - self.blocks.centroid
-            found = max(found, float(np.hypot(*away.T).max()))
-        return found
+            found.append(one.blocks(self.blocks, place)[0, :n, :2] - self.blocks.centroid)
+        return np.array(found)
 
     def respond(self, ground: Ground, end_time: float, step: float, scale: float = 1.0) -> Response:
         """The response of the mechanism."""
@@ -226,11 +228,11 @@ class StackLeaving(PairLeaving):
         return max(self.pair.whole[0], self.pair.alone[0])
 
     @property
-    def reach(self) -> float:
+    def unstable(self) -> np.ndarray:
         """See Leaving: of both blocks as one, and of the upper alone."""
         whole, alone = self.pair.whole[0], self.pair.alone[0]
-        at = self.pair.pose(np.array([[whole, whole], [0.0, alone]]), np.array([[1.0, 0.0], [0.0, 1.0]]))[:, :, :2] - self.blocks.centroid
-        return float(np.hypot(at[..., 0], at[..., 1]).max())
+        pose = self.pair.pose(np.array([[whole, whole], [0.0, alone]]), np.array([[1.0, 0.0], [0.0, 1.0]]))
+        return np.asarray(pose[:, :, :2] - self.blocks.centroid)
 
     def greatest(self, rotation: np.ndarray) -> tuple[float, float]:
         """See Leaving: of the lower block as one with the upper, or of the upper against the lower, as in the core."""
@@ -286,10 +288,10 @@ class EdgesLeaving(PairLeaving):
         return float(np.abs(self._limits).max())
 
     @property
-    def reach(self) -> float:
+    def unstable(self) -> np.ndarray:
         """See Leaving."""
         sunk = np.array([self.base.sinking(float(q)) for q in self._limits])
-        return float(np.hypot(*(self.base.pose(self._limits, sunk)[:, 0, :2] - self.blocks.centroid[0]).T).max())
+        return np.asarray(self.base.pose(self._limits, sunk)[:, :, :2] - self.blocks.centroid)
 
     def greatest(self, rotation: np.ndarray) -> tuple[float, float]:
         """See Leaving."""
@@ -335,7 +337,18 @@ class Contacts:
     @cached_property
     def fallen(self) -> float:
         """Displacement from which a block that also rotates or loses height has collapsed [m]."""
-        return max(FALLEN * self.model.size, BEYOND * self.leaving.reach)
+        return max(FALLEN * self.model.size, BEYOND * float(np.hypot(*np.moveaxis(self.leaving.unstable, -1, 0)).max()))
+
+    @cached_property
+    def safe(self) -> float:
+        """See core.dem_run.RunOptions [J]; 0 where springs hold energy too."""
+        if not self.options.rigid:
+            return 0.0
+        return SAFE * max(GRAVITY * float((self.leaving.unstable[..., 1] @ self.leaving.blocks.mass).min()), 0.0)
+
+    def above(self, shift: np.ndarray) -> float:
+        """Energy of the places over those at rest, of displacements (bodies, 3) [J]."""
+        return GRAVITY * float(self.model.rigid.mass @ shift[:, 1])
 
     @property
     def collapse(self) -> Collapse:
@@ -514,6 +527,8 @@ class Fates:
         many = len(c.bodies.mass) >= BODIES_FOR_THREADS
         rest = max(ground.end, left.time) + self.options.end_time - left.time
         options = replace(self.options, end_time=rest, threads=threads if many else 1)
+        if len(self.steps) > 1:  # the outcome alone is wanted, not the greatest rotation
+            options = replace(options, safe=c.safe, above=c.above(shift))
         seen_ground = ground.seen_from(left.time)
         fate, fell = Fate(UNKNOWN, 0.0, 0.0), False
         for step, sure in self.steps:
