@@ -434,7 +434,7 @@ class _Run:
             if len(part) and (done - 1 in self.wanted or self._is_pictured(part)):
                 self.way.states.append(_state(self.core_model, done - 1, part))
             load = (part.pull if self.model.driven else self.model.already + part.load * self.model.unit)[-1:]
-            progress(done, self.options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
+            progress(*self._told(part, done, load))
             part.reason = part.reason or self.model.ends(part)
             if part.reason or part.interrupted or not (len(part) or self.core_model.iterates):
                 break
@@ -442,6 +442,18 @@ class _Run:
                 part.reason = SPENT
                 break
             batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
+
+    def _told(self, part: core.Events, done: int, load: np.ndarray) -> tuple[float, float, str]:
+        """Progress: of events their number; of steps the way of the control to its target, by which the remaining time is estimated."""
+        total = self.options.events
+        if not len(part):
+            return done, total, ""
+        moved = abs(float(part.monitors[-1, 0]) - self.sign * self.before)
+        if not part.steps[-1] or self.stop.displacement == np.inf:
+            return done, total, f"event {done}, load {load[0]:.4g} N"
+        share = min(moved / self.stop.displacement, 1.0)
+        drifts = (100.0 * way / self.model.reach for way in (moved, self.stop.displacement))
+        return max(done, share * total), total, "step {}, drift {:.3g} of {:.3g} %, load {:.4g} N".format(done, *drifts, load[0])
 
     def _is_pictured(self, part: core.Events) -> bool:
         """Is the state after these events a picture of the film: has the control moved on by its part of the way?"""
