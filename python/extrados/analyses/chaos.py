@@ -14,6 +14,15 @@ CHAOTIC = 1e4
 NUDGES = (NUDGE, 3.2e-6, 1e-5, 3.2e-5, 1e-4)
 
 
+#: Step of the histories whose growth is measured over the time unit of the structure, whatever the step of output; and their times at most
+SPACING, MOST_TIMES = 0.02, 20000
+
+
+def growth_step(time_unit: float, end_time: float) -> float:
+    """Step [s] of the histories of `growth` until `end_time` [s]; time_unit: of the structure [s]."""
+    return max(SPACING * time_unit, end_time / MOST_TIMES)
+
+
 def growth(runs: Sequence[np.ndarray]) -> float:
     """Greatest separation of perturbed runs from the first one at equal times, over the perturbation.
 
