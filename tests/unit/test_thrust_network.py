@@ -7,7 +7,7 @@ import extrados
 from extrados.limit.network import Diagram, ThrustNetworks
 
 BARREL = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 120.0, "voussoirs": 31, "depth": 0.2}
-DOME = {"kind": "dome", "radius": 5.0, "thickness": 0.5, "rings": 6, "lunes": 12}
+DOME = {"kind": "dome", "radius": 5.0, "thickness": 0.5, "rings": 5, "lunes": 8}
 
 
 def _flat(branches: int, reach: float) -> Diagram:
@@ -57,7 +57,7 @@ def test_barrel_is_its_thrust_line() -> None:
 
 def test_dome_lies_between_its_bounds_and_turns_with_its_load() -> None:
     """The bounds enclose what is found; networks lie between the surfaces; a dome of equal meridians has no direction."""
-    analysis = {"kind": "thrust-network", "lines": 5, "meridians": 12}
+    analysis = {"kind": "thrust-network", "lines": 4, "meridians": 8}
     run = extrados.run({"structure": DOME, "analysis": [analysis, {**analysis, "direction": 90.0}]})
     r = run.analyses[0]["results"]
     assert r["least_thrust_bound_N"] <= r["least_thrust_N"] * (1.0 + 1e-6)
@@ -86,8 +86,8 @@ def test_thinner_dome_is_less_safe_until_no_network_fits() -> None:
     assert runs[2].analyses[0]["results"].get("least_thrust_N") is None
 
 
-def test_refusals() -> None:
-    """Walls have no span that a radial diagram fits; ties are not considered."""
+def test_barrel_refuses_a_radial_diagram() -> None:
+    """Its supports are not all around."""
     run = extrados.run({"structure": BARREL, "analysis": {"kind": "thrust-network", "form": "radial"}})
     assert run.analyses[0]["status"] == "refused"
     assert "form" in run.analyses[0]["reason"]

@@ -210,10 +210,11 @@ class ThrustNetworks:
 
     def _least_part(self) -> Extreme:
         """The least part of the depth that holds a network found, and the greatest of the parts below it that holds none."""
-        outside, start, reach = 1.0, None, 1.0
+        reach = 1.0
+        outside, start = self._bound("central", reach)
         while outside > ZERO:
-            outside, start = self._bound("central", reach)
             reach *= 4.0
+            outside, start = self._bound("central", reach)
             if reach > FARTHEST:
                 raise NoEquilibrium(f"no network on this diagram lies within {FARTHEST / 4.0:g} times the depth of the structure")
         found = self._search("central", *start)

@@ -43,7 +43,7 @@ def diagram_of(assembly: SolidAssembly, form: Form, lines: int, meridians: int) 
     middle = points.mean(axis=0)
     inside = middle + (1.0 - HAIR) * (points - middle)
     support, outward, seat = _supports(points, branch, beds, inside, edge)
-    counts = ~np.isin(branch, support).all(axis=1)  # branches from support to support carry nothing
+    counts = ~np.asarray(np.isin(branch, support).all(axis=1))  # branches from support to support carry nothing
     held = (np.cumsum(counts) - 1)[held[counts[held]]]
     branch = branch[counts]
     between = inside[branch[held]].mean(axis=1)
@@ -142,7 +142,7 @@ def _grid(
     count = (
         [lines, lines] if crossed else [lines if size[k] >= size[1 - k] else max(1, round(lines * size[k] / size[1 - k])) for k in range(2)]
     )
-    x, y = (np.linspace(*ends[k], count[k] + 1) for k in range(2))
+    x, y = (np.linspace(ends[k, 0], ends[k, 1], count[k] + 1) for k in range(2))
     points = np.array([[a, b] for a in x for b in y])
     number = np.arange(len(points)).reshape(len(x), len(y))
     branch = [np.column_stack([number[:-1].ravel(), number[1:].ravel()]), np.column_stack([number[:, :-1].ravel(), number[:, 1:].ravel()])]
@@ -154,7 +154,7 @@ def _grid(
     if spans is None:
         edge = np.unique(np.concatenate(sides))
     else:
-        edge = sides[spans[0]] if len(spans) == 1 else np.intersect1d(*sides)
+        edge = sides[spans[0]] if len(spans) == 1 else np.intersect1d(sides[0], sides[1])
     branches = np.concatenate(branch)
     return points, branches, edge, np.arange(len(branches))
 

@@ -165,6 +165,7 @@ class ThrustNetwork(BuildingAnalysis):
     solid: ClassVar = True
     uses: ClassVar[tuple[str, ...]] = ("material.density",)
     starter_structure: ClassVar[str] = "dome"
+    starter: ClassVar = {"lines": "5", "meridians": "8"}
     form: Literal["radial", "grid", "crossed"] | None = key(
         None,
         "form diagram in plan. radial: meridians and hoops; grid: lines along x and y; crossed: a grid and both diagonals. "

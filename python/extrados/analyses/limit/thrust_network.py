@@ -36,7 +36,7 @@ def run(context: Context, options: ThrustNetwork) -> Result:
         try:
             found[aim] = networks.extreme(aim)
         except NoEquilibrium as error:
-            raise Refused(f"{error}. This is no proof of collapse: another form, or more `lines`, may hold one", FORM) from None
+            raise Refused(f"{error}. This does not prove collapse: another form, or more `lines`, may hold one", FORM) from None
     part = found["central"].value
     if part is None:
         raise Refused("the search found no network on this diagram. Another form, or more `lines`, may hold one", FORM)
@@ -117,7 +117,7 @@ def _words(r: out.ThrustNetwork) -> str:
     if r.least_part_of_depth > 1.0:
         return (
             f"{text}no network found lies within the structure. The best one requires {r.least_part_of_depth:.2f} times its depth "
-            f"(bound of the diagram: {r.least_part_bound or 0.0:.2f} times). This is no proof of collapse: the diagram is given."
+            f"(bound of the diagram: {r.least_part_bound or 0.0:.2f} times). This does not prove collapse: the diagram is given."
         )
     text += (
         f"the sum of the outward thrusts of the {r.supports} supports lies between {_between(r.least_thrust_N, r.least_thrust_bound_N, 1e3)} "
