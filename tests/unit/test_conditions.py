@@ -275,6 +275,8 @@ def test_growth_counts_until_the_balance() -> None:
     assert growth([one, other]) == pytest.approx(1e4)
     uneven = [over_critical(-run, (1.0, 2.0)) for run in (one, other)]
     assert growth(uneven) == pytest.approx(1e5) and growth([one, one]) == 0.0
+    far = [np.array([0.5, 2.0, 2.0]), np.array([0.5, 2.0, 2.1])]  # slid past the limit without collapse, by the measure of the outcome
+    assert growth(far) == 0.0 and growth(far, 3) == pytest.approx(1e5)
     assert growth([np.stack([one, 0.0 * one], axis=1), np.stack([other, 0.0 * one], axis=1)]) == pytest.approx(1e4)
 
 
