@@ -35,12 +35,12 @@ BUILDINGS = {
     "column": 'kind = "column"\nwidth = 0.8\ntop_width = 0.6\nheight = 4.0\ndrums = 4',
     "stack": 'kind = "stack"\nlower_width = 1.0\nlower_height = 1.5\nupper_width = 0.6\nupper_height = 2.0',
     "frame": 'kind = "frame"\nwidth = 0.8\nheight = 4.0\nspacing = 3.0\nlintel_height = 0.8',
-    "brickwork": 'kind = "brickwork"\nunits = 3\ncourses = 6\nunit_length = 0.5\nunit_height = 0.4\ndepth = 0.3',
+    "brickwork": 'kind = "brickwork"\nunits = 3\ncourses = 4\nunit_length = 0.5\nunit_height = 0.4\ndepth = 0.3',
     "brickwork with a door": 'kind = "brickwork"\nunits = 5\ncourses = 6\nunit_length = 0.6\nunit_height = 0.4\n'
     "depth = 0.3\nopenings = [{ x = [1.0, 2.0], y = [0.0, 1.6] }]",
-    "panel": 'kind = "panel"\nwidth = 1.5\nheight = 2.4\nthickness = 0.3\nunit_length = 0.5\nunit_height = 0.4',
-    "panel with a window": 'kind = "panel"\nwidth = 3.0\nheight = 2.4\nthickness = 0.3\nunit_length = 0.6\n'
-    "unit_height = 0.4\nopenings = [{ x = [1.2, 1.8], y = [0.8, 1.6] }]",
+    "panel": 'kind = "panel"\nwidth = 1.5\nheight = 1.6\nthickness = 0.3\nunit_length = 0.5\nunit_height = 0.4',
+    "panel with a window": 'kind = "panel"\nwidth = 1.8\nheight = 1.6\nthickness = 0.3\nunit_length = 0.6\n'
+    "unit_height = 0.4\nopenings = [{ x = [0.6, 1.2], y = [0.4, 1.2] }]",
     "panel of unknown units": 'kind = "panel"\nwidth = 3.0\nheight = 2.4\nthickness = 0.3\nopenings = [{ x = [1.2, 1.8], y = [0.8, 1.6] }]',
 }
 STRATEGIES = {
