@@ -20,7 +20,7 @@ in_room() { enter "$stage" root env PATH="$path" DEBIAN_FRONTEND=noninteractive 
 
 # A step is one line of the file, or several that end in a backslash
 while read -r word rest; do
-  echo "$word $rest" | tee -a "$log"
+  echo "$SECONDS s: $word $rest" | tee -a "$log"
   case "$word" in
     FROM)
       read -r image _ name <<<"$rest"

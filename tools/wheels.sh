@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Build wheels with all libraries inside, each on a bare Debian, and try each on a bare Debian with Python alone.
 #
-#   sudo tools/wheels.sh [bookworm|trixie|sid|FOLDER ...]
+#   sudo tools/wheels.sh [bookworm|trixie|3.14|FOLDER ...]
 #
-# Debian 12 gives the wheel of Python 3.11, Debian 13 that of Python 3.13, Debian's unstable branch that of Python 3.14,
-# each tried on its own release. No Debian has Python 3.12: FOLDER holds a Python that runs in place (of pyenv, of
+# Debian 12 gives the wheel of Python 3.11, Debian 13 that of Python 3.13, each tried on its own release. The wheel of Python
+# 3.14 is built on Debian 13 with the Python of Debian's testing branch, which this older glibc runs, because auditwheel names
+# no glibc as new as that of testing; it is tried on testing (forky). No Debian has Python 3.12: FOLDER holds a Python that runs in place (of pyenv, of
 # `uv python install`, of a forge's tools; built on Debian 12 or older), and its wheel is built on Debian 12 and tried on
-# both releases. By default both releases, and the Python 3.12 that the path finds. A wheel runs on its release's glibc
+# both releases. By default both releases, 3.14, and the Python 3.12 that the path finds. A wheel runs on its release's glibc
 # or a newer one, as its name says. GSL, SuiteSparse, OpenBLAS and gfortran's library lie in the wheel, with their
 # licences. The wheels of the present commit are put in dist/; the log of a failed step is named.
 set -euo pipefail
@@ -15,7 +16,7 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 . "$source/tools/bare.sh"
 pythons=("$@")
 if [ ${#pythons[@]} = 0 ]; then
-  pythons=(bookworm trixie)
+  pythons=(bookworm trixie 3.14)
   newer=$(python3.12 -c 'import sys; print(sys.base_prefix)' 2>/dev/null || true)
   case "$newer" in
     "" | /usr) echo "note: no wheel for Python 3.12: the path finds none that could be taken along" >&2 ;;
@@ -25,6 +26,16 @@ fi
 commit=$(git -C "$source" describe --always --exclude="*")
 most=$((40 * 1000 * 1000))  # bytes of a wheel
 
+taken='
+set -e
+echo "deb $MIRROR forky main" >/etc/apt/sources.list.d/forky.list
+apt-get update -qq
+cd /tmp
+apt-get download -qq python3.14 python3.14-minimal python3.14-venv python3.14-dev \
+  libpython3.14-minimal libpython3.14-stdlib libpython3.14-dev
+for package in ./*.deb; do dpkg -x "$package" /; done
+rm /etc/apt/sources.list.d/forky.list ./*.deb
+'
 built='
 set -e
 apt-get update -qq
@@ -52,12 +63,13 @@ room() {  # RELEASE NAME: a fresh machine, with the Python that is taken along
 }
 
 step() {  # MACHINE LOG WHAT SCRIPT: run it there as root
-  enter "$place/$1" root env PYTHON="$python" COMMIT="$commit" sh -c "$4" >"$2" 2>&1 || { tail -20 "$2"; echo "$3 failed, see $2" >&2; exit 1; }
+  enter "$place/$1" root env PYTHON="$python" COMMIT="$commit" MIRROR="$mirror" sh -c "$4" >"$2" 2>&1 || { tail -20 "$2"; echo "$3 failed, see $2" >&2; exit 1; }
 }
 
 for word in "${pythons[@]}"; do
   case "$word" in
-    bookworm | trixie | sid) release=$word python=python3 prefix='' trials=("$word") ;;
+    bookworm | trixie) release=$word python=python3 prefix='' trials=("$word") ;;
+    3.14) release=trixie python=python3 prefix='' trials=(forky) ;;
     /*) release=bookworm prefix=$(realpath "$word") trials=(bookworm trixie)
       python=$prefix/bin/python3
       [ -x "$python" ] || { echo "$python: not there" >&2; exit 2; } ;;
@@ -66,7 +78,12 @@ for word in "${pythons[@]}"; do
   log=$place/logs/$(basename "$word")-wheel
   room "$release" wheel
   git clone -q --no-hardlinks "$source" "$place/$release-wheel/root/extrados"
-  step "$release-wheel" "$log" "building for $word" "$built"
+  if [ "$word" = 3.14 ]; then
+    step "$release-wheel" "$log-taken" "taking Python $word" "$taken"
+    python=python3.14 step "$release-wheel" "$log" "building for $word" "$built"
+  else
+    step "$release-wheel" "$log" "building for $word" "$built"
+  fi
   mkdir -p "$source/dist"
   wheel=$(basename "$place/$release-wheel/root/repaired/"*.whl)
   cp "$place/$release-wheel/root/repaired/$wheel" "$source/dist/"

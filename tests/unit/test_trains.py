@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.limit import trains
+from extrados.analyses.context import Context
+from extrados.analyses.limit import moving_load, trains
 from extrados.analyses.limit.tables import MovingLoad, TrainName
 from extrados.analyses.limit.trains import train_of
 from extrados.decks.reader import DeckError, make_deck
@@ -55,6 +56,19 @@ def test_a_special_vehicle_is_its_axles_and_says_that_nobody_read_the_clause() -
     )
     assert named["moving-load"].adequacy_factor == pytest.approx(given["moving-load"].adequacy_factor, rel=1e-9)
     assert "not verified in the standard" in named.analyses[0]["warnings"][0] and not given.analyses[0]["warnings"]
+
+
+def test_an_interrupted_moving_load_resumes_its_further_positions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All positions are kept, those between the first ones too, show their progress, and are not calculated a second time."""
+    train = {"axles": [0.0, 1.2], "axle_loads": [1e5, 1e5]}
+    deck = make_deck({"structure": BRIDGE, "joints": {"friction": 0.6}, "analysis": {"kind": "moving-load", "count": 5, **train}}, tmp_path)
+    options, shown = deck.analyses[0], []
+    whole = moving_load.run(Context(deck, out=tmp_path / "run", progress=lambda done, _, text: shown.append((done, text))), options)
+    assert {text for _, text in shown} == {"moving load", "further positions near the least factor"}
+    monkeypatch.setattr(moving_load.Places, "run", lambda *_: pytest.fail("a kept position was calculated again"))
+    again = moving_load.run(Context(deck, out=tmp_path / "run", resume=True), options)
+    for name, array in whole.arrays.items():
+        np.testing.assert_array_equal(again.arrays[name].data, array.data)
 
 
 def test_a_gap_belongs_to_special_vehicles() -> None:

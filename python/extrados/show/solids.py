@@ -50,7 +50,7 @@ def _title(r: SolidTilt) -> str:
     bound = f",\n{DILATANT}" if r.dilating_contacts and not _least_drawn(r) else ""
     design, least = r.collapse_acceleration_load_path_g, r.collapse_acceleration_non_associated_g
     if design is not None and least is not None:
-        bound += f"\nwithout dilatancy {design:.4f} g (design value), {least:.4f} g (least found)"
+        bound += f"\nwithout dilatancy: design value {design:.4f} g,\nleast found {least:.4f} g"
     return f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg{bound}"
 
 

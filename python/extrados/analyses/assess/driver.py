@@ -28,7 +28,7 @@ def run(context: Context, options: Assess) -> Result:
     try:
         ask_cheap(work)
         context.tell(f"First results:\n{table_of(list(work.rows.values()))}")
-        work.further("runs that the results of the cheap strategies require", lambda: look_early(work))
+        work.further("further runs that the results of the fast strategies require", lambda: look_early(work))
         ask_costly(work)
         work.further("longer runs", lambda: prolong(work))
         if options.advise and not work.advised:
@@ -109,7 +109,7 @@ def _scaled(work: Work) -> None:
     work.bracket("rocking", low, high)
     if curve.resurrections:
         work.context.warnings.append(
-            "Rocking recovers at some scale factors above the least factor that causes collapse. Do not rely on these safe regions."
+            "At some scale factors above the least factor that causes collapse, the rocking structure recovers. Do not rely on these safe regions."
         )
 
 

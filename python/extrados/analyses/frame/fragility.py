@@ -367,7 +367,7 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
     carried = np.array([_carried(g, options, rows, k % buildings) for k, g in found]).reshape(-1, 3)
     good = np.isfinite(carried).all(axis=1)
     if good.sum() < 2:
-        raise Refused("fewer than two motions have a building with a capacity curve", ("motion",))
+        raise Refused("a fragility curve requires at least two motions for which the building has a capacity curve", ("motion",))
     if not good.all():
         result.warnings.append(
             f"{int((~good).sum())} of {len(good)} pairs of motion and building are not considered, because a pushover has no "

@@ -41,6 +41,7 @@ from extrados.results import limit as out
 from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import three_figures
 from extrados.views.building import Building
 
 #: Times that the intervals beside the least factors are halved, and factors over the least beside which they are
@@ -276,7 +277,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     swept = {name: found[name] for name in ("capacity", "factor", "mechanism", "gap", "line", "normal")}
     even = job
     if options.places is None:
-        job, swept = _refined(job, swept)
+        job, swept = _refined(context, "moving-load", job, swept)
         places, ways = job.places, job.ways
     mechanisms, gap, factor = swept["mechanism"].tolist(), float(swept["gap"].max()), swept["factor"]
     capacity = swept["capacity"] / strip if train.known else swept["capacity"]
@@ -410,7 +411,7 @@ def _permissible(context: Context, options: MovingLoad, service: Serviceability,
     one = replace(job, assembly=assembly, friction=friction, strength=stress, dead=dead, train=train)
     swept = {"factor": sweep(context, "permissible", one, len(one.places), "permissible limit state", slow=True).whole()["factor"]}
     if options.places is None:
-        one, swept = _refined(one, swept)
+        one, swept = _refined(context, "permissible", one, swept)
     factor = swept["factor"]
     k = int(factor.argmin())
     return found | {"permissible_factor": float(factor[k]), "permissible_place_m": float(one.places[k])}
@@ -450,15 +451,16 @@ def _crossing(count: int, first: float, last: float, span: float) -> np.ndarray:
     return places
 
 
-def _refined(job: Places, swept: dict[str, np.ndarray]) -> tuple[Places, dict[str, np.ndarray]]:
+def _refined(context: Context, name: str, job: Places, swept: dict[str, np.ndarray]) -> tuple[Places, dict[str, np.ndarray]]:
     """Further places around those of least factor: the intervals beside each are halved, and those beside the least of them again.
+    Each round is a sweep of that name, with progress and checkpoint.
 
     Without fill the factor jumps where an axle goes from one block to the next: then also a hair before and behind each such place.
     """
     widest = 1.01 * max(np.median(np.abs(np.diff(job.places[job.ways == way]))) if (job.ways == way).sum() > 1 else 0.0 for way in (1, -1))
     for _ in range(HALVINGS):
         more = [(0.5 * (low + high), way) for low, high, way in _lowest(job, swept["factor"], widest)]
-        job, swept = _with_places(job, swept, more)
+        job, swept = _with_places(context, name, job, swept, more)
     if job.assembly.earth is None:
         _, x1, block = job.pieces
         ends = x1[:-1][np.diff(block) != 0]
@@ -471,7 +473,7 @@ def _refined(job: Places, swept: dict[str, np.ndarray]) -> tuple[Places, dict[st
             if low < place < high
             for side in (-1.0, 1.0)
         ]
-        job, swept = _with_places(job, swept, more[:MOST_PLACES])
+        job, swept = _with_places(context, name, job, swept, more[:MOST_PLACES])
     return job, swept
 
 
@@ -488,15 +490,18 @@ def _lowest(job: Places, factor: np.ndarray, widest: float) -> list[tuple[float,
     return found
 
 
-def _with_places(job: Places, swept: dict[str, np.ndarray], more: list[tuple[float, float]]) -> tuple[Places, dict[str, np.ndarray]]:
+def _with_places(
+    context: Context, name: str, job: Places, swept: dict[str, np.ndarray], more: list[tuple[float, float]]
+) -> tuple[Places, dict[str, np.ndarray]]:
     """The job and its rows with further places (place [m], way), in the order in which the train passes them."""
     if not more:
         return job, swept
     places, ways = np.array(more).T
-    found = replace(job, places=places, ways=ways).run(0, len(more), 1)
+    further = replace(job, places=places, ways=ways)
+    found = sweep(context, name, further, len(more), "further positions near the least factor", slow=True).whole()
     places, ways = np.append(job.places, places), np.append(job.ways, ways)
     order = np.lexsort((ways * places, -ways))
-    swept = {name: np.concatenate([values, found[name]])[order] for name, values in swept.items()}
+    swept = {key: np.concatenate([values, found[key]])[order] for key, values in swept.items()}
     return replace(job, places=places[order], ways=ways[order]), swept
 
 
@@ -541,19 +546,19 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
     """The result in words; what: the chain or the structure that the load crosses."""
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
-        factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
+        factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.3g}"
         text = (
             f"{what[:1].upper()}{what[1:]} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
-            f"the most dangerous place, with {where}{heading}: {r.collapse_load_N / 1e3:.4g} kN are then on the structure."
+            f"the most dangerous place, with {where}{heading}: {three_figures(r.collapse_load_N / 1e3)} kN are then on the structure."
         )
     else:
-        text = f"The least collapse load of {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with {where}."
+        text = f"The least collapse load of {what} is {three_figures(r.collapse_load_kN_per_m)} kN per metre of depth, with {where}."
         if not {"axles", "uniform"} & options.model_fields_set:
             text += " The load is a single axle (default)."
     if r.places_without_limit:
         text += f" At {r.places_without_limit} of {positions} positions no multiple of the load causes collapse."
     if options.force is not None:
-        text += f" The safety factor of the given load of {options.force / 1e3:.4g} kN is {r.safety_factor:.2f}."
+        text += f" The safety factor of the given load of {three_figures(options.force / 1e3)} kN is {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
     if r.permissible_factor is not None:

@@ -258,8 +258,12 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
                 f"load, so no horizontal load {way} is carried reliably"
             )
         if not certified:
-            told["non_associated_reason"] = f"the state found {way} is not certified (zero gap {proof.zero_gap:.1e} g)"
-            result.warnings.append(f"the state without dilatancy {way} is not certified: its zero gap is {proof.zero_gap:.1e} g")
+            told["non_associated_reason"] = (
+                f"the state found {way} is not certified (difference between forces and mechanism {proof.zero_gap:.1e} g)"
+            )
+            result.warnings.append(
+                f"the state without dilatancy {way} is not certified: the difference between its forces and its mechanism is {proof.zero_gap:.1e} g"
+            )
     return told
 
 
