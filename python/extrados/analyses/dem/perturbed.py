@@ -4,6 +4,8 @@ perturbation has grown, nine more under other factors that no instrument disting
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.chaos import CHAOTIC, NUDGE, growth, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
@@ -58,8 +60,8 @@ def probe_chaos(
 
     def grown(run: Any) -> float:
         # until one of them has collapsed, by the measure of the outcome
-        gone = [collapse.reached(*look(one).moved).any(axis=1) for one in (found, run)]
-        until = min(int(one.argmax()) if one.any() else len(one) for one in gone)
+        gone = [np.flatnonzero(collapse.reached(*look(one).moved).any(axis=1)) for one in (found, run)]
+        until = min((int(one[0]) for one in gone if len(one)), default=len(found.time))
         return growth([measures.shares(one, count, limit) for one in (found, run)], until)
 
     try:

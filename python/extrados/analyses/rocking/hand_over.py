@@ -191,8 +191,18 @@ class PairLeaving:
     def leave(self, ground: Ground, end_time: float, scale: float) -> Left:
         """When and how a run leaves the assumption that joints neither slide nor part as a whole."""
         one = np.zeros(1, dtype=int)
-        options = {"start_rotation": self.start, "tolerance": self.tolerance, "stop_when_safe": False}
-        found = ensemble([self.body], [ground], one, one, [scale], end_time, **options, threads=1)
+        found = ensemble(
+            [self.body],
+            [ground],
+            one,
+            one,
+            [scale],
+            end_time,
+            start_rotation=self.start,
+            tolerance=self.tolerance,
+            stop_when_safe=False,
+            threads=1,
+        )
         if found.interrupted:
             raise Cancelled(status_code("cancelled"), "rocking in two coordinates interrupted")
         outcome = int(found.outcome[0])
