@@ -4,7 +4,7 @@ module frame_push
    use common_kinds, only : wp
    use common_lists, only : frame_state_failed_flexure, frame_stop_target, frame_stop_drop, frame_stop_weight, &
       frame_stop_step, frame_stop_steps, frame_stop_cancelled
-   use common_status, only : status_ok, status_out_of_memory
+   use common_status, only : status_ok, status_out_of_memory, status_too_many_steps
    use frame_model, only : frame, frame_state, frame_state_new, take_over, assemble, equilibrate, commit, solve
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -154,17 +154,17 @@ contains
             step = 0.5_wp * step
             ended = frame_stop_step
             if (step < least_step * most) then
-               if (now%damped) then
+               if (now%damped .and. now%lagged) then
                   path%loose = maxloc(abs(now%d - past%d), 1)
                   return
                end if
                call try_otherwise(now)
-               step = lagged_step * most
+               step = merge(most, lagged_step * most, now%damped)   ! damped, it may jump to another branch
             end if
             cycle
          end if
          call commit(model, now, failed)
-         if (failed > 0 .and. step > event_step * most) then   ! closer to the displacement at which a limit is reached
+         if (failed > 0 .and. step > event_step * most .and. .not. now%damped) then   ! closer to the displacement at which a limit is reached
             step = 0.25_wp * step
             cycle
          end if
@@ -207,11 +207,13 @@ contains
       multiple = multiple + ratio * last%multiple
    end subroutine go_on
 
-   !> What is tried where no smaller step converges: strengths by the last equilibrium, then damped iterations
+   !> What is tried where no smaller step converges: strengths by the last equilibrium, then damped iterations, then both
    pure subroutine try_otherwise(now)
       type(frame_state), intent(inout) :: now
-      now%damped = now%lagged
-      now%lagged = .not. now%lagged
+      logical :: was
+      was = now%damped
+      now%damped = was .or. now%lagged
+      now%lagged = was .or. .not. now%lagged
    end subroutine try_otherwise
 
    !> How a step that failed begins anew: first from the last equilibrium; then it is cut, and goes on as the last one did
@@ -247,7 +249,7 @@ contains
       real(wp), intent(inout) :: multiple
       type(push_path), intent(inout) :: path
       integer(c_int), intent(out) :: status
-      type(frame_state) :: now, from
+      type(frame_state) :: now, from   ! now: once damped, it stays so
       type(last_step) :: last
       real(wp) :: part, trial, kept
       logical :: goes_on, cut
@@ -276,25 +278,29 @@ contains
             if (.not. cut) cycle
             part = 0.5_wp * part
             if (part < 1.0e-3_wp) then
-               if (now%damped) then
+               if (now%damped .and. now%lagged) then
                   path%loose = maxloc(abs(now%d - past%d), 1)
                   return
                end if
                call try_otherwise(now)
-               part = 0.05_wp
+               part = merge(0.25_wp, 0.05_wp, now%damped)
             end if
             cycle
          end if
          now%lagged = .false.
-         now%damped = .false.
          goes_on = .true.
          call keep_step(last, part, past, now, trial - multiple)
+         part = min(0.25_wp, 2.0_wp * part)
          multiple = trial
          call commit(model, now, failed)
          call take_over(now, past)
          if (failed == 0 .and. all(past%element%state < frame_state_failed_flexure .or. &
             past%element%left <= model%element%kept)) exit
       end do
+      if (tries > most_parts) then   ! moments are left that have not faded
+         status = status_too_many_steps
+         path%loose = maxloc(abs(now%d - from%d), 1)
+      end if
       call note(path, past, moved, multiple)
    end subroutine redistribute
 

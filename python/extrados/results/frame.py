@@ -82,8 +82,8 @@ class FramePush(ResultModel):
         "control displacement at which the base shear has decreased by 20 %; null if the curve does not reach it", "m"
     )
     ultimate_displacement_m: float | None = fact(
-        "ultimate displacement: the lesser of the displacement at 20 % decrease and of that at which all piers of one "
-        "storey of a wall are at their drift limit; null if the curve reaches neither",
+        "ultimate displacement: the least of the displacement at 20 % decrease, of that at which all piers of one storey of a wall "
+        "are at their drift limit, and of the end of a curve without equilibrium beyond a drift limit; null if the curve reaches none",
         "m",
     )
     stiffness_N_m: float = fact("secant stiffness at a tenth of the greatest base shear", "N/m")

@@ -23,6 +23,8 @@ from extrados.results import frame as out
 from extrados.results.model import Array, Result, TableData
 from extrados.views.frame.frame import EquivalentFrame
 
+#: End of a push of which no smaller step is in equilibrium
+WITHOUT = "no equilibrium at the least step"
 #: Fall of the base shear at which codes take a building as failed
 DROP = 0.8
 #: Modes among which the main one of a direction is sought
@@ -183,6 +185,10 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
     storeys = _limits(frame, push, path)
     limits = [s["all_at_limit_m"] for s in storeys if s["all_at_limit_m"] is not None]
     ends = [d for d in (drop, *limits) if d is not None]
+    stop, failed = path.stop, _failed(frame, path)
+    if stop == WITHOUT and failed:  # the curve cannot go on: its end is on the safe side
+        stop = f"no equilibrium beyond the drift limit of {failed[-1]['element']}"
+        ends.append(float(moved[-1]))
     mass = frame.mass
     shape = push.mode.shape / float(push.control @ push.mode.shape)
     unit = frame.unit(push.way)
@@ -196,7 +202,7 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
         "sense": push.sense,
         "pattern": push.pattern,
         "eccentricity": float(push.eccentricity),
-        "stop": path.stop,
+        "stop": stop,
         **({} if path.loose is None else {"lost_at": place_of(frame, path.loose)}),
         "control_displacement_m": moved,
         "base_shear_N": shear,
@@ -211,7 +217,7 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
         "level_mass_kg": [sum(one.mass for one in frame.masses if one.level == k) for k in levels],
         "level_shape": [float(frame.control(push.way, k) @ shape) for k in levels],
         "storeys": storeys,
-        "failed": _failed(frame, path),
+        "failed": failed,
     }
 
 
@@ -325,5 +331,5 @@ def _answer(r: out.FramePushover) -> str:
         text += f" {r.weakest_wall()}"
     lost = [f"{row.name} ({row.lost_at})" if row.lost_at else row.name for row in r.runs if row.stop.startswith("no equilibrium")]
     if lost:
-        text += f" These runs ended without equilibrium at the least step: {', '.join(lost)}."
+        text += f" These runs ended without equilibrium: {', '.join(lost)}."
     return text
