@@ -60,20 +60,24 @@ module dem3_law
    real(wp), parameter :: still_same = 0.1_wp
    !> Of how far bodies move between two looks: overlap at which a contact may come to be with its force
    real(wp), parameter :: deep = 0.1_wp
+   !> Times the energy before a look, or its inverse: the springs after it are others, as where edges that cross give way to faces
+   real(wp), parameter :: jump = 1.02_wp
 
 contains
 
    !> Where a pair touches, looked at anew if its bodies have moved relative to each other by more than `far`; what goes
-   !> on keeps its springs. What the springs of all gain or lose by that is not recorded: it shows as an error of the energy balance.
-   pure subroutine find_points(set, far, margin, pair)
+   !> on keeps its springs. The little that the springs gain or lose as the shared area changes is not recorded: it shows as an
+   !> error of the energy balance.
+   pure subroutine find_points(law, set, far, margin, pair)
+      type(joint_law), intent(in) :: law
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: far               !! [m]
       real(wp), intent(in) :: margin            !! [m]
       type(contact_pair), intent(inout) :: pair
-      real(wp) :: place(3), turn(3, 3)
-      logical :: fresh
+      real(wp) :: place(3), turn(3, 3), held
+      logical :: later, presses, bound
 
-      fresh = pair%marks(1) >= 0              ! what overlaps as a run begins is pressed together
+      later = pair%marks(1) >= 0              ! what overlaps as a run begins is pressed together
       associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
          place = matmul(b%x - a%x, a%turn)
          turn = matmul(transpose(a%turn), b%turn)
@@ -85,10 +89,61 @@ contains
       end associate
       pair%place = place
       pair%turn = turn
-      if (allocated(pair%point)) fresh = fresh .and. size(pair%point) == 0
+      presses = .false.
+      bound = .false.
+      if (pair%points > 0) then
+         presses = any(pair%point(:pair%points)%spring_n > 0.0_wp)
+         bound = any(pair%point(:pair%points)%bonded)
+      end if
+      held = 0.0_wp
+      if (presses .and. .not. bound) held = energy_here(law, set, pair)
       call find_anew(set, margin, pair)
-      if (fresh) call free_of_force(set, deep * far, pair)
+      if (later .and. .not. (presses .or. bound)) call free_of_force(set, deep * far, pair)
+      if (held > 0.0_wp) call keep_energy(law, set, held, pair)
    end subroutine find_points
+
+   !> Energy that the springs of a pair hold at the present places of its bodies [J]
+   pure function energy_here(law, set, pair) result(energy)
+      type(joint_law), intent(in) :: law
+      type(body_set), intent(in) :: set
+      type(contact_pair), intent(in) :: pair
+      real(wp) :: energy
+      real(wp) :: normal(3), gap, at(3)
+      integer :: i
+      energy = 0.0_wp
+      do i = 1, pair%points
+         associate (point => pair%point(i))
+            call measure_feature(point%what, set%item(set%parts(pair%part(1))%owner), &
+               set%item(set%parts(pair%part(2))%owner), normal, gap, at)
+            gap = min(gap - point%filled, 0.0_wp)
+            energy = energy + 0.5_wp * law%normal_stiffness * point%what%area * gap**2 &
+               + 0.5_wp * dot_product(point%spring_s, point%spring_s) / (law%shear_stiffness * point%what%area)
+         end associate
+      end do
+   end function energy_here
+
+   !> Where other features carry a pair from here on, with other areas, they begin with the energy that was held at most; what is
+   !> less is lost, and recorded with the losses along the normal
+   pure subroutine keep_energy(law, set, held, pair)
+      type(joint_law), intent(in) :: law
+      type(body_set), intent(in) :: set
+      real(wp), intent(in) :: held              !! before [J]
+      type(contact_pair), intent(inout) :: pair
+      real(wp) :: normal(3), gap, at(3), now, part
+      integer :: i
+      now = energy_here(law, set, pair)
+      if (now * jump < held) pair%damping_loss = pair%damping_loss + held - now
+      if (now <= jump * held) return
+      part = sqrt(held / now)
+      do i = 1, pair%points
+         associate (point => pair%point(i))
+            call measure_feature(point%what, set%item(set%parts(pair%part(1))%owner), &
+               set%item(set%parts(pair%part(2))%owner), normal, gap, at)
+            point%filled = point%filled + (1.0_wp - part) * min(gap - point%filled, 0.0_wp)
+            point%spring_s = part * point%spring_s
+         end associate
+      end do
+   end subroutine keep_energy
 
    !> Where a pair touches now. Apart from find_points, which is called far more often than it must search:
    !> a patch is long.

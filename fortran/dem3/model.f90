@@ -143,7 +143,7 @@ contains
       integer :: k
       do k = 1, model%pairs
          associate (pair => model%pair(k), parts => model%set%parts)
-            call find_points(model%set, model%far, model%margin, pair)
+            call find_points(model%law(pair%law), model%set, model%far, model%margin, pair)
             call bond_points(model%law(pair%law), touching * model%skin, model%set%item(parts(pair%part(1))%owner), &
                model%set%item(parts(pair%part(2))%owner), pair)
          end associate
@@ -452,7 +452,7 @@ contains
                  b => model%set%item(model%set%parts(pair%part(2))%owner))
          if (pair%marks(1) == a%marks .and. pair%marks(2) == b%marks) return
       end associate
-      call find_points(model%set, model%far, model%margin, pair)
+      call find_points(model%law(pair%law), model%set, model%far, model%margin, pair)
    end subroutine look_anew
 
    !> Body force and velocity of the ground in this step
@@ -542,7 +542,7 @@ contains
       stiffness = 0.0_wp
       do k = 1, merge(0, model%pairs, model%rigid%setting%used)
          associate (pair => model%pair(k), parts => model%set%parts)
-            call find_points(model%set, model%far, model%margin, pair)
+            call find_points(model%law(pair%law), model%set, model%far, model%margin, pair)
             share = merge(1.0_wp, 2.0_wp, model%set%item(parts(pair%part(1))%owner)%fixed &
                .or. model%set%item(parts(pair%part(2))%owner)%fixed)
             do i = 1, pair%points

@@ -175,6 +175,7 @@ contains
       type(dense_step), intent(inout) :: step
       logical, intent(out) :: stopped
       type(joint_demand), intent(inout) :: demand
+      type(joint_demand) :: found
       type(power_series) :: series
       real(wp) :: value(2), slope(2), begin, h, q_end, v_end, sigma
       integer :: c, i, k
@@ -205,12 +206,23 @@ contains
             call take_over(series, h, q_end, v_end, step)
             exit
          end if
+         if (watched) then
+            found = demand
+            call model%watch%check_demand(i, q_end, v_end, value(1) + slope(1) * spacing, value(2) + slope(2) * spacing, &
+               [real(wp) ::], begin + h, found)
+            ! Where a condition fails first, the general integrator finds the time
+            stopped = (found%slips_at >= 0.0_wp .and. demand%slips_at < 0.0_wp) .or. (found%leaves_at >= 0.0_wp &
+               .and. demand%leaves_at < 0.0_wp)
+            if (stopped) then
+               step%t = begin
+               call take_over(series, h, q_end, v_end, step)
+               exit
+            end if
+            demand = found
+         end if
          q = q_end
          v = v_end
          passed = passed + 1
-         if (watched) call model%watch%check_demand(i, q, v, value(1) + slope(1) * spacing, &
-            value(2) + slope(2) * spacing, &
-            begin + h, demand)
       end do
    end subroutine glide_samples
 

@@ -52,7 +52,7 @@ contains
       type(arch_rocker), allocatable :: arch
       type(block_rocker), allocatable :: stone
       type(table_rocker), allocatable :: tabulated
-      integer :: last, stat
+      integer :: last, restraints, stat
 
       select case (kind)
       case (body_arch)
@@ -99,7 +99,9 @@ contains
          if (status /= status_ok) return
          allocate (body%watch, stat=stat)
          status = status_out_of_memory
-         if (stat == 0) call joint_watch_new(parameters(last + 1:), body%watch, status)
+         restraints = 0
+         if (allocated(body%held)) restraints = body%held%count
+         if (stat == 0) call joint_watch_new(parameters(last + 1:), restraints, body%watch, status)
       case default
          status = status_invalid_argument
       end select

@@ -13,6 +13,7 @@ module rocking_modes
    use common_signal, only : signal
    use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_step_too_small, &
       status_too_many_steps
+   use rocking_watch, only : joint_demand
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -29,12 +30,17 @@ module rocking_modes
       integer :: segment = 0       !! of the motion
       real(wp) :: longest = 0.05_wp  !! step [s]
       logical :: moved = .false.   !! something opened
+      real(wp) :: friction(2) = huge(1.0_wp)  !! of the contacts
+      type(joint_demand) :: demand            !! on the contacts
+      real(wp) :: before = 0.0_wp             !! time of the demand noted last [s], and its state
+      real(wp) :: state_before(4) = 0.0_wp
    contains
       procedure :: ground
       procedure(inside), deferred :: inside
       procedure(leave_mode), deferred :: leave_mode
       procedure(fallen), deferred :: fallen
       procedure(store_row), deferred :: store_row
+      procedure(needed_at), deferred :: needed_at
       procedure :: renew_mode
       procedure :: trim_state
       procedure :: resting
@@ -67,6 +73,16 @@ module rocking_modes
    end type mode_history
 
    abstract interface
+      !> Friction that both contacts need in a state, huge where one parts as a whole; 0 where nothing is needed
+      function needed_at(body, t, y) result(needed)
+         import :: mode_rocker, wp
+         implicit none (type, external)
+         class(mode_rocker), intent(in) :: body
+         real(wp), intent(in) :: t     !! [s]
+         real(wp), intent(in) :: y(:)  !! the first four numbers of the state
+         real(wp) :: needed(2)
+      end function needed_at
+
       !> Above zero while the mode holds
       function inside(body, t, y) result(margin)
          import :: mode_rocker, wp
@@ -166,13 +182,76 @@ contains
       end associate
    end function known
 
-   !> The demand on the joints of a state; none unless a structure says otherwise
+   !> Friction that the contacts need, and whether one parts as a whole; the first time of each lies within the step since the
+   !> state before
    subroutine note_demand(body, t, y)
       class(mode_rocker), intent(inout) :: body
       real(wp), intent(in) :: t     !! [s]
       real(wp), intent(in) :: y(:)  !! state
-      associate (unused => body%moved, unused_t => t, unused_y => y)
-      end associate
+      integer, parameter :: within = 4, halvings = 30
+      real(wp) :: needed(2), low, high, middle
+      integer :: i, k, contact
+      logical :: first(2)  ! sliding and parting have not come before this step
+
+      first = [body%demand%slips_at, body%demand%leaves_at] < 0.0_wp
+      do i = 1, within
+         if (i < within .and. .not. t > body%before) cycle
+         high = real(i, wp) / real(within, wp)
+         needed = needed_within(high)
+         if (.not. body%resting()) body%demand%friction = max(body%demand%friction, maxval(needed))
+         do k = 1, 2
+            contact = fails(k, needed)
+            if (.not. first(k) .or. contact == 0) cycle
+            low = high - 1.0_wp / real(within, wp)
+            do while (high - low > 0.5_wp**halvings)
+               middle = 0.5_wp * (low + high)
+               if (fails(k, needed_within(middle)) == 0) then
+                  low = middle
+               else
+                  high = middle
+               end if
+            end do
+            first(k) = .false.
+            if (k == 1) then
+               body%demand%slips_at = body%before + high * (t - body%before)
+               body%demand%slips = contact
+            else
+               body%demand%leaves_at = body%before + high * (t - body%before)
+               body%demand%leaves = contact
+            end if
+            high = real(i, wp) / real(within, wp)
+         end do
+      end do
+      body%before = t
+      body%state_before = y(1:4)
+
+   contains
+
+      !> The contact that slides (k = 1) or parts (k = 2), 0 none
+      pure function fails(k, demand) result(found)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: demand(2)
+         integer :: found
+         found = findloc(demand > merge(body%friction, 0.5_wp * huge(1.0_wp), k == 1), .true., dim=1)
+      end function fails
+
+      !> Friction at a fraction of the step: places by the cubic through both ends, rates linear
+      function needed_within(s) result(demand)
+         real(wp), intent(in) :: s
+         real(wp) :: demand(2)
+         real(wp) :: h, at(4)
+         h = t - body%before
+         at = y(1:4)
+         if (s < 1.0_wp) then
+            associate (p => body%state_before)
+               at(1:2) = p(1:2) + s**2 * (3.0_wp - 2.0_wp * s) * (y(1:2) - p(1:2)) &
+                  + h * s * (1.0_wp - s) * ((1.0_wp - s) * p(3:4) - s * y(3:4))
+               at(3:4) = p(3:4) + s * (y(3:4) - p(3:4))
+            end associate
+         end if
+         demand = body%needed_at(body%before + s * h, at)
+      end function needed_within
+
    end subroutine note_demand
 
    !> The first two numbers of the state where they were farthest from zero
@@ -218,6 +297,7 @@ contains
       call note_value(3, y(2) - y(1))
       rate_known = .false.
       t = 0.0_wp
+      body%state_before = y(1:4)
       body%segment = 0
       do while (body%segment <= body%motion%segments)
          if (body%motion%break_time(body%segment + 1) > t) exit

@@ -277,6 +277,7 @@ contains
          if (.not. associated(problem%ground%samples) .or. problem%segment < 1) return
          if (allocated(problem%body%watch)) then
             if (any(problem%body%watch%slides < huge(1.0_wp)) .and. state%answer%joints%slips_at < 0.0_wp) return
+            if (any(problem%body%watch%opens < huge(1.0_wp)) .and. state%answer%joints%leaves_at < 0.0_wp) return
          end if
          calm = last_calm(problem, problem%segment, state%options%end_time)
          if (calm < problem%segment) return
@@ -400,7 +401,6 @@ contains
       v_before = min(state%step%v, 0.0_wp)
       state%q = 0.0_wp
       state%v = v_before
-      call state%check_demand()
       if (associated(state%history)) then
          call state%history%note_event(event_impact, state%t, real(state%problem%side, wp) * v_before)
          call state%history%book_loss(state%problem, -v_before, 1.0_wp)
@@ -469,7 +469,6 @@ contains
       call state%note_peak(state%q)
       if (allocated(state%problem%memory)) call state%problem%body%held%note_forces(side_index(state%problem%side), &
          state%q, state%v, state%problem%memory)
-      call state%check_demand()
       was_quiet = state%quiet()
       call state%advance_segment()
       if (state%renew) call state%check_demand()  ! the ground jumps here
@@ -586,49 +585,115 @@ contains
    !> What the joints must carry in this state
    subroutine check_demand(state)
       class(run_state), intent(inout) :: state
-      real(wp) :: horizontal, vertical
-      if (.not. allocated(state%problem%body%watch)) return
-      call state%problem%ground%value_at(state%problem%segment, state%t, horizontal, vertical)
-      call state%problem%body%watch%check_demand(side_index(state%problem%side), state%q, state%v, horizontal, &
-         vertical, &
-         state%t, state%answer%joints)
+      if (allocated(state%problem%body%watch)) call demand_at(state%problem, state%t, state%q, state%v, state%answer%joints)
    end subroutine check_demand
 
-   !> What they must carry within the first part of the last step, where it is long
+   !> What they must carry within the first part of the last step, and when a condition fails there first
    subroutine look_within(state, part)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: part  !! of the step
-      real(wp) :: x, t, horizontal, vertical
+      type(joint_demand) :: before
+      real(wp) :: x, last
       integer :: k, count
       if (.not. allocated(state%problem%body%watch)) return
-      count = min(1000, ceiling(part * state%step%h / state%look_every))
-      do k = 1, count - 1
-         x = part * real(k, wp) / real(count, wp)
-         t = state%step%t + x * state%step%h
-         call state%problem%ground%value_at(state%problem%segment, t, horizontal, vertical)
-         call state%problem%body%watch%check_demand(side_index(state%problem%side), state%step%coordinate(x), &
-            state%step%rate(x), horizontal, vertical, t, state%answer%joints)
-      end do
+      count = max(1, min(1000, ceiling(part * state%step%h / state%look_every)))
+      x = 0.0_wp
+      associate (found => state%answer%joints)
+         do k = 1, count
+            last = x
+            x = part * real(k, wp) / real(count, wp)
+            before = found
+            call demand_within(state%problem, state%step, x, found)
+            if (before%slips_at < 0.0_wp .and. found%slips_at >= 0.0_wp) then
+              call first_failure(state%problem, state%step, last, x, .true., found%slips_at, found%slips)
+            end if
+            if (before%leaves_at < 0.0_wp .and. found%leaves_at >= 0.0_wp) then
+              call first_failure(state%problem, state%step, last, x, .false., found%leaves_at, found%leaves)
+            end if
+         end do
+      end associate
    end subroutine look_within
 
-   !> Does the resting structure slide before a time? It does so as another mechanism would rise
+   !> Time and joint at which a condition fails first between two fractions of a step: it holds at the first, and fails at the last
+   subroutine first_failure(problem, step, first, last, slides, time, joint)
+      type(equation_of_motion), intent(in) :: problem
+      type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: first, last
+      logical, intent(in) :: slides       !! friction; else the thrust line
+      real(wp), intent(out) :: time       !! [s]
+      integer, intent(inout) :: joint     !! as it fails at the last fraction
+      type(joint_demand) :: probe
+      real(wp) :: low, high, middle
+      integer :: n
+      low = first
+      high = last
+      do n = 1, 40
+         middle = 0.5_wp * (low + high)
+         if ((high - low) * step%h <= 4.0_wp * spacing(step%t + step%h)) exit
+         probe = joint_demand()
+         call demand_within(problem, step, middle, probe)
+         if (merge(probe%slips_at, probe%leaves_at, slides) >= 0.0_wp) then
+            high = middle
+            joint = merge(probe%slips, probe%leaves, slides)
+         else
+            low = middle
+         end if
+      end do
+      time = step%t + high * step%h
+   end subroutine first_failure
+
+   !> What the joints must carry at a fraction of a step
+   subroutine demand_within(problem, step, x, demand)
+      type(equation_of_motion), intent(in) :: problem
+      type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: x
+      type(joint_demand), intent(inout) :: demand
+      call demand_at(problem, step%t + x * step%h, step%coordinate(x), step%rate(x), demand)
+   end subroutine demand_within
+
+   !> What the joints of a watched structure must carry at a time of the present segment
+   subroutine demand_at(problem, t, q, v, demand)
+      type(equation_of_motion), intent(in) :: problem
+      real(wp), intent(in) :: t  !! [s]
+      real(wp), intent(in) :: q  !! rotation [rad]
+      real(wp), intent(in) :: v  !! its rate [rad/s]
+      type(joint_demand), intent(inout) :: demand
+      real(wp) :: horizontal, vertical, pull(problem%body%watch%restraints)
+      integer :: i
+      i = side_index(problem%side)
+      call problem%ground%value_at(problem%segment, t, horizontal, vertical)
+      if (size(pull) > 0) call problem%body%held%find_forces(i, q, v, problem%memory, pull)
+      call problem%body%watch%check_demand(i, q, v, horizontal, vertical, pull, t, demand)
+   end subroutine demand_at
+
+   !> Does the resting structure slide, or open elsewhere, before a time? It does so as another mechanism would rise
    subroutine look_at_rest(state, until)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: until  !! [s]
-      type(equation_of_motion) :: slide
+      associate (watch => state%problem%body%watch, found => state%answer%joints)
+         call first_above(state%problem, state%t, until, watch%slides, found%slips_at)
+         call first_above(state%problem, state%t, until, watch%opens, found%leaves_at)
+      end associate
+   end subroutine look_at_rest
+
+   !> First time at which the ground of the present segment exceeds an acceleration of a side, where none was found before
+   subroutine first_above(problem, from, until, limit, time)
+      type(equation_of_motion), intent(in) :: problem
+      real(wp), intent(in) :: from, until  !! [s]
+      real(wp), intent(in) :: limit(2)     !! of the sides +1 and -1 [m/s^2]
+      real(wp), intent(inout) :: time      !! below 0: not found [s]
+      type(equation_of_motion) :: other
       real(wp) :: when
       integer :: side
-      associate (limit => state%problem%body%watch%slides)
-         if (all(limit >= huge(1.0_wp)) .or. state%answer%joints%slips_at >= 0.0_wp) return
-         slide%body => state%problem%body
-         slide%ground = state%problem%ground
-         slide%segment = state%problem%segment
-         slide%rest_dv = limit
-         slide%rest_dh = 1.0_wp
-      end associate
-      call find_uplift(slide, state%t, until, when, side)
-      if (side /= 0) state%answer%joints%slips_at = when
-   end subroutine look_at_rest
+      if (all(limit >= huge(1.0_wp)) .or. time >= 0.0_wp) return
+      other%body => problem%body
+      other%ground = problem%ground
+      other%segment = problem%segment
+      other%rest_dv = limit
+      other%rest_dh = 1.0_wp
+      call find_uplift(other, from, until, when, side)
+      if (side /= 0) time = when
+   end subroutine first_above
 
    !> Keep the rotation of greatest size
    subroutine note_peak(state, rotation)

@@ -36,14 +36,19 @@ module rocking_soft_base_response
       procedure :: upright
       procedure :: known
       procedure :: store_row
+      procedure :: needed_at
    end type soft_base_rocker
 
    !> A block as an ensemble rocks it: its numbers (see soft_base_parameters), then the critical rotations to +x and to
-   !> -x, both above zero [rad]
+   !> -x, both above zero [rad], and the friction of its base, huge where it does not slide
    type :: soft_base_body
       type(soft_base) :: block
       real(wp) :: critical(2) = 0.0_wp
+      real(wp) :: friction = huge(1.0_wp)
    end type soft_base_body
+
+   !> A base that presses with less than this share of the weight lets the block fly
+   real(wp), parameter :: flies = 0.01_wp
 
 contains
 
@@ -53,9 +58,10 @@ contains
       type(soft_base_body), intent(out) :: body
       integer(c_int), intent(out) :: status
       status = status_invalid_argument
-      if (size(parameters) /= soft_base_parameters + 2) return
-      body%critical = parameters(soft_base_parameters + 1:)
-      if (any(body%critical <= 0.0_wp)) return
+      if (size(parameters) /= soft_base_parameters + 3) return
+      if (any(parameters(soft_base_parameters + 1:) <= 0.0_wp)) return
+      body%critical = parameters(soft_base_parameters + 1:soft_base_parameters + 2)
+      body%friction = parameters(soft_base_parameters + 3)
       call soft_base_new(parameters(:soft_base_parameters), body%block, status)
    end subroutine soft_base_body_new
 
@@ -78,6 +84,7 @@ contains
       record%event => no_events
       rocker%block = body%block
       rocker%critical = body%critical
+      rocker%friction = body%friction
       rocker%stop_when_safe = options%stop_when_safe
       y = 0.0_wp
       y(1) = real(options%start_side, wp) * options%start_q
@@ -93,6 +100,7 @@ contains
       answer%stop_time = record%stop_time
       answer%steps = record%steps
       answer%settled = record%settled
+      answer%joints = rocker%demand
    end subroutine soft_base_respond
 
    !> Rock the block from a state until the end time or collapse
@@ -256,6 +264,27 @@ contains
       if (y(1) <= -body%block%limit(1)) place = -1
       if (y(1) >= body%block%limit(2)) place = 1
    end function fallen
+
+   !> Friction that the base needs up to the critical rotations, huge where the block flies
+   function needed_at(body, t, y) result(needed)
+      class(soft_base_rocker), intent(in) :: body
+      real(wp), intent(in) :: t
+      real(wp), intent(in) :: y(:)
+      real(wp) :: needed(2)
+      type(base_contact) :: base
+      real(wp) :: shaking(2), a(2), x(2)
+      needed = 0.0_wp
+      if (all(body%critical > 0.0_wp) .and. (y(1) > body%critical(1) .or. y(1) < -body%critical(2))) return
+      shaking = body%ground(t)
+      associate (block => body%block)
+         base = contact_of(block, y)
+         needed(1) = huge(1.0_wp)
+         if (base%force < flies * block%mass * gravity) return
+         a = accelerations(block, y, base, shaking)
+         x = lever(block, y(1))
+         needed(1) = abs(block%mass * (x(1) * a(1) + x(2) * y(3)**2 + shaking(1))) / base%force
+      end associate
+   end function needed_at
 
    !> What is stored of a state, see soft_base_rows
    subroutine store_row(body, t, y, loss, values)

@@ -9,7 +9,6 @@ module rocking_stack_response
    use rocking_response, only : response, response_options
    use rocking_stack, only : choose_pivots, contact_forces, energies, motion_about, power, pressing, solved, stack, &
       stack_impact, stack_new, stack_parameters
-   use rocking_watch, only : joint_demand
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -27,10 +26,6 @@ module rocking_stack_response
       integer :: s(2) = 0                !! pivots
       real(wp) :: scale(2) = 0.0_wp      !! moments of the weights about the edges of the contacts [N m]
       real(wp) :: critical(2) = huge(1.0_wp)  !! |q1| and |q2 - q1| up to which joints are checked [rad]
-      real(wp) :: friction(2) = huge(1.0_wp)  !! of the contacts
-      type(joint_demand) :: demand            !! joint 1 on the ground, 2 between
-      real(wp) :: before = 0.0_wp             !! time of the demand noted last [s], and its state
-      real(wp) :: state_before(4) = 0.0_wp
    contains
       procedure :: find_rates
       procedure :: inside
@@ -41,7 +36,7 @@ module rocking_stack_response
       procedure :: resting
       procedure :: store_row
       procedure :: closes
-      procedure :: note_demand
+      procedure :: needed_at
    end type stack_rocker
 
    !> A stack as an ensemble rocks it: its numbers (see stack_parameters), then the critical rotations of both as one and
@@ -143,7 +138,6 @@ contains
       if (abs(r) > 0.0_wp) rocker%s(2) = nint(sign(1.0_wp, r))
       rocker%moved = any(rocker%s /= 0)
       if (rocker%moved) history%half_cycles = 1
-      rocker%state_before = start
       atol(1:2) = 0.01_wp * tolerance * maxval(body%limit)
       atol(3:4) = 10.0_wp * tolerance * maxval(body%rest_rate)
       atol(5) = tolerance * sum(body%mass) * gravity * body%half(1) * maxval(body%limit)
@@ -276,91 +270,27 @@ contains
       body%moved = body%moved .or. any(body%s /= 0)
    end subroutine renew_mode
 
-   !> Friction that both joints need, and whether one parts as a whole, up to the critical rotations; the first time of
-   !> each lies within the step since the state before
-   subroutine note_demand(body, t, y)
-      class(stack_rocker), intent(inout) :: body
+   !> Friction that both joints need while the stack rocks, huge where a joint parts; 0 beyond the critical rotations
+   function needed_at(body, t, y) result(needed)
+      class(stack_rocker), intent(in) :: body
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
-      integer, parameter :: looks = 4, halvings = 30
-      real(wp) :: needed(2), low, high, middle
-      integer :: i, k, joint
-      logical :: first(2)  ! sliding and parting have not come before this step
-
-      first = [body%demand%slips_at, body%demand%leaves_at] < 0.0_wp
-      do i = 1, looks
-         ! looks within the step serve the first time alone
-         if (i < looks .and. .not. (any(first) .and. t > body%before)) cycle
-         high = real(i, wp) / real(looks, wp)
-         needed = needed_at(high)
-         if (any(body%s /= 0)) body%demand%friction = max(body%demand%friction, maxval(needed))
-         do k = 1, 2
-            joint = fails(k, needed)
-            if (.not. first(k) .or. joint == 0) cycle
-            low = high - 1.0_wp / real(looks, wp)
-            do while (high - low > 0.5_wp**halvings)
-               middle = 0.5_wp * (low + high)
-               if (fails(k, needed_at(middle)) == 0) then
-                  low = middle
-               else
-                  high = middle
-               end if
-            end do
-            first(k) = .false.
-            if (k == 1) then
-               body%demand%slips_at = body%before + high * (t - body%before)
-               body%demand%slips = joint
-            else
-               body%demand%leaves_at = body%before + high * (t - body%before)
-               body%demand%leaves = joint
-            end if
-            high = real(i, wp) / real(looks, wp)
-         end do
-      end do
-      body%before = t
-      body%state_before = y(1:4)
-
-   contains
-
-      !> The joint that slides (k = 1) or parts (k = 2), 0 none
-      pure function fails(k, demand) result(joint_found)
-         integer, intent(in) :: k
-         real(wp), intent(in) :: demand(2)
-         integer :: joint_found
-         joint_found = findloc(demand > merge(body%friction, 0.5_wp * huge(1.0_wp), k == 1), .true., dim=1)
-      end function fails
-
-      !> Friction that both joints need at a fraction of the step, huge where a joint parts; 0 beyond the critical rotations
-      function needed_at(s) result(demand)
-         real(wp), intent(in) :: s
-         real(wp) :: demand(2)
-         real(wp) :: h, at(4), shaking(2), a(2), force(4), normal(2)
-         h = t - body%before
-         at = y(1:4)
-         if (s < 1.0_wp) then
-            ! rotations by the cubic through both ends, rates linear
-            associate (p => body%state_before)
-               at(1:2) = p(1:2) + s**2 * (3.0_wp - 2.0_wp * s) * (y(1:2) - p(1:2)) &
-                  + h * s * (1.0_wp - s) * ((1.0_wp - s) * p(3:4) - s * y(3:4))
-               at(3:4) = p(3:4) + s * (y(3:4) - p(3:4))
-            end associate
-         end if
-         demand = 0.0_wp
-         if (any(abs([at(1), at(2) - at(1)]) > body%critical)) return
-         shaking = body%ground(body%before + s * h)
-         a = solved(motion_about(body%body, body%s, at(1:2), at(3:4), shaking), body%s)
-         force = contact_forces(body%body, body%s, at(1:2), at(3:4), a, shaking)
-         ! the joint between turns with the lower block
-         normal = [force(2), sin(at(1)) * force(3) + cos(at(1)) * force(4)]
-         demand = abs([force(1), cos(at(1)) * force(3) - sin(at(1)) * force(4)])
-         where (normal > 0.0_wp)
-            demand = demand / normal
-         else where
-            demand = huge(1.0_wp)
-         end where
-      end function needed_at
-
-   end subroutine note_demand
+      real(wp) :: needed(2)
+      real(wp) :: shaking(2), a(2), force(4), normal(2)
+      needed = 0.0_wp
+      if (any(abs([y(1), y(2) - y(1)]) > body%critical)) return
+      shaking = body%ground(t)
+      a = solved(motion_about(body%body, body%s, y(1:2), y(3:4), shaking), body%s)
+      force = contact_forces(body%body, body%s, y(1:2), y(3:4), a, shaking)
+      ! the joint between turns with the lower block
+      normal = [force(2), sin(y(1)) * force(3) + cos(y(1)) * force(4)]
+      needed = abs([force(1), cos(y(1)) * force(3) - sin(y(1)) * force(4)])
+      where (normal > 0.0_wp)
+         needed = needed / normal
+      else where
+         needed = huge(1.0_wp)
+      end where
+   end function needed_at
 
    !> What is stored of a state, see stack_rows
    subroutine store_row(body, t, y, loss, values)

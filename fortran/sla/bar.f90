@@ -40,6 +40,7 @@ module sla_bar
       procedure :: report => bar_report
       procedure :: state => bar_state
       procedure :: margin => bar_margin
+      procedure :: is_elastic
    end type bar_group
 
    !> Springs between two freedoms, or one and the ground; they have no integration points
@@ -161,6 +162,17 @@ contains
       logical :: yes
       yes = group%table(e) == 0 .and. group%crush_table(e) == 0 .and. .not. abs(group%sense(e)) > 0.0_wp
    end function is_free
+
+   !> Are all bars without limits?
+   pure function is_elastic(group) result(yes)
+      class(bar_group), intent(in) :: group
+      logical :: yes
+      integer :: e
+      yes = .true.
+      do e = 1, group%elements
+         yes = yes .and. is_free(group, e)
+      end do
+   end function is_elastic
 
    pure subroutine bar_scan(group, first, last, ua, ub, lambda, noise, found)
       class(bar_group), intent(in) :: group

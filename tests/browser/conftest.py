@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 from served import SHOTS, SIZE, Served, chromium
@@ -38,6 +39,12 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     found.close()
 
 
+def is_foreign(url: str, own: str) -> bool:
+    """Whether a request goes to another host than that of the page. A new server on the same machine is none."""
+    place = urlsplit(url)
+    return place.scheme not in ("data", "blob", "file") and place.hostname != own.split(":")[0]
+
+
 @pytest.fixture
 def page(browser: Any, request: pytest.FixtureRequest) -> Iterator[Any]:
     """The page, open and ready; its picture is kept at the end, and nothing may have gone wrong in it."""
@@ -47,6 +54,8 @@ def page(browser: Any, request: pytest.FixtureRequest) -> Iterator[Any]:
     troubles: list[str] = []
     opened.on("pageerror", lambda error: troubles.append(str(error)))
     opened.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
+    own = served.address.split("/")[2]
+    opened.on("request", lambda request: troubles.append(f"asks for {request.url}") if is_foreign(request.url, own) else None)
     opened.set_default_timeout(60_000)
     opened.goto(served.address)
     opened.wait_for_selector("[data-handle=thickness]")

@@ -45,6 +45,27 @@ def test_a_dead_server_is_reported_and_comes_back_with_the_state(page: Any, serv
     assert capacity(page) != shown
 
 
+def test_a_server_that_is_begun_anew_has_the_deck_of_the_last_page(page: Any, served: Served) -> None:
+    """The whole program is killed and started again: its address is new. The open page says so and where its deck is."""
+    drag(page, "[data-handle=thickness] .hit", 0, -15)
+    text = settled(page)
+    port = served.address.split("/")[2].split(":")[1]
+    os.killpg(served.process.pid, signal.SIGKILL)
+    served.process.wait()
+    until(page, "document.querySelector('.banner').textContent.includes('does not answer')")
+    again = Served(served.folder, "--port", port)
+    try:
+        until(page, "document.querySelector('.banner').textContent.includes('was started again')")
+        assert page.evaluate("window.extrados.text") == text
+        page.goto(again.address)
+        page.wait_for_selector("[data-handle=thickness]")
+        page.get_by_role("button", name="Open…", exact=True).click()
+        page.get_by_role("button", name="the deck of your last page").click()
+        until(page, "text => window.extrados.text === text", arg=text)
+    finally:
+        again.close()
+
+
 def test_two_pages_do_not_disturb_each_other(page: Any, served: Served) -> None:
     other = page.context.new_page()
     other.goto(served.address)

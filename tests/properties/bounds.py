@@ -208,6 +208,7 @@ def energies(deck: Deck, motion: Deck, within: float) -> None:
             for name in ("friction_loss_J", "damping_loss_J"):
                 loss = getattr(r.results, name)
                 if keys is RIGID and loss < -within * scale:  # the work of contacts is of first order in the step
+                    at_most(f"{told}: {name}: at the time step of the analysis", 0.0, loss, 2.0 * within, scale)
                     finer = ask(moving, "dem", end_time=1.0, time_step=0.5 / r.results.steps, **keys)
                     ok(finer)
                     at_most(f"{told}: {name}: half the time step", 0.7 * loss, getattr(finer.results, name), 0.0)
@@ -281,18 +282,18 @@ SOLE = {
 
 
 def on_a_sole(deck: Deck) -> Deck:
-    """A house of one storey on a weak sole: those of two take half a second of a processor for each of their events."""
-    made = changed(deck, structure={"beds": [{"name": "sole"}], "storeys": deck["structure"]["storeys"][:1]}, joints=MORTAR)
-    if "floors" in made["structure"]:
-        made["structure"]["floors"] = made["structure"]["floors"][:1]
-    return made
+    """A house on a weak sole."""
+    return changed(deck, structure={"beds": [{"name": "sole"}]}, joints=MORTAR)
 
 
 @relation("pushover", decks("building", friction=number(0.2, 0.6), material=MASONRY).map(on_a_sole), 0.02, share=0.3, examples=(SOLE,))
 def no_more_than_coulomb(deck: Deck, within: float) -> None:
     """On a weak sole the building slides: its capacity stays below friction times the weight and cohesion times the area. A model that
     carries more says that this is an upper bound."""
-    answer = ask(deck, "pushover", direction=0.0, mesh={"size": 1.0, "layers": 3}, events=2000)
+    # Of two storeys that soften, a step takes up to forty solutions: sixty steps of a coarse mesh pass the first sliding
+    keys = {"mesh": {"size": 1.0}, "events": 2000} if len(deck["structure"]["storeys"]) == 1 else {"mesh": {"size": 1.5}, "events": 60}
+    keys["mesh"] |= {"layers": 3}
+    answer = ask(deck, "pushover", direction=0.0, **keys)
     ok(answer)
     r = answer.results
     area = sum(math.dist(w["start"], w["end"]) * w["thickness"] for w in deck["structure"]["walls"])

@@ -10,15 +10,17 @@ from geometry import stars
 from hypothesis import reject
 from hypothesis import strategies as st
 from relations import GRAVITY, RIGID, ok, relation
+from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from extrados.core import dem, dem3
 from extrados.core import mechanism as core_mechanism
+from extrados.core.limit import BandFactor, least_vertex
 from extrados.limit.errors import CannotStand
 from extrados.model.errors import NoView
 from extrados.model.geometry import convex
 from extrados.model.geometry.solids.assembly import mass_properties
-from extrados.model.geometry.solids.polyhedra import box
+from extrados.model.geometry.solids.polyhedra import box, prism
 from extrados.views.rockers.mechanism import MechanismModel
 
 WAYS = st.fixed_dictionaries(
@@ -109,14 +111,14 @@ TURNS = st.tuples(number(-180.0, 180.0), number(-180.0, 180.0), number(-180.0, 1
 
 @relation("dem", st.lists(st.tuples(SIZES, SIZES, TURNS, TURNS, MOTION, WAYS), min_size=6, max_size=6), 0.0, share=2.0)
 def blows_in_space(cases: list, within: float) -> None:
-    """Two free boxes that hit each other by corners, edges or faces keep both momenta, and lose what the ledger says; the ledger of two
-    of six may be off, as the runs then say or end by, or their energy depend on the order of the boxes, where a patch of contact jumps."""
-    off = [case for case in cases if not _keeps_its_ledger(*case)]
-    must(len(off) <= 2, f"the ledger does not close for {off}")
+    """Two free boxes that hit each other by corners, edges or faces keep both momenta, and lose what the ledger says, whichever is
+    named first."""
+    for case in cases:
+        _keeps_its_ledger(*case)
 
 
-def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, motion: tuple, how: dict) -> bool:
-    """Whether a blow loses what the ledger says; Broken where it does not keep momentum."""
+def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, motion: tuple, how: dict) -> None:
+    """Broken where a blow does not keep momentum, or does not lose what the ledger says."""
     speed, spin_a, spin_b, aside = motion
     way = np.array([1.0, 0.0, 0.0])
     first, second = (
@@ -127,7 +129,7 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
     corner_a, corner_b = first.vertices[first.vertices[:, 0].argmax()], second.vertices[second.vertices[:, 0].argmin()]
     shift = np.array([gap, *(corner_a - corner_b)[1:]]) + aside * 0.3 * np.array([0.0, 1.0, 0.6])
     second = second.moved(np.eye(3), shift)
-    found, closes = [], True
+    found = []
     for order in (1, -1):
         parts = [first, second][::order]
         mass, centre, inertia = zip(*(mass_properties([p], 2000.0) for p in parts), strict=True)
@@ -145,8 +147,6 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
             residual_limit=10.0,
         )
         run = dem3.run(solids, options, rate=rate)
-        if run.reason == "blow-up":
-            return False
         must(run.reason == "end", run.reason)
         v, place, turn = run.rate, run.place, run.turn
         about = turn @ np.array(inertia) @ np.swapaxes(turn, -1, -2)
@@ -162,14 +162,13 @@ def _keeps_its_ledger(one: tuple, two: tuple, turn_a: tuple, turn_b: tuple, moti
         left = run.energy["kinetic"] + run.energy["elastic"] + run.energy["friction"] + run.energy["damping"]
         if how["rigid"]:  # in the midst of a rebound half of its impulse is booked
             left = left[[0, -1]]
-        closes &= bool(np.abs(left - left[0]).max() < 0.03 * kinetic[0] and kinetic[-1] < 1.01 * kinetic[0])
+        near("ledger", left, np.full(len(left), left[0]), 0.03, kinetic[0])
+        at_most("kinetic energy", kinetic[-1], kinetic[0], 0.01)
         heat = abs(run.energy["friction"][-1]) / kinetic[0]
         must(heat < 1e-3 or how["friction"] > 0.0 or how["rigid"], f"friction loses {heat} without friction")
         found.append((place[-1][::order, :3], kinetic[-1], kinetic[0]))
-    if closes:
-        near("places in another order", found[0][0], found[1][0], 1e-2, 1.0)
-        closes = abs(found[0][1] - found[1][1]) <= 0.05 * found[0][2]
-    return closes
+    near("places in another order", found[0][0], found[1][0], 1e-2, 1.0)
+    near("energy in another order", found[0][1], found[1][1], 0.05, found[0][2])
 
 
 @relation(
@@ -273,3 +272,120 @@ def elements_on_a_moving_support(deck: Deck, dx: float, dy: float, start: float,
     moved = a["place"][..., :2] - a["place"][0, :, :2]
     want = way[:, None, None] * np.array([dx, dy])
     near("places", moved, np.broadcast_to(want, moved.shape), within, float(np.hypot(dx, dy)))
+    at_most("residual of the energy balance", answer.results.energy_residual_ratio, 0.01, 0.0)
+
+
+@relation("dem", st.tuples(SIZES, SIZES, number(0.5, 2.0), st.sampled_from([0.0, 0.3, 0.6]), st.booleans()), 0.01, share=1.0)
+def rebounds_by_newton(one: tuple, two: tuple, speed: float, rebound: float, space: bool, within: float) -> None:
+    """Faces of two free boxes that hit each other on one line part at `rebound` times their speed, and lose 1 - rebound^2 of the energy
+    that is not that of their centroid."""
+    a, b = np.array(one), np.array(two)
+    mass = 2000.0 * np.array([a.prod(), b.prod()])
+    gap = 0.005
+    inner = dict(step=2e-4, rigid=True, rebound=rebound, residual_limit=10.0)
+    if space:
+        parts = [box(tuple(-0.5 * a), tuple(0.5 * a)), box(tuple(-0.5 * b), tuple(0.5 * b))]
+        parts[1] = parts[1].moved(np.eye(3), np.array([0.5 * (a[0] + b[0]) + gap, 0.0, 0.0]))
+        _, centre, inertia = zip(*(mass_properties([p], 2000.0) for p in parts), strict=True)
+        laws = [dem3.Law(1e9, 5e8, 0.5)]
+        solids = dem3.Solids(np.array(centre), mass, np.array(inertia), [p.vertices for p in parts], [p.faces for p in parts], [0, 1], laws)
+        rate = np.array([[speed, *[0.0] * 5], [0.0] * 6])
+        run = dem3.run(solids, dem3.Options(0.05, 0.005, gravity=(0.0, 0.0, 0.0), **inner), rate=rate)
+    else:
+        outlines = [0.5 * np.array([[-s[0], -s[1]], [s[0], -s[1]], [s[0], s[1]], [-s[0], s[1]]]) for s in (a, b)]
+        outlines[1] = outlines[1] + np.array([0.5 * (a[0] + b[0]) + gap, 0.0])
+        centre = np.array([o.mean(axis=0) for o in outlines])
+        inertia = mass * np.array([(s[0] ** 2 + s[1] ** 2) / 12.0 for s in (a, b)])
+        bodies = dem.Bodies(centre, mass, inertia, outlines, [0, 1], [np.ones(4, bool)] * 2, 1.0, [dem.Law(1e9, 5e8, 0.5)])
+        rate = np.array([[speed, 0.0, 0.0], [0.0] * 3])
+        run = dem.run(bodies, dem.Options(0.05, 0.005, gravity=(0.0, 0.0), **inner), shift=np.zeros((2, 3)), rate=rate)
+    must(run.reason == "end", run.reason)
+    common = mass[0] * speed / mass.sum()
+    want = common + rebound * speed * np.array([-mass[1], mass[0]]) / mass.sum()
+    near("speeds after the blow", run.rate[-1][:, 0], want, within, speed)
+    lost = 0.5 * mass.prod() / mass.sum() * speed**2 * (1.0 - rebound**2)
+    near("loss", run.energy["damping"][-1] + run.energy["friction"][-1], lost, within, run.energy["kinetic"][0])
+
+
+@relation("dem", st.tuples(SIZES, TURNS, number(0.02, 0.1), number(-1.0, 1.0), st.sampled_from([0.0, 0.3, 0.8])), 1e-4, share=2.0)
+def corners_on_a_slab(size: tuple, turn: tuple, speed: float, aside: float, friction: float, within: float) -> None:
+    """A box that meets a fixed slab with a corner, slowly and obliquely, loses by friction alone what its motion loses, and no more
+    impulse along the slab than friction times that across it."""
+    slab = box((-5.0, -5.0, -1.0), (5.0, 5.0, 0.0))
+    part = box(tuple(-0.5 * np.array(size)), tuple(0.5 * np.array(size))).moved(Rotation.from_euler("xyz", turn, degrees=True).as_matrix())
+    low = np.sort(part.vertices[:, 2])
+    if low[1] - low[0] < 0.05:
+        reject()  # an edge or a face, whose polygon changes
+    part = part.moved(np.eye(3), np.array([0.0, 0.0, 1e-3 - low[0]]))
+    mass, centre, inertia = mass_properties([part], 2000.0)
+    laws = [dem3.Law(1e9, 5e8, friction)]
+    solids = dem3.Solids(
+        np.array([centre, [0.0, 0.0, -0.5]]),
+        np.array([mass, 0.0]),
+        np.array([inertia, np.zeros((3, 3))]),
+        [part.vertices, slab.vertices],
+        [part.faces, slab.faces],
+        [0, 1],
+        laws,
+    )
+    rate = np.array([[aside * speed, 0.3 * speed, -speed, 0.0, 0.0, 0.0], [0.0] * 6])
+    options = dem3.Options(0.2, 0.01, step=1e-5, gravity=(0.0, 0.0, 0.0), residual_limit=10.0)
+    run = dem3.run(solids, options, rate=rate)
+    must(run.reason == "end", run.reason)
+    left = run.energy["kinetic"] + run.energy["elastic"] + run.energy["friction"] + run.energy["damping"]
+    near("ledger", left, np.full(len(left), left[0]), within, left[0])
+    near("without dashpots", run.energy["damping"], 0.0 * left, within, left[0])
+    change = mass * (run.rate[-1, 0, :3] - rate[0, :3])
+    at_most("impulse along the slab", float(np.hypot(*change[:2])), friction * change[2], 0.02, 1e-3 * mass * speed)
+
+
+@relation("dem", st.tuples(st.integers(3, 7), number(0.3, 1.0), number(0.3, 1.5), number(8.0, 9.0)), 1e-3, share=1.0)
+def settlements_of_prisms(sides: int, radius: float, height: float, exponent: float, within: float) -> None:
+    """A prism settles on a slab by its weight over stiffness and area, upright; exponent: of the stiffness [Pa/m]."""
+    stiffness = 10.0**exponent
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    outline = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    part, slab = prism(outline, 0.0, height), box((-5.0, -5.0, -1.0), (5.0, 5.0, 0.0))
+    mass, centre, inertia = mass_properties([part], 2000.0)
+    laws = [dem3.Law(stiffness, 0.5 * stiffness, 0.6, damping=2.0 / math.sqrt(stiffness / (2000.0 * height)))]
+    solids = dem3.Solids(
+        np.array([centre, [0.0, 0.0, -0.5]]),
+        np.array([mass, 0.0]),
+        np.array([inertia, np.zeros((3, 3))]),
+        [part.vertices, slab.vertices],
+        [part.faces, slab.faces],
+        [0, 1],
+        laws,
+    )
+    run = dem3.run(solids, dem3.Options(1.0, 0.1, residual_limit=10.0), rate=np.zeros((2, 6)))
+    must(run.reason == "end", run.reason)
+    moved = run.place[-1, 0, :3] - centre
+    settled = 2000.0 * height * GRAVITY / stiffness
+    near("settlement", moved, [0.0, 0.0, -settled], within, settled)
+    near("upright", run.turn[-1, 0][:, 2], [0.0, 0.0, 1.0], 1e-6, 1.0)
+
+
+@relation("tilt", st.integers(0, 10**6), 1e-8, share=1.0)
+def programmes_of_the_core(number_of: int, within: float) -> None:
+    """The vertex method solves what HiGHS solves, with its value and with multipliers that prove it; a banded factor solves its system."""
+    draw = np.random.default_rng(number_of)
+    n, k = int(draw.integers(2, 20)), int(draw.integers(3, 120))
+    rows, least, cost = draw.normal(size=(k, n)), draw.normal(size=k) - 1.0, draw.normal(size=n)
+    low, high = np.full(n, -1e3), np.full(n, 1e3)
+    found = least_vertex(rows, least, cost, low, high)
+    peer = linprog(cost, A_ub=-rows, b_ub=-least, bounds=list(zip(low, high, strict=True)), method="highs")
+    must((found is not None) is (peer.status == 0), f"the vertex method: {found}, HiGHS: {peer.message}")
+    if found is not None:
+        x, multipliers, sides = found
+        near("least cost", cost @ x, peer.fun, within, 1.0)
+        at_most("rows", float((least - rows @ x).max()), 0.0, within, 1.0)
+        near("gradients", rows.T @ multipliers + sides, cost, within, 1.0)
+    n, width = int(draw.integers(3, 40)), int(draw.integers(1, 3))
+    band = draw.normal(size=(n, width + 1))
+    band[:, 0] = 4.0 * (width + 1.0) + np.abs(band[:, 0])
+    whole = np.zeros((n, n))
+    for j in range(n):
+        for i in range(j, min(n, j + width + 1)):
+            whole[i, j] = whole[j, i] = band[j, i - j]
+    right = draw.normal(size=n)
+    near("a banded system", whole @ BandFactor(np.ascontiguousarray(band)).solve(right), right, within, 1.0)

@@ -373,3 +373,52 @@ def an_assessment_ends_at_its_time_limit(deck: Deck, within: float) -> None:
     must(all(row.status == "ok" for row in whole.results.verdicts if row.strategy in ("tilt", "dem")), f"{whole.results.verdicts}")
     left = {row.strategy: row for row in brief.results.verdicts}
     must(left["dem"].status == "left out" and "time limit" in left["dem"].reason, f"{left['dem']}")
+
+
+SOFT = {"stiffness": "50 MN/m^3", "damping_ratio": 0.1}
+
+
+@st.composite
+def rocking_decks(draw: st.DrawFn) -> Deck:
+    """Blocks, stacks, columns and arches that rock: free, tied, on a compliant base."""
+    kind = draw(st.sampled_from(("block", "soft", "stack", "tied", "arch", "tied arch")))
+    friction = draw(number(0.25, 0.7, 9))
+    if kind == "stack":
+        sizes = {
+            "lower_width": 1.0,
+            "upper_width": 0.8,
+            "lower_height": draw(number(1.2, 2.5, 20)),
+            "upper_height": draw(number(0.8, 2.0, 20)),
+        }
+        deck: Deck = {"structure": {"kind": "stack", **sizes}}
+    elif "arch" in kind:
+        sizes = {"radius": draw(number(2.0, 10.0, 20)), "embrace": draw(number(130.0, 165.0, 5)), "voussoirs": draw(st.integers(7, 11))}
+        deck = {"structure": {"kind": "arch", "thickness": float(f"{0.16 * sizes['radius']:.4g}"), **sizes}}
+    else:
+        deck = {"structure": {"kind": "block", "width": 0.6, "height": draw(number(1.5, 3.0, 20))}}
+    if "tied" in kind:
+        blocks = building(deck).blocks()
+        k = int(np.argmax(blocks.centroid[:, 1]))
+        start = np.round(blocks.centroid[k], 9).tolist()
+        stiffness = float(f"{draw(number(2.0, 20.0, 9)) * GRAVITY * blocks.mass.sum() / blocks.size:.3g}")
+        tie = {"start": start, "start_stone": blocks.block_names[k], "ground": [start[0] + 5.0, start[1]], "stiffness": stiffness}
+        deck["ties"] = [tie | draw(st.sampled_from(({}, {"prestress": float(f"{0.02 * GRAVITY * blocks.mass.sum():.3g}")})))]
+    supports = {"supports": SOFT} if kind == "soft" else {}
+    return {**deck, **supports, "joints": {"friction": friction}}
+
+
+@relation("rocking", st.tuples(rocking_decks(), pulses(0.3, 1.0), number(0.03, 0.4, 20)), 1e-6, share=2.0)
+def the_step_of_output_decides_nothing(deck: Deck, motion: Deck, step: float, within: float) -> None:
+    """Outcome, verdict, friction required and times at which conditions fail are those of another step of output."""
+    one, other = (ask(changed(deck, motion=motion), "rocking", end_time=4.0, output_step=k, hand_over=False) for k in (0.01, step))
+    ok(one, other)
+    a, b = one.results, other.results
+    must(a.outcome == b.outcome and one.verdict.outcome == other.verdict.outcome, f"{a.outcome} and {b.outcome}")
+    must(len(a.violated) == len(b.violated), f"{a.violated} and {b.violated}")
+    must((a.required_friction is None) == (b.required_friction is None), f"{a.required_friction} and {b.required_friction}")
+    near("friction", a.required_friction or 0.0, b.required_friction or 0.0, 1e-3)
+    for name in ("slides_first", "leaves_first"):
+        there = [c.model_dump(exclude_unset=True).get(name) for c in (a.conditions, b.conditions)]
+        must((there[0] is None) == (there[1] is None), f"{name}: {there}")
+        if there[0]:
+            near(name, there[0]["time_s"], there[1]["time_s"], within, 1.0)

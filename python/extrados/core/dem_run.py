@@ -77,7 +77,8 @@ class RunOptions:
     then, where their own is less [s]. collapse: displacement that counts as collapse [m], 0 none, of a body that also turned
     by more than `collapse_turn` [rad] or is lower by more than `collapse_drop` [m]; both 0: the displacement alone counts. residual_limit: of the total energy exchanged, above it the run is stopped. stop_at_rest: end once
     all rests and the ground is still. rigid: contacts without springs (the joints' stiffness and damping play no part, `step` 0
-    takes one that suits the smallest block), with Newton's coefficient `rebound` at each point; quasi_static: without inertia."""
+    takes one that suits the smallest block), with Newton's coefficient `rebound` at each point; quasi_static: without inertia. safe: kinetic energy, and energy of the places over those at rest, below which
+    blocks recover, so that a run that stops at rest ends as soon as the ground is still; above: the latter energy at the start [J]."""
 
     end_time: float
     output_step: float = 0.01
@@ -96,6 +97,8 @@ class RunOptions:
     rigid: bool = False
     quasi_static: bool = False
     rebound: float = 0.0
+    safe: float = 0.0
+    above: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -129,7 +132,7 @@ class Ties:
     a bound of 0 is slackness, at another one it yields, infinite never. first: its first point; closed: the last
     point is joined to the first. Anchors (anchors): point, body, -1 for the ground, place (anchors, 2 or 3) as drawn [m];
     anchors of one point share its force in equal parts. damping: c of a dashpot beside each, of a power of the rate of its
-    length [N (s/m)^power].
+    length [N (s/m)^power]. plastic: permanent elongation at the start (ties) [m].
     """
 
     stiffness: np.ndarray
@@ -143,6 +146,7 @@ class Ties:
     place: np.ndarray
     damping: np.ndarray | None = None
     power: np.ndarray | None = None
+    plastic: np.ndarray | float = 0.0
 
     def lengths(self) -> np.ndarray:
         """Length of each as drawn (ties) [m]."""
@@ -232,7 +236,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         local = place(ties.place[on], ties.body[on])
         own[on, : local.shape[1]] = local
         most = np.finfo(float).max
-        values = [ties.stiffness, ties.lengths(), ties.prestress, np.maximum(ties.least, -most), np.minimum(ties.most, most)]
+        values = [ties.stiffness, ties.lengths() + ties.plastic, ties.prestress, np.maximum(ties.least, -most), np.minimum(ties.most, most)]
         values += [np.zeros(n) if ties.damping is None else ties.damping, np.ones(n) if ties.power is None else ties.power]
         status = _core.api_dem_run.ties(
             self.handle,
@@ -283,6 +287,8 @@ class BodyModel(Owner, ABC, Generic[Found]):
             o.settle_damping,
             o.collapse_turn,
             o.collapse_drop,
+            o.safe,
+            o.above,
             int(o.settle_steps) if settle else 0,
             int(o.stop_at_rest),
             thread_count(o.threads),

@@ -88,8 +88,8 @@ class JointDemand:
 
     friction: greatest coefficient needed while it rocks, infinite in tension; outside: how far the thrust line left a joint
     over its length, below 0 where it stayed inside. slips_at, leaves_at: first time [s] at which the joints lack friction
-    (also at rest), at which the line leaves by more than the tolerance; -1: never. slips, leaves: place of that joint among
-    those watched, -1 where it slides at rest, or never.
+    (also at rest), at which the line leaves by more than the tolerance (also at rest); -1: never. slips, leaves: place of that joint
+    among those watched, -1 at rest, or never.
     """
 
     friction: Any
@@ -115,23 +115,26 @@ def watched_body(
     friction: np.ndarray,
     tolerance: float,
     slides: tuple[float, float] = (np.inf, np.inf),
+    opens: tuple[float, float] = (np.inf, np.inf),
 ) -> Body:
     """A structure whose joints are watched while it rocks (fortran/rocking/watch.f90).
 
-    values (steps + 1, joints, 3, 3), rocking to +x and to -x, at equal steps from rest to the `critical` rotation [rad]: forces
-    at each joint by input (1 + a_v/g; side a_h [m/s^2]; squared rate [rad^2/s^2]) and quantity (compression [N]; shear [N]; moment
-    about the joint's first end over its length [N]). friction (joints): coefficient that they have; tolerance: how far the thrust
-    line may leave a joint, over its length; slides: ground acceleration that slides the resting structure the way it would
-    rock to +x, to -x [m/s^2].
+    values (steps + 1, joints, 3 + restraints, 3), rocking to +x and to -x, at equal steps from rest to the `critical` rotation [rad]:
+    forces at each joint by input (1 + a_v/g; side a_h [m/s^2]; squared rate [rad^2/s^2]; force of each restraint [N, N m]) and quantity
+    (compression [N]; shear [N]; moment about the joint's first end over its length [N]). friction (joints): coefficient that they
+    have; tolerance: how far the thrust line may leave a joint, over its length; slides, opens: ground acceleration that slides the
+    resting structure, or opens hinges of another mechanism, the way it would rock to +x, to -x [m/s^2].
     """
     steps, joints = values[0].shape[0] - 1, values[0].shape[1]
-    if values[1].shape != values[0].shape or values[0].shape[2:] != (3, 3) or steps < 4:
-        raise ValueError(f"the two arrays of values have different shapes, {values[0].shape} and {values[1].shape}")
+    if values[1].shape != values[0].shape or values[0].shape[2:] != (3 + bare.restraints, 3) or steps < 4:
+        raise ValueError(
+            f"the two arrays of values have the shapes {values[0].shape} and {values[1].shape}, with {bare.restraints} restraints"
+        )
     most = np.finfo(float).max
     numbers = [
         [bare.kind, len(bare.parameters)],
         bare.parameters,
-        np.minimum([tolerance, *slides, joints, steps, *critical, *friction], most),
+        np.minimum([tolerance, *slides, *opens, joints, steps, *critical, bare.restraints, *friction], most),
         *(v.transpose(0, 2, 3, 1).ravel() for v in values),
     ]
     return Body(lists.number("rocking_body", "watched"), np.concatenate([np.asarray(x, dtype=float) for x in numbers]), bare.restraints)

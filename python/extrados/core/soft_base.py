@@ -58,14 +58,15 @@ class SoftBase:
 KIND = lists.number("rocking_body", "soft_base")
 
 
-def soft_base_body(base: SoftBase, critical: tuple[float, float]) -> Body:
-    """The block for ensembles; critical: rotations from which gravity takes it down, to +x and to -x, both above zero [rad].
+def soft_base_body(base: SoftBase, critical: tuple[float, float], friction: float = np.inf) -> Body:
+    """The block for ensembles; critical: rotations from which gravity takes it down, to +x and to -x, both above zero [rad]; friction:
+    coefficient of the base, infinite where it does not slide.
 
     A member starts at its rotation, free to sink. A half cycle begins where the edge away from which it leans lifts, unless
-    the last one was to the same side."""
-    if not (np.isfinite(critical).all() and min(critical) > 0.0):
-        raise ValueError(f"critical rotations are {critical}, expected two values above zero")
-    return Body(KIND, np.append(base.numbers, critical))
+    the last one was to the same side. `joints`: what the base must carry, `leaves_at` where the block is airborne."""
+    if not (np.isfinite(critical).all() and min(critical) > 0.0 and friction > 0.0):
+        raise ValueError(f"critical rotations are {critical} and friction is {friction}: expected values above zero")
+    return Body(KIND, np.array([*base.numbers, *critical, min(friction, np.finfo(float).max)]))
 
 
 @dataclass(frozen=True)

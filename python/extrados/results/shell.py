@@ -6,6 +6,7 @@ from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.sla import SlaCurve
 from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge
 from extrados.results.verification import Verification
+from extrados.schema.quantities import three_figures
 
 
 class WallShare(ResultModel):
@@ -42,6 +43,26 @@ class JointMotion(ResultModel):
     last_slip_m: float = fact("greatest sliding of the joint in the last equilibrium state, and its location", "m")
     first_base_shear_N: float | None = fact("base shear at which the bond of the joint first fails; null without failure", "N")
     broken_share: float = fact("share of the joint area that has lost some of its bond in the last equilibrium state")
+
+
+class SeatMotion(ResultModel):
+    """How far a floor has moved off a wall on which it rests by friction."""
+
+    floor: str = fact("the floor, by its number in the deck and its storey")
+    wall: str = fact("wall on which the floor rests")
+    normal_N: float = fact("load of the floor on the seat under the constant loads; compression is positive", "N")
+    friction_N: float = fact("friction times this load", "N")
+    length_m: float = fact("length of the seat", "m")
+    slip_m: float = fact("greatest displacement of an end of the floor relative to the wall, off the seat", "m")
+    slip_along_m: float = fact("greatest displacement of an end of the floor along the wall", "m")
+    slid_off: bool = fact("whether an end of the floor has moved off by more than the length of the seat")
+    slid_off_displacement_m: float | None = fact("control displacement at which it slid off", "m")
+    slid_off_base_shear_N: float | None = fact("base shear at which it slid off", "N")
+
+    @property
+    def told(self) -> str:
+        """Where it slid off, in words."""
+        return f"{self.floor} slides off wall {self.wall}, whose seat is {1e3 * self.length_m:.3g} mm long"
 
 
 class FootForce(ResultModel):
@@ -89,6 +110,7 @@ class PushCurve(SlaCurve):
     flanges: Flanges = maybe("whether the transverse walls (flanges) contribute")
     first_crack: FirstCrack = maybe("location of the first crack; not given without cracks")
     joints: list[JointMotion] = maybe("greatest opening and sliding of each joint")
+    seats: list[SeatMotion] = maybe("load and slip of the seats of floors; not given without seats")
     feet: list[FootForce] = maybe("for a vault or dome: forces of its feet on the ground")
     cracked_points_by_storey: list[int] = fact(
         "number of cracked integration points in the planes of the walls at the greatest load, by storey"
@@ -160,14 +182,17 @@ class Pushover(PushCurve, KindResults):
         load, capacity = least.greatest_load_N or 0.0, least.capacity_N or 0.0
         slides, reached = capacity < load, least.greatest_acceleration_g
         unit, value = ("N", capacity) if reached is None else ("g", abs(reached) * capacity / load if load else 0.0)
-        told = f"{capacity / 1e3:.4g} kN" + ("" if reached is None else f" ({value:.3g} g times the masses)")
+        told = f"{three_figures(capacity / 1e3)} kN" + ("" if reached is None else f" ({value:.3g} g times the masses)")
+        fallen = "".join(f" Then {seat.told}." for curve in curves for seat in curve.seats or [] if seat.slid_off)
         if self.verification is not None and self.verification.decides:
-            return self.verification.judged(f"The greatest base shear is {told}.")
+            return self.verification.judged(f"The greatest base shear is {told}.{fallen}")
         if slides:
             text = f"Sliding at {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
-            violated = [f"The model excludes this sliding and carries {load / 1e3:.4g} kN, {load / capacity:.3g} times the sliding limit."]
+            violated = [
+                f"The model excludes this sliding and carries {three_figures(load / 1e3)} kN, {load / capacity:.3g} times the sliding limit."
+            ]
             return capacity_alone(text, value, unit, "upper", violated)
         if least.peak_load_N is None:
             text = f"The base shear has reached {told} without a peak. The capacity is therefore not known."
             return capacity_alone(text, value, unit, "lower")
-        return capacity_alone(f"The building can carry a base shear of {told}.", value, unit)
+        return capacity_alone(f"The building can carry a base shear of {told}.{fallen}", value, unit)

@@ -24,6 +24,8 @@ FLOOR = "#dbe3ea"
 VIEW = scene.View(-60.0, 28.0)
 #: Cracks of a vault that are widest at its extrados, and at its intrados
 OUTSIDE, INSIDE = "#b3261e", "#1f4e9b"
+#: Seats of floors
+SEATS = (style.THRUST, style.SAFE, LOST, "#8a6d3b", "#7b93ab")
 #: Gap between unfolded walls, in parts of the height
 GAP = 0.12
 #: Kept states from which on the shear of the walls is drawn as a curve
@@ -37,6 +39,8 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     figures = [_stage_curves(run, name, folder) if run.results_of(name, Pushover).stages else _curves(run, name, folder)]
     figures = [*draw_verification(run, name, folder), *figures]
     for prefix in _prefixes(run, name):
+        if f"{prefix}event_seat_slip" in run.arrays[name]:
+            figures.append(_seats(run, name, folder, prefix))
         if f"{prefix}state_event" not in run.arrays[name]:
             continue
         if len(run.array(name, "wall")):
@@ -91,6 +95,27 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         return style.save(fig, folder, f"{name}-curve"), (
             "Stages in order, each with the damage of the stages before. Lateral loads: base shear over control "
             "displacement. Settlement: force along the movement, summed over the moving supports."
+        )
+
+
+def _seats(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
+    """Base shear over the displacement of floors off their seats, and the lengths of these."""
+    fine, slips = run.array(name, f"{prefix}event_equilibrium") > 0, 1e3 * run.array(name, f"{prefix}event_seat_slip")
+    load = run.array(name, f"{prefix}event_load")[fine] / 1e3
+    seats = _numbers(run, name, prefix).seats or []
+    with style.figure(7.0, 4.2) as (fig, (ax,)):
+        for k, seat in enumerate(seats):
+            color = SEATS[k % len(SEATS)]
+            ax.plot(slips[fine, k], load, color=color, marker=".", markersize=3, linewidth=1.0, label=f"{seat.floor} on wall {seat.wall}")
+        for length in sorted({seat.length_m for seat in seats}):
+            ax.axvline(1e3 * length, color=style.HINGE, linestyle="--", linewidth=1.0)
+            ax.annotate(f"seat of {1e3 * length:.3g} mm", (1e3 * length, 0.0), rotation=90, fontsize=8, ha="right", va="bottom")
+        ax.set_xlabel("displacement of the floor off its seat [mm]")
+        ax.set_ylabel("base shear [kN]")
+        ax.legend()
+        return style.save(fig, folder, f"{name}-seats{_suffix(prefix)}"), (
+            "Base shear over the greatest displacement of an end of each floor relative to its wall, off the seat. Beyond the dashed line "
+            "the floor has slid off."
         )
 
 

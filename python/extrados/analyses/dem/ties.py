@@ -1,6 +1,6 @@
 """Ties, chains, hoops and dampers of a building as the discrete elements take them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -27,6 +27,10 @@ class ElementTies:
     core: Ties | None = None
     strands: tuple[Strand, ...] = ()
     viscous: tuple[bool, ...] = ()
+
+    def yielded(self, plastic: np.ndarray) -> "ElementTies":
+        """The same with permanent elongations (ties) [m] from before the run."""
+        return self if self.core is None or not plastic.any() else replace(self, core=replace(self.core, plastic=plastic))
 
 
 #: Of a model without any
@@ -108,6 +112,7 @@ def tie_rows(ties: ElementTies, run: FoundRun) -> dict[str, list[TieRun]]:
     found = []
     for k, name in enumerate(ties.names):
         lowest, highest, plastic = run.extreme[k].tolist()
+        plastic += float(np.broadcast_to(ties.core.plastic, len(ties.names))[k])
         peak = highest if highest >= -lowest else lowest
         state: Literal["slack", "elastic", "yielded", "viscous"] = "yielded" if plastic else "elastic" if peak else "slack"
         if ties.viscous[k]:

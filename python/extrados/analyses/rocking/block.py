@@ -24,26 +24,19 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     if structure.kind == "column":
         context.warnings.append("the column is modelled as one rigid body; use `dem` for joints that open")
     end_time = options.end_time or context.motion.end + rest_time(rocker)
-    ran = rock(context, options, rocker, end_time, 12, lambda found: _required(rocker, found)[0])
+    ran = rock(context, options, rocker, end_time, 12)
     response = ran.response
 
     tangential, normal = toe_forces(model, response, rocker.restraints, response.forces)
     c_v = model.restitution
-    seen = ran.seen
-    required, flying = _required(rocker, seen)
-    flying &= seen.time <= response.stop_time  # contacts may go on from there
-    required = np.where(seen.time <= response.stop_time, required, 0.0)
-    needed = float(required.max(initial=0.0))
-    if response.joints is not None and np.isfinite(response.joints.friction):
-        # the joints are watched while it rocks; at rest the ground pushes it along too
-        still = required[seen.rotation == 0.0]
-        needed = max(float(response.joints.friction), float(still.max(initial=0.0)))
+    assert response.joints is not None
+    needed = max(float(response.joints.friction), _at_rest(context, rocker, response))
     result = rocking_result(
         context,
         ran,
         rocker,
         f"the {rocker.word}",
-        _friction(model, tangential, normal)[0][:, None],
+        _friction(model, tangential, normal)[:, None],
         restitution=c_v[0],
         restitution_to_left=c_v[1],
         energy_ratio=c_v[0] ** 2 * model.block.toe_inertia[0] / model.block.toe_inertia[1],
@@ -51,34 +44,39 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         critical_rotation_left_rad=rocker.critical[1],
         frequency_parameter_rad_s=model.frequency[0],
         uplift_acceleration_g=rocker.uplift,
-        required_friction=needed,
+        required_friction=needed if np.isfinite(needed) else None,
     )
-    if flying.any():
-        first = seen.time[flying.argmax()]
-        result.warnings.append(
-            f"from {first:.3f} s on, the {rocker.word} would lift off completely for some time, but the analysis assumes that "
-            "it stays in contact"
-        )
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = answer_of(context, ran, f"The {rocker.word}", "overturns", rocker.uplift)
-    if ran.conditions.slides_first is None:  # else the conditions state the friction that rocking requires
+    if ran.conditions.slides_first is None and np.isfinite(needed):  # else the conditions state the friction that rocking requires
         result.answer += f" If friction is below {needed:.2f}, the {rocker.word} slides instead."
     return result
 
 
-def _friction(model: BlockModel, tangential: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Friction that forces of the ground at the toe require, and where the block would fly (times each); forces to +x and up [N]."""
+def _friction(model: BlockModel, tangential: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Friction that forces of the ground at the toe require (times), 0 where the block would fly; forces to +x and up [N]."""
     c, s = np.cos(model.block.slope), np.sin(model.block.slope)
     across = c * normal - s * tangential  # on a sloping base
-    return np.abs(c * tangential + s * normal) / np.maximum(across, 1e-300), across <= 0.0
+    return np.where(across > 0.0, np.abs(c * tangential + s * normal) / np.maximum(across, 1e-300), 0.0)
 
 
-def _required(rocker: Rocker, response: core_rocking.Response) -> tuple[np.ndarray, np.ndarray]:
-    """Friction at the toe that a response requires, 0 where the block would fly, and where it would (times each)."""
-    assert isinstance(rocker.model, BlockModel)
-    friction, flying = _friction(rocker.model, *toe_forces(rocker.model, response, rocker.restraints, response.forces))
-    return np.where(flying, 0.0, friction), flying
+def _at_rest(context: Context, rocker: Rocker, response: core_rocking.Response) -> float:
+    """Greatest friction that the ground requires while the block rests, under the prestress of its restraints as given."""
+    model, held = rocker.model, rocker.restraints
+    assert isinstance(model, BlockModel)
+    changes = [(t, kind == "rest") for kind, t, _ in response.events if kind in ("uplift", "rest")]
+    begins = np.array([0.0, *(t for t, _ in changes), response.stop_time])
+    rests = np.array([not rocker.start_rotation, *(rests for _, rests in changes), False])
+    time = context.motion.series()[0]
+    time = np.concatenate([begins, time[time <= response.stop_time]])
+    time = time[rests[np.searchsorted(begins, time, side="right") - 1]]
+    ground = context.motion.ground
+    vertical = ground.sample(time, 1) if ground.channels > 1 else 0.0 * time
+    pull = np.zeros(2) if held is None else held.prestress(1)[0, :2]
+    mass = model.block.mass[0]
+    friction = _friction(model, mass * ground.sample(time) - pull[0], mass * (GRAVITY + vertical) - pull[1])
+    return float(friction.max(initial=0.0))
 
 
 def toe_forces(

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from extrados.core.rocking import FAILED, JointDemand, Response
+from extrados.core.ground import Ground
+from extrados.core.rocking import FAILED, Ensemble, JointDemand, Response, ensemble
 from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.results import fields
 from extrados.results.rocking import Conditions, JointTime
@@ -45,13 +46,9 @@ def astray_of(rocker: Rocker) -> float:
 def not_checked(rocker: Rocker) -> str:
     """Why the joints are not checked, or not all; "" where they are."""
     watch = rocker.watch
-    if isinstance(rocker.model, StackModel):
+    if isinstance(rocker.model, StackModel | SoftBaseModel):
         return ""
-    if isinstance(rocker.model, SoftBaseModel):
-        return "Friction is not checked, because the base is compliant."
-    if watch is None:
-        return "Friction and thrust line are not checked, because ties, dampers, added hinges or a wall act on the structure."
-    if not len(watch.joints):
+    if watch is None or not len(watch.joints):
         return "Friction and thrust line are not checked, because the forces at the hinges are statically indeterminate."
     if watch.unknown:
         return (
@@ -61,11 +58,34 @@ def not_checked(rocker: Rocker) -> str:
     return ""
 
 
+def demand_of(rocker: Rocker, ground: Ground, end_time: float, tolerance: float) -> Ensemble:
+    """One run of two stacked blocks, or of a block on a compliant base, with the demand on its joints by the steps of the core."""
+    one = np.zeros(1, dtype=int)
+    return ensemble(
+        [rocker.body],
+        [ground],
+        one,
+        one,
+        [1.0],
+        end_time,
+        start_rotation=rocker.start_rotation,
+        tolerance=tolerance,
+        stop_when_safe=False,
+        threads=1,
+    )
+
+
 def friction_of(watch: Watch | Rocker) -> float:
-    """The least coefficient of friction of its joints; of two stacked blocks, which the core checks, that of their body."""
+    """The least coefficient of friction of its joints; of two stacked blocks and on a compliant base, which the core checks, that of
+    the body."""
     if isinstance(watch, Rocker):
-        return float(watch.body.parameters[-2:].min())
+        return float(min(contact_friction(watch)))
     return float(watch.friction.min())
+
+
+def contact_friction(rocker: Rocker) -> tuple[float, ...]:
+    """Friction of the contacts of two stacked blocks, or of a compliant base, as their bodies end."""
+    return tuple(rocker.body.parameters[-2:] if isinstance(rocker.model, StackModel) else rocker.body.parameters[-1:])
 
 
 @dataclass(frozen=True)
@@ -93,7 +113,7 @@ class Counted:
 
 def of_many(rocker: Rocker, counted: Counted, runs: str) -> dict[str, Any]:
     """Results of the conditions over many runs; `runs` calls them, "motions"."""
-    if rocker.watch is None and not isinstance(rocker.model, StackModel):
+    if rocker.watch is None and not isinstance(rocker.model, StackModel | SoftBaseModel):
         return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}
     total = max(counted.runs, 1)
     given = friction_of(rocker.watch or rocker)
@@ -137,9 +157,10 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
 
 
 def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
-    """The same of two stacked blocks."""
+    """The same of two stacked blocks, and on a compliant base."""
     found = []
-    if counted.sliding:
+    soft = isinstance(rocker.model, SoftBaseModel)
+    if counted.sliding and (np.isfinite(counted.friction) or not soft):
         share = _share(counted.sliding, counted.runs, runs)
         found.append(
             (
@@ -150,9 +171,8 @@ def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
             else f"A joint slides or opens over its whole length {share}. Use dem."
         )
     if counted.elsewhere:
-        found.append(
-            f"A joint opens over its whole length {_share(counted.elsewhere, counted.runs, runs)}, but rocking assumes contact. Use dem."
-        )
+        what = "The whole base lifts off" if soft else "A joint opens over its whole length"
+        found.append(f"{what} {_share(counted.elsewhere, counted.runs, runs)}, but rocking assumes contact. Use dem.")
     return found
 
 
@@ -225,16 +245,19 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
             text = f"{_upper(slides.joint)} is in tension or slides, first at {slides.time_s:.3f} s.{use}"
         found.append((slides.time_s, text))
     if joints.leaves_at >= 0.0:
-        leaves = JointTime(joint=watch.name(int(joints.leaves)), time_s=float(joints.leaves_at))
+        at_rest = joints.leaves < 0
+        leaves = JointTime(joint="" if at_rest else watch.name(int(joints.leaves)), time_s=float(joints.leaves_at))
         far = f", by up to {100.0 * outside:.0f} % of the joint length" if np.isfinite(outside) else ", and a joint is in tension"
-        found.append(
-            (
-                leaves.time_s,
-                f"{ELSEWHERE}: the thrust line passes outside {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"
-                if len(watch.joints) > 1
-                else f"The whole base lifts off at {leaves.time_s:.3f} s, but rocking assumes contact with the ground.{use}",
+        if at_rest:
+            text = (
+                f"{ELSEWHERE} of the resting {rocker.word} at {leaves.time_s:.3f} s: with its prestressed ties another mechanism opens at "
+                f"{min(watch.opening):.3g} g, before the assumed one at {rocker.uplift:.3g} g.{use}"
             )
-        )
+        elif len(watch.joints) > 1:
+            text = f"{ELSEWHERE}: the thrust line passes outside {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}"
+        else:
+            text = f"The whole base lifts off at {leaves.time_s:.3f} s, but rocking assumes contact with the ground.{use}"
+        found.append((leaves.time_s, text))
     astray = astray_of(rocker)
     if response.half_cycles > 1 and astray > LOST:
         impacts = [t for kind, t, _ in response.events if kind == "impact"]
@@ -259,10 +282,12 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
 
 
 def of_pair(rocker: Rocker, joints: JointDemand, handed: bool = False) -> Conditions:
-    """Conditions of one run of two stacked blocks, whose demand comes from an ensemble of one; see `of_one`."""
+    """Conditions of one run of two stacked blocks, or of a block on a compliant base, whose demand comes from an ensemble of one; see
+    `of_one`."""
     model = rocker.model
-    assert isinstance(model, StackModel)
-    names = [model.assembly.joint_names[j] for j in model.joints]
+    assert isinstance(model, StackModel | SoftBaseModel)
+    soft = isinstance(model, SoftBaseModel)
+    names = [model.assembly.joint_names[j] for j in model.joints] if isinstance(model, StackModel) else [model.block.joint_names[0]]
     given, needed = friction_of(rocker), float(joints.friction[0])
     slips_at, leaves_at = float(joints.slips_at[0]), float(joints.leaves_at[0])
     use = "" if handed else " Use dem."
@@ -270,16 +295,19 @@ def of_pair(rocker: Rocker, joints: JointDemand, handed: bool = False) -> Condit
     found: list[tuple[float, str]] = []
     if leaves_at >= 0.0:
         leaves = JointTime(joint=names[int(joints.leaves[0])], time_s=leaves_at)
-        found.append(
-            (leaves_at, f"{_upper(leaves.joint)} opens over its whole length at {leaves_at:.3f} s, but rocking assumes contact.{use}")
+        text = (
+            f"The whole base lifts off at {leaves_at:.3f} s, but rocking assumes contact with the ground.{use}"
+            if soft
+            else f"{_upper(leaves.joint)} opens over its whole length at {leaves_at:.3f} s, but rocking assumes contact.{use}"
         )
+        found.append((leaves_at, text))
     if slips_at >= 0.0:
         first = int(joints.slips[0])
         slides = JointTime(joint=names[first], time_s=slips_at)
         found.append(
             (
                 slips_at,
-                f"Friction {float(rocker.body.parameters[-2:][first]):.2f} is too low, first at {slides.joint} at {slips_at:.3f} s: blocks slide."
+                f"Friction {contact_friction(rocker)[first]:.2f} is too low, first at {slides.joint} at {slips_at:.3f} s: blocks slide."
                 f"{'' if handed else ' Use dem, or check the friction.'}",
             )
         )

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from extrados.analyses.chaos import NUDGE, growth, over_critical, perturbed, turning, violated_by_chaos
+from extrados.analyses.chaos import growth, growth_step, over_critical, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.hand_over import Contacts, decide, word_of
 from extrados.analyses.rocking.tables import Rocking
@@ -73,7 +73,8 @@ def _keeping_more(context: Context, rocker: Rocker, response: Response) -> list[
 
 
 def doubts(context: Context, options: Rocking, rocker: Rocker, response: Response, end_time: float) -> Doubts:
-    """Runs the motion again under the rival rules and perturbed; free of cost beside the drawing."""
+    """Runs the motion again under the rival rules and perturbed; free of cost beside the drawing. None of it depends on the step of
+    output."""
     nothing = Doubts([], 0.0, False, [], [])
     if response.interrupted:
         return nothing
@@ -82,18 +83,18 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
             rocker.body,
             context.motion.ground,
             end_time,
-            options.output_step,
-            scale=1.0 + nudge,
+            growth_step(rocker.time_unit, end_time),
+            scale=factor,
             tolerance=options.tolerance,
             start_side=1 if rocker.start_rotation >= 0.0 else -1,
             start_rotation=abs(rocker.start_rotation),
         )
-        for nudge in (-NUDGE, NUDGE)
+        for factor in (1.0, *perturbed()[:2])
     ]
     if any(probe.interrupted for probe in probes):
         return nothing
-    grown = growth([over_critical(one.rotation, rocker.critical) for one in (response, *probes)])
-    factors = perturbed()[len(probes) :]
+    grown = growth([over_critical(one.rotation, rocker.critical) for one in probes])
+    factors = perturbed()[2:]
     nudged = ensemble(
         [rocker.body],
         [context.motion.ground],
@@ -108,7 +109,7 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     if nudged.interrupted:
         return nothing
     others = [response.outcome if place == FAILED else OUTCOMES[place] for place in nudged.outcome]
-    turns = turning(response.outcome, [*(probe.outcome for probe in probes), *others])
+    turns = turning(response.outcome, [*(probe.outcome for probe in probes[1:]), *others])
     violated = violated_by_chaos(grown, turns)
     chaotic = bool(violated)
     rules, warnings, decided = _rules(context, options, rocker, response, end_time)

@@ -1,6 +1,5 @@
 """What the rocking of blocks and arches share: running the history, storing it, saying it in words."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +12,6 @@ from extrados.analyses.rocking.course import Course, build_result, impact_times,
 from extrados.analyses.rocking.doubts import Doubts, doubts, doubts_on_contacts
 from extrados.analyses.rocking.hand_over import contacts_of, follow_contacts, leaving_time, outcome_of, stored
 from extrados.analyses.rocking.tables import Rocking
-from extrados.analyses.rocking.tied import sliding_of, watch_step
 from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
@@ -39,59 +37,47 @@ def rest_time(rocker: Rocker) -> float:
 
 @dataclass(frozen=True)
 class Ran:
-    """response: of the mechanism, until contacts go on, where they do; fixed: of the mechanism to its end; seen: the same by the step in
-    which friction is looked at, where that is asked for; hand_over: results of the
+    """response: of the mechanism, until contacts go on, where they do; fixed: of the mechanism to its end; hand_over: results of the
     rest of the motion on contacts, `run` what is stored of it."""
 
     response: Response
     fixed: Response
-    seen: Response
     conditions: out.Conditions
     doubt: Doubts
     hand_over: out.HandOver | None = None
     run: Result | None = None
 
 
-def rock(
-    context: Context, options: Rocking, rocker: Rocker, end_time: float, width: int, demand: Callable[[Response], np.ndarray] | None = None
-) -> Ran:
-    """The response of a rocker, on rigid contacts from where a condition of its mechanism fails; width: see run_history.
+def rock(context: Context, options: Rocking, rocker: Rocker, end_time: float, width: int) -> Ran:
+    """The response of a rocker, on rigid contacts from where a condition of its mechanism fails; width: see run_history."""
 
-    demand: friction that a response requires at its output times (times), if the joints are not checked during the run; it is calculated with a step
-    of its own (watch_step)."""
-
-    def until(time: float, step: float = options.output_step) -> Response:
-        chosen = options.model_copy(update={"output_step": step})
-        return run_history(context, chosen, rocker.body, time, width, rocker.start_rotation)
+    def until(time: float) -> Response:
+        return run_history(context, options, rocker.body, time, width, rocker.start_rotation)
 
     fixed = until(end_time)
-    seen = fixed if demand is None or fixed.interrupted else until(end_time, watch_step(rocker.time_unit, end_time))
-    time, contacts, slides = None, None, None
+    time, contacts = None, None
     if options.hand_over and not fixed.interrupted:
         time = leaving_time(fixed, astray_of(rocker), rocker.time_unit)
-        if demand is not None and rocker.watch is None:
-            slides = sliding_of(rocker, context.building, seen, until, demand, options.tolerance)
-    if slides is not None:
-        time, contacts = slides.leaves, slides.contacts
-    elif time is not None:
+    if time is not None:
         contacts = contacts_of(rocker, context.building, options.form == "linear", options.tolerance)
     if contacts is not None and time is not None:
         ground = context.motion.ground
+        last = options.end_time if rocker.restraints is None else end_time  # ties keep a structure rocking long
         try:
-            last = options.end_time if slides is None else end_time  # ties keep a block rocking long
+            contacts = contacts.reached(ground, time)
             run, result = follow_contacts(context, contacts, contacts.begin(ground, time), last, options.output_step)
         except (Refused, Unfinished) as error:
             context.warnings.append(f"The run with rigid contacts, from {time:.3f} s on, gave no result: {error}")
         else:
             response = until(max(time, 1e-9 * rocker.time_unit))
-            conditions = of_one(rocker, fixed, handed=True) if slides is None else slides.conditions
+            conditions = of_one(rocker, fixed, handed=True)
             outcome = outcome_of(response.half_cycles > 0, run.outcome)
             over = out.HandOver(
                 time_s=time, reason=conditions.violated[0], outcome=outcome, fixed_hinges_outcome=fixed.outcome, contacts=run
             )
             doubt = doubts_on_contacts(context, rocker, contacts, response, over, end_time)
-            return Ran(response, fixed, seen, conditions, doubt, over, result)
-    return Ran(fixed, fixed, seen, of_one(rocker, fixed), doubts(context, options, rocker, fixed, end_time))
+            return Ran(response, fixed, conditions, doubt, over, result)
+    return Ran(fixed, fixed, of_one(rocker, fixed), doubts(context, options, rocker, fixed, end_time))
 
 
 def run_history(context: Context, options: Rocking, body: Body, end_time: float, width: int, start_rotation: float = 0.0) -> Response:

@@ -4,30 +4,34 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.chaos import growth, over_critical, perturbed, turning, violated_by_chaos
+from extrados.analyses.chaos import growth, growth_step, over_critical, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import geometry_arrays
+from extrados.analyses.rocking.conditions import demand_of
 from extrados.analyses.rocking.course import Course, build_result, keep_events, refuse_long_history
 from extrados.analyses.rocking.history import count
 from extrados.analyses.rocking.shapes import course_arrays
 from extrados.analyses.rocking.tables import Rocking
-from extrados.core.rocking import FAILED, OUTCOMES, Outcome, ensemble
+from extrados.core.rocking import FAILED, OUTCOMES, Ensemble, Outcome, ensemble
 from extrados.core.soft_base import SoftBaseResponse, soft_base_history, soft_base_start
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
-from extrados.views.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
+from extrados.views.rockers.rocker import Rocker
+from extrados.views.rockers.soft_base import UNDAMPED, SoftBaseModel
 
 #: After the motion it rocks within this many of the block's own time units 1/p
 SETTLE = 30.0
-#: A base that presses with less than this share of the weight lets the block fly, for the friction needed
+#: A base that presses with less than this share of the weight lets the block fly (fortran/rocking/soft_base_response.f90)
 FLIES = 0.01
 
 
 def run(context: Context, options: Rocking) -> Result:
-    """History, edges that lift and land, energies, pressures, and the outcome on a rigid base."""
+    """History, edges that lift and land, energies, pressures, friction needed, and the outcome on a rigid base."""
     building = context.building
-    model = soft_base_model(building, options.form == "linear")
+    rocker = building.rocker(options.form == "linear", soft_base=True)
+    model = rocker.model
+    assert isinstance(model, SoftBaseModel)
     if building.structure is not None and building.structure.kind == "column":
         context.warnings.append("the column is modelled as one rigid body; use `dem` for joints that open")
     if not model.core.damping:
@@ -37,23 +41,23 @@ def run(context: Context, options: Rocking) -> Result:
     start = soft_base_start(model.core, model.turned(building.initial.rotation_ratio))
     settings: dict[str, Any] = {"tolerance": options.tolerance, "start": start}
 
-    def rock(scale: float = 1.0) -> SoftBaseResponse:
+    def rock(step: float, scale: float = 1.0) -> SoftBaseResponse:
         return keep_events(
-            lambda room: soft_base_history(
-                model.core, context.motion.ground, end_time, options.output_step, scale=scale, room=room, **settings
-            )
+            lambda room: soft_base_history(model.core, context.motion.ground, end_time, step, scale=scale, room=room, **settings)
         )
 
-    r = rock()
+    r = rock(options.output_step)
     grown, turns = 0.0, 0.0
     rigid: tuple[Outcome, float] | None = None
     if not r.interrupted:
-        probes = [rock(factor) for factor in perturbed()]
+        step = growth_step(rocker.time_unit, end_time)
+        own, *probes = [rock(step, factor) for factor in (1.0, *perturbed())]
         critical = (model.critical(1), -model.critical(-1))
-        grown = growth([over_critical(one.rotation, critical) for one in (r, *probes[:2])])
+        grown = growth([over_critical(one.rotation, critical) for one in (own, *probes[:2])])
         turns = turning(r.outcome, [one.outcome for one in probes])
         rigid = _on_rigid_base(context, options, model, end_time)
-    result = _result(context, model, r, (grown, turns), rigid)
+    seen = demand_of(rocker, context.motion.ground, end_time, options.tolerance)
+    result = _result(context, rocker, r, seen, (grown, turns), rigid)
     result.arrays |= {
         **geometry_arrays(model.block),
         **course_arrays(options, r.time, r.rotation[None], lambda index: model.pose(r.rotation[index], r.sinking[index])),
@@ -81,24 +85,22 @@ def _on_rigid_base(context: Context, options: Rocking, model: SoftBaseModel, end
 
 
 def _result(
-    context: Context, model: SoftBaseModel, r: SoftBaseResponse, chaos: tuple[float, float], rigid: tuple[Outcome, float] | None
+    context: Context, rocker: Rocker, r: SoftBaseResponse, seen: Ensemble, chaos: tuple[float, float], rigid: tuple[Outcome, float] | None
 ) -> Result:
-    """Results on the compliant base; chaos: growth of a perturbation, and the least one that changes the outcome."""
+    """Results on the compliant base; seen: the same run by the steps of the core; chaos: growth of a perturbation, and the least one that
+    changes the outcome."""
+    model = rocker.model
+    assert isinstance(model, SoftBaseModel)
     potential = r.potential - model.potential(model.rest)
     energy = r.kinetic + potential
     critical = model.critical(1), model.critical(-1)
     flies = r.force[:, 1] < FLIES * model.weight
     friction = np.where(flies, 0.0, np.abs(r.force[:, 0]) / np.maximum(r.force[:, 1], 1e-300))
+    needed = float(seen.joints.friction[0])
     violated = violated_by_chaos(*chaos)
-    chaotic = bool(violated)
-    if flies.any():
-        violated.append(
-            f"The whole base is lifted in {100.0 * flies.mean():.2g} % of the time. The block is then airborne, and the "
-            "analysis assumes that its sides do not slide. Use dem."
-        )
     course = Course(
         of="the block",
-        settled=_is_settled(context, model, r, energy),
+        settled=bool(seen.settled[0]),
         moves="the block can still overturn",
         half_cycles=r.half_cycles,
         potential=potential,
@@ -109,7 +111,7 @@ def _result(
         coordinates={"rotation": (r.rotation, "rad"), "rotation_rate": (r.rate, "rad/s"), "sinking": (r.sinking, "m")},
         further={"force_up": (r.force[:, 1], "N")},
         event_value="edge that lifts or lands: -1 left, 1 right",
-        chaotic=chaotic,
+        chaotic=bool(violated),
         growth=chaos[0],
         violated=violated,
     )
@@ -126,7 +128,7 @@ def _result(
         critical_rotation_left_rad=-critical[1],
         frequency_parameter_rad_s=float(model.rigid.frequency[0]),
         uplift_acceleration_g=min(model.uplift(1), model.uplift(-1)),
-        required_friction=float(friction.max(initial=0.0)),
+        required_friction=needed if np.isfinite(needed) else None,
         soft_base=_base_results(model, r, flies, rigid),
     )
     result.warnings += violated
@@ -142,15 +144,6 @@ def _result(
         ),
     }
     return result
-
-
-def _is_settled(context: Context, model: SoftBaseModel, r: SoftBaseResponse, energy: np.ndarray) -> bool:
-    """Whether the block has collapsed, or has after the motion less energy [J] than its critical rotations require."""
-    right, left = model.critical(1), model.critical(-1)
-    if r.outcome == "collapse":
-        return True
-    least = min(model.potential(right), model.potential(left)) - model.potential(model.rest)
-    return r.stop_time >= context.motion.end and bool(left < r.end[0] < right) and len(energy) > 0 and float(energy[-1]) < least
 
 
 def _base_results(model: SoftBaseModel, r: SoftBaseResponse, flies: np.ndarray, rigid: tuple[Outcome, float] | None) -> out.SoftBaseRocking:

@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.chaos import growth, perturbed, turning, violated_by_chaos
+from extrados.analyses.chaos import growth, growth_step, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import geometry_arrays
+from extrados.analyses.rocking.conditions import demand_of
 from extrados.analyses.rocking.course import Course, build_result, keep_events, refuse_long_history
 from extrados.analyses.rocking.history import count
 from extrados.analyses.rocking.shapes import course_arrays
@@ -25,27 +26,30 @@ MODES = ("at rest", "both in the same sense", "both against each other", "upper 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, modes, energies, and the friction needed at both joints."""
     building = context.building
-    model = StackModel(building.blocks())
-    alpha, unit = model.whole
-    end_time = options.end_time or context.motion.end + SETTLE * max(unit, model.alone[1])
+    rocker = building.rocker(options.form == "linear", soft_base=True)
+    model = rocker.model
+    assert isinstance(model, StackModel)
+    end_time = options.end_time or context.motion.end + SETTLE * rocker.time_unit
     refuse_long_history(end_time, options.output_step, 20)
-    turned = building.initial.rotation_ratio * alpha
+    turned = rocker.start_rotation
     settings: dict[str, Any] = {"tolerance": options.tolerance, "start": (turned, turned, 0.0, 0.0)}
 
-    def rock(scale: float = 1.0) -> StackResponse:
+    def rock(step: float, scale: float = 1.0) -> StackResponse:
         return keep_events(
-            lambda room: stack_history(model.core, context.motion.ground, end_time, options.output_step, scale=scale, room=room, **settings)
+            lambda room: stack_history(model.core, context.motion.ground, end_time, step, scale=scale, room=room, **settings)
         )
 
-    r = rock()
+    r = rock(options.output_step)
     grown, turns = 0.0, 0.0
     if not r.interrupted:
-        probes = [rock(factor) for factor in perturbed()]
-        lower = [one.rotation[:, 0] / model.whole[0] for one in (r, *probes[:2])]
-        upper = [(one.rotation[:, 1] - one.rotation[:, 0]) / model.alone[0] for one in (r, *probes[:2])]
+        step = growth_step(rocker.time_unit, end_time)
+        own, *probes = [rock(step, factor) for factor in (1.0, *perturbed())]
+        lower = [one.rotation[:, 0] / model.whole[0] for one in (own, *probes[:2])]
+        upper = [(one.rotation[:, 1] - one.rotation[:, 0]) / model.alone[0] for one in (own, *probes[:2])]
         grown = max(growth(lower), growth(upper))
         turns = turning(r.outcome, [one.outcome for one in probes])
-    result = _result(context, model, r, grown, turns)
+    needed = float(demand_of(rocker, context.motion.ground, end_time, options.tolerance).joints.friction[0])
+    result = _result(context, model, r, needed, grown, turns)
     result.arrays |= {
         **geometry_arrays(model.assembly),
         **course_arrays(options, r.time, r.rotation.T, lambda index: model.pose(r.rotation[index], r.state[index])),
@@ -60,18 +64,14 @@ def modes(state: np.ndarray) -> np.ndarray:
     return np.select([(low == 0) & (high == 0), (low != 0) & (high == low), (low != 0) & (high != 0), low == 0], [0, 1, 2, 3], 4)
 
 
-def _result(context: Context, model: StackModel, r: StackResponse, grown: float, turns: float) -> Result:
-    """Results of the stack; grown, turns: growth of a perturbation, and the least one that changes the outcome."""
+def _result(context: Context, model: StackModel, r: StackResponse, needed: float, grown: float, turns: float) -> Result:
+    """Results of the stack; needed: friction by the steps of the core; grown, turns: growth of a perturbation, and the least one that
+    changes the outcome."""
     energy = r.kinetic + r.potential
-    needed, flies = _required_friction(r)
     found = modes(r.state)
     alpha, unit = model.whole
     violated = violated_by_chaos(grown, turns)
     chaotic = bool(violated)
-    if flies.any():
-        violated.append(
-            f"From {r.time[flies.argmax()]:.3f} s on a joint opens over its whole length, but the analysis assumes contact. Use dem."
-        )
     course = Course(
         of="the lower block",
         settled=r.settled,
@@ -81,7 +81,7 @@ def _result(context: Context, model: StackModel, r: StackResponse, grown: float,
         energy=energy,
         scale=max(float(np.abs(energy).max(initial=0.0)), abs(r.work), 1e-300),
         lost="the energy lost at impacts",
-        friction=needed,
+        friction=_required_friction(r),
         coordinates={"rotation": (r.rotation[:, 0], "rad"), "rotation_upper": (r.rotation[:, 1], "rad")},
         further={"mode": (np.array(MODES)[found], "")},
         event_value="contact at which the event occurs: 1 on the ground, 2 between the blocks",
@@ -101,7 +101,7 @@ def _result(context: Context, model: StackModel, r: StackResponse, grown: float,
         critical_rotation_rad=alpha,
         frequency_parameter_rad_s=1.0 / unit,
         uplift_acceleration_g=min(model.uplift),
-        required_friction=float(needed.max(initial=0.0)),
+        required_friction=needed if np.isfinite(needed) else None,
         stack=out.StackRocking(
             peak_rotation_upper_rad=r.peak[1],
             critical_rotation_upper_rad=model.alone[0],
@@ -147,14 +147,14 @@ def _shares(r: StackResponse) -> list[tuple[str, float]]:
     return [(name, float((found == k).mean())) for k, name in enumerate(MODES) if k] if moving.any() else []
 
 
-def _required_friction(r: StackResponse) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficient of friction needed at both joints while the stack rocks (times, 2), and whether a joint is airborne (times)."""
+def _required_friction(r: StackResponse) -> np.ndarray:
+    """Coefficient of friction needed at both joints while the stack rocks (times, 2), 0 where a joint is airborne."""
     normal, shear = _normal_and_shear(r)
     moving = (r.state != 0).any(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         friction = np.where(normal > 0.0, np.abs(shear) / normal, np.inf)
-    flies = moving & (normal <= 0.0).any(axis=1)
-    return np.where(flies[:, None] | ~moving[:, None], 0.0, friction), flies
+    still = (normal <= 0.0).any(axis=1) | ~moving
+    return np.where(still.reshape(-1, 1), 0.0, friction)
 
 
 def _greatest(model: StackModel, r: StackResponse) -> float:

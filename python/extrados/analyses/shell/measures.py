@@ -69,8 +69,10 @@ def numbers_of_push(context: Context, model: ShellModel, options: Pushover, curv
     seen = cracks(model, state.report)["part"] > 0.0
     storey = point_places(model)["storey"]
     numbers["cracked_points_by_storey"] = np.bincount(storey[seen], minlength=len(model.mesh.levels))[1:].tolist()
-    if model.mesh.joints:
+    if len(model.seats) < len(model.mesh.joints):
         numbers["joints"] = _joints(model, curve, state)
+    if model.seats:
+        numbers["seats"] = _seats(model, curve, elastic)
     if not model.mesh.walls:
         numbers["feet"] = _feet(context, model, options, curve, state)
         return numbers
@@ -122,6 +124,8 @@ def _joints(model: ShellModel, curve: Curve, state: State) -> list[dict[str, Any
     last = next((s for s in reversed(curve.states) if curve.held[s.event]), state)
     rows, force = [], curve.force(model.unit)
     for joint, points in model.joints():
+        if joint.floor:
+            continue
         hits = np.flatnonzero((curve.events.point >= points.start) & (curve.events.point < points.stop))
         found: dict[str, Any] = {"joint": joint.name, "wall": joint.wall}
         for prefix, at in (("", state), ("last_", last)):
@@ -133,6 +137,32 @@ def _joints(model: ShellModel, curve: Curve, state: State) -> list[dict[str, Any
         found["first_base_shear_N"] = float(force[hits[0]]) if len(hits) else None
         found["broken_share"] = float(area[broken].sum() / area.sum())
         rows.append(found)
+    return rows
+
+
+def _seats(model: ShellModel, curve: Curve, elastic: dict[str, Any]) -> list[dict[str, Any]]:
+    """Load, friction and slip of each seat of a floor, and where the floor slid off."""
+    rows, under = [], elastic["under"]
+    force, held, slips = curve.force(model.unit), curve.held, model.slips(curve.events.monitors)
+    for (joint, points), slip in zip(((j, p) for j, p in model.joints() if j.floor), slips, strict=True):
+        normal = -float((under["stress_n"][points] * under["volume"][points]).sum())
+        length = float(joint.thickness[0])
+        off = np.flatnonzero(held & (slip[:, 0] > length))
+        greatest = np.where(held[:, None], slip, 0.0).max(axis=0, initial=0.0)
+        rows.append(
+            {
+                "floor": joint.floor,
+                "wall": joint.wall,
+                "normal_N": normal,
+                "friction_N": joint.strength["friction"] * normal,
+                "length_m": length,
+                "slip_m": float(greatest[0]),
+                "slip_along_m": float(greatest[1]),
+                "slid_off": bool(len(off)),
+                "slid_off_displacement_m": float(curve.events.monitors[off[0], 0]) if len(off) else None,
+                "slid_off_base_shear_N": float(force[off[0]]) if len(off) else None,
+            }
+        )
     return rows
 
 

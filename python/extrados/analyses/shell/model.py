@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.shell.tables import Drive, Pushover, Settlement
+from extrados.analyses.sla.curve import SLID_ALONG, SLID_OFF
 from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.model import (
@@ -67,6 +68,34 @@ class ShellModel(EventModel):
     def steps_alone(self) -> bool:
         """Whether they follow it from the first load on: joints slide out of the plane of their wall in steps alone."""
         return self.slides
+
+    @property
+    def watched(self) -> list[core.Monitor]:
+        """The control displacement, and how far the ends of floors have moved off their seats, seat by seat."""
+        return [self.control, *(m for seat in self.seats for way in (seat.inward, seat.along[0]) for m in _slips(seat, way))]
+
+    @property
+    def seats(self) -> list[ShellJoint]:
+        """Seats of floors."""
+        return [joint for joint in self.mesh.joints if joint.floor]
+
+    def slips(self, monitors: np.ndarray) -> list[np.ndarray]:
+        """How far each floor has moved on each of its seats (events, 2) [m], the most of all its ends: off the seat, and along the wall in
+        either sense. monitors: as recorded."""
+        found, first = [], 1
+        for seat in self.seats:
+            count = len(seat.connect) + 1
+            off, along = (monitors[:, first + k * count : first + (k + 1) * count] for k in range(2))
+            found.append(np.column_stack([off.max(axis=1), np.abs(along).max(axis=1)]))
+            first += 2 * count
+        return found
+
+    def ends(self, part: core.Events) -> str:
+        """A floor that has moved on its seat by more than the length of the seat ends a run."""
+        if not len(part):
+            return ""
+        beyond = [slip[-1] > seat.thickness[0] for seat, slip in zip(self.seats, self.slips(part.monitors), strict=True)]
+        return SLID_OFF if any(off for off, _ in beyond) else SLID_ALONG if any(along for _, along in beyond) else ""
 
     def refuse_free(self, error: core.FreeNode) -> Refused:
         """The refusal of a node that nothing holds."""
@@ -154,6 +183,11 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
             "remove without_equilibrium",
             ("analysis", "without_equilibrium"),
         )
+    if options.without_equilibrium != "continue" and any(joint.floor for joint in mesh.joints):
+        raise Refused(
+            'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove without_equilibrium, or the seats',
+            ("analysis", "without_equilibrium"),
+        )
     mass = mesh.mass()
     constant = np.zeros((len(mesh.xyz), 6))
     constant[:, 2] = -GRAVITY * mass
@@ -200,6 +234,12 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     model.acceleration = acceleration
     model.warnings += mesh.warnings
     return model
+
+
+def _slips(seat: ShellJoint, way: np.ndarray) -> list[core.Monitor]:
+    """Displacement of each end of a floor relative to its wall in a horizontal direction (3)."""
+    pairs = np.vstack([seat.connect[:, [0, 3]], seat.connect[-1:, [1, 2]]])
+    return [core.Monitor(np.repeat(pair[::-1], 2), np.tile([0, 1], 2), np.concatenate([way[:2], -way[:2]])) for pair in pairs]
 
 
 def _way(direction: float) -> np.ndarray:
@@ -412,7 +452,7 @@ def _shells(mesh: ShellMesh, part: ShellPart, axes: np.ndarray, frames: np.ndarr
 def _twisted(mesh: ShellMesh, frames: np.ndarray) -> np.ndarray:
     """Nodes (nodes) whose rotation about the normal of their wall a joint there feels: it is not held then."""
     found = np.zeros(len(mesh.xyz), dtype=bool)
-    for joint in mesh.joints:
+    for joint in (joint for joint in mesh.joints if not joint.floor):
         for way in (joint.normal, joint.along):
             turn = np.cross(joint.out, way)
             for corner in joint.connect.T:
@@ -422,8 +462,10 @@ def _twisted(mesh: ShellMesh, frames: np.ndarray) -> np.ndarray:
 
 def _joint(joint: ShellJoint, frames: np.ndarray, options: Pushover) -> core.ShellJoints:
     """A joint layer by layer; an element is a layer of a stretch, layers of one stretch one after the other."""
-    height, share = layers_of(options.mesh.layers, options.mesh.through)
-    connect, layers = joint.connect, options.mesh.layers
+    # A seat has a hinge above it: a floor does not clamp its walls
+    layers, through = (1, "gauss") if joint.floor else (options.mesh.layers, options.mesh.through)
+    height, share = layers_of(layers, through)
+    connect = joint.connect
     # A pair of nodes between two stretches of a row stands in the first of them
     follows = np.append(False, (connect[1:, 0] == connect[:-1, 1]) & (connect[1:, 3] == connect[:-1, 2]))
     half = 0.5 * joint.length * joint.thickness

@@ -12,7 +12,7 @@ from extrados.analyses.shell.needs import pier_strength
 from extrados.analyses.shell.sections import sections
 from extrados.analyses.shell.sliding import sliding_limits
 from extrados.analyses.shell.stages import run_stages
-from extrados.analyses.shell.stored import store_mesh, store_states
+from extrados.analyses.shell.stored import store_mesh, store_seats, store_states
 from extrados.analyses.shell.tables import Pushover
 from extrados.analyses.shell.variants import run_variants
 from extrados.analyses.shell.verified import verify_push
@@ -97,6 +97,7 @@ def _describe(result: Result, model: ShellModel, curve: Curve, prefix: str) -> N
     """Warnings, arrays, tables and files of a curve."""
     result.warnings += [*curve.warnings, *remarks_of_curve(model, curve)]
     events_of_curve(result, model.unit, curve, prefix)
+    store_seats(result, model, curve, prefix)
     store_states(result, model, curve, prefix)
 
 

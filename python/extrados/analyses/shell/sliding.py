@@ -45,7 +45,7 @@ def sliding_limits(model: ShellModel, building: Building, options: Pushover, und
         return []
     beds: dict[float, list[tuple[str, float, float, float, float]]] = {}  # name, friction, cohesion, area, normal force
     for joint, points in model.joints():
-        if abs(joint.normal[0, 2]) > 0.5:
+        if abs(joint.normal[0, 2]) > 0.5 and not joint.floor:
             force = -float((under["stress_n"][points] * under["volume"][points]).sum())
             z = round(float(mesh.xyz[joint.connect[0, 0], 2]), 6)
             of = (joint.strength["friction"], joint.strength["cohesion"], float(joint.length @ joint.thickness), force)

@@ -40,6 +40,15 @@ def store_mesh(result: Result, model: ShellModel) -> None:
         result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"value at the integration points of the walls: {name}")
 
 
+def store_seats(result: Result, model: ShellModel, curve: Curve, prefix: str) -> None:
+    """How far floors have moved off their seats at each event."""
+    if model.seats and len(curve.events):
+        slips = np.column_stack([slip[:, 0] for slip in model.slips(curve.events.monitors)])
+        result.arrays[f"{prefix}event_seat_slip"] = Array(
+            slips, (f"{prefix}events", "seats"), "m", "greatest displacement of an end of a floor off each of its seats"
+        )
+
+
 def store_states(result: Result, model: ShellModel, curve: Curve, prefix: str) -> None:
     """Displacements, cracks and the forces of the piers of the kept states, and their fields as VTU."""
     if not curve.states:

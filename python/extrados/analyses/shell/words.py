@@ -113,6 +113,11 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
             f"; joint {row['joint']} in wall {row['wall']}{_gave_way(row)} has slid by {1e3 * row['last_slip_m']:.2g} mm and opened by "
             f"{1e3 * row['last_opening_m']:.2g} mm at the end"
         )
+    for row in (row for row in curve.get("seats", []) if row["slid_off"]):
+        text += (
+            f"; {row['floor']} slides off wall {row['wall']} at a displacement of {1e3 * row['slid_off_displacement_m']:.3g} mm, because its "
+            f"seat is only {1e3 * row['length_m']:.3g} mm long; its friction on this wall is {row['friction_N'] / 1e3:.3g} kN"
+        )
     return f"{text}{'; ' if feet else ''}{feet}."
 
 

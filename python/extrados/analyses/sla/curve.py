@@ -25,6 +25,8 @@ ROUNDING = 1e-9
 #: How a run ends whose load fell below `stop_fraction` of its peak, one whose displacements are no longer small, and one whose constant
 #: loads are no longer carried
 FELL, TOO_FAR, AXIAL = (core.STOPS[lists.number("sla_stop", name)] for name in ("fraction", "far", "axial"))
+#: How a run ends in which a floor has left its seat, or has moved as far along its wall
+SLID_OFF, SLID_ALONG = "a floor has slid off its seat", "a floor has slid along its walls by the length of its seat"
 
 
 @dataclass(frozen=True)

@@ -74,6 +74,11 @@ class EventModel(ABC):
         """What is recorded at each event."""
         return [self.control]
 
+    def ends(self, part: core.Events) -> str:
+        """Why a run ends after these steps by a limit of the structure itself; empty if it goes on."""
+        del part
+        return ""
+
     @property
     def slides(self) -> bool:
         """Whether a joint has a coefficient of friction."""

@@ -37,7 +37,9 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   const waiting = new Map(); // number of a message -> what to do with its replies
   const flying = new Map(); // lane -> {busy, next}
   const unanswered = new Set(); // numbers of messages that change the picture
-  let counter = 0, scenes = 0, moved = true, held = false, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
+  let counter = 0, scenes = 0, moved = true, held = false, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false, start = null;
+  let last = null; // the deck of the last page, which this one replaces with its first change
+  try { last = JSON.parse(localStorage.getItem(KEPT)); } catch { /* a browser without storage */ }
 
   function on(event, listener) { (listeners[event] ??= []).push(listener); }
   function tell(event, ...rest) { for (const listener of listeners[event] ?? []) listener(...rest); }
@@ -161,7 +163,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       if (wasOpen) say(tr`The server runs again. This page has kept its state.`);
     } else {
       banner.hidden = false;
-      banner.textContent = reason ? tr`The server has ended the connection: ${reason}` : tr`The server does not answer. This page keeps your deck and tries to connect again … (${tries})`;
+      banner.textContent = state === "moved" ? tr`extrados was started again, with another address. Open the address that it printed: Open… offers this deck there as the deck of your last page.` : reason ? tr`The server has ended the connection: ${reason}` : tr`The server does not answer. This page keeps your deck and tries to connect again … (${tries})`;
     }
     root.dataset.connected = connected;
   };
@@ -190,6 +192,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       tell("scene", words.opened === true, entry?.when);
       follow();
       if (words.to !== "hello") say(words.limit ?? "");
+      else if (!entry?.message.kept && app.handles.length) say(tr`Drag a circle or a diamond of the drawing to change a size.`);
       rest();
     }
     else if (words.to === "set" && words.deck) { // a motion alone has changed
@@ -270,6 +273,9 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     redoButton.disabled = future.length === 0 && !board();
     title.textContent = app.deck?.title || app.name || "";
     title.title = app.name;
+    start ??= app.text;
+    if (app.text === start) return; // a page that is only opened leaves the deck of the last page
+    start = "";
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
   }
   root.addEventListener("pointerdown", () => { held = true; }, true);
@@ -345,9 +351,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const words = field.value.toLowerCase().split(/\s+/);
       const fits = (...texts) => words.every((word) => texts.join(" ").toLowerCase().includes(word));
       const groups = [];
-      let kept = null;
-      try { kept = JSON.parse(localStorage.getItem(KEPT)); } catch { /* none */ }
-      if (kept?.text && app.root.dataset.role !== "pupil" && fits("last", kept.name)) groups.push([tr`Where you left off`, [item(kept.name, tr`the deck of your last page`, { text: kept.text, name: kept.name, ...kept.source })]]);
+      if (last?.text && app.root.dataset.role !== "pupil" && fits("last", last.name)) groups.push([tr`Where you left off`, [item(last.name, tr`the deck of your last page`, { text: last.text, name: last.name, ...last.source })]]);
       if (w.folder) groups.push([tr`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
       const blank = h("button", { class: "choice", "data-blank": true, onclick: () => { shown.close(); app.sheet.begin(true); } }, h("b", {}, tr`Blank sheet`), h("span", {}, tr`draw arches, piers, walls and blocks`));
       const plan = h("button", { class: "choice", "data-blank-plan": true, onclick: () => { shown.close(); app.plan.begin(true); } }, h("b", {}, tr`Blank plan`), h("span", {}, tr`draw walls and openings of a building`));

@@ -72,7 +72,7 @@ export function motionPanel(app, lower, frame) {
   function none(text, ground) {
     it.arrays = it.words = null; it.ground = ground;
     words.textContent = text;
-    slider.disabled = true;
+    slider.disabled = play.disabled = true;
     clock.textContent = "";
     app.drawing.pose(null);
     draw();
@@ -105,7 +105,7 @@ export function motionPanel(app, lower, frame) {
     it.end = told.active_s || 1;
     const end = it.end;
     set(slider, { max: end });
-    slider.disabled = !arrays.pose;
+    slider.disabled = play.disabled = !arrays.pose;
     it.time = Math.min(it.time, end);
     draw(false);
     seek(it.time, false);

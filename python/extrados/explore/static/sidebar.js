@@ -42,6 +42,7 @@ export function sidebar(app, box) {
     else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Collapses towards ${side}. `), capital(said(scene.why)), "."));
     else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? tr`Stands when tilted. ` : tr`Stands. `), scene.gamma ? tr`Collapse towards ${side} at ${number(c[`${way}_g`], 4)} g.` : tr`Collapse at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
     const rows = [];
+    if (scene.stands === false && app.handles.length) parts.push(h("p", { class: "remark" }, tr`Drag a circle or a diamond of the drawing to change a size.`));
     if (c && (scene.dilating?.plus || scene.dilating?.minus)) parts.push(h("p", { class: "remark" }, tr`Joints slide in the mechanism: the collapse acceleration is an upper bound (dilatant friction). The analysis tilt of a deck also gives the least state found without dilatancy.`));
     if (c) {
       rows.push(row(tr`Capacity to +x`, h("span", { "data-number": "plus" }, `${number(c.plus_g, 4)} g · ${number(degrees(c.plus_g), 4)}°`), tr`horizontal acceleration, and tilt of the ground, at which the structure becomes a mechanism`));

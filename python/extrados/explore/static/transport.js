@@ -16,7 +16,8 @@ export function unpack(buffer) {
   return { words, arrays };
 }
 
-/** A socket that reconnects: `onstate` receives "open", "lost" or "refused", `onreply` the replies. */
+/** A socket that reconnects: `onstate` receives "open", "lost" or "moved", `onreply` the replies. A server that was begun anew has
+    another address, which this page cannot know: it refuses the old one. */
 export function socketTransport(address) {
   const transport = { onstate: () => {}, onreply: () => {}, send, close, open: false };
   let socket = null, tries = 0, closed = false;
@@ -27,13 +28,17 @@ export function socketTransport(address) {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => { tries = 0; transport.open = true; transport.onstate("open"); };
     socket.onmessage = (event) => transport.onreply(unpack(event.data));
-    socket.onclose = (event) => {
+    socket.onclose = async (event) => {
       transport.open = false;
       if (closed) return;
       tries += 1;
       transport.onstate("lost", tries, event.reason);
+      if (tries > 1 && !event.reason && await refused()) { transport.onstate("moved"); return; }
       setTimeout(connect, Math.min(250 * 1.5 ** tries, 4000));
     };
+  }
+  async function refused() {
+    try { return (await fetch(location.pathname, { method: "HEAD" })).status === 403; } catch { return false; }
   }
   function send(message) {
     if (socket.readyState !== WebSocket.OPEN) return false;

@@ -103,6 +103,19 @@ def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: flo
     return Contacts(table[:, 2:4], table[:, 4:6], table[:, 0].astype(int), table[:, 1].astype(int), flaws)
 
 
+def facing_edges(outlines: list[np.ndarray], farthest: float, tolerance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Edges of different counter-clockwise outlines (n, 2) [m] that look at each other: their numbers in a row, and how far apart they
+    are at most [m], up to `farthest`. Edges that lie in each other by more than a tolerance [m] are none."""
+    first = np.concatenate(outlines)
+    last = np.concatenate([following(o) for o in outlines])
+    near = _Near(outlines, np.cumsum([0, *map(len, outlines)]), first, last, farthest)
+    one, two = near.edges()
+    low, high, at_low, at_high = _shared(first[one], last[one], first[two], last[two])
+    apart = np.maximum(-at_low, -at_high)
+    kept = (high - low > shortest_joint(tolerance)) & (apart <= farthest) & (np.maximum(at_low, at_high) <= tolerance)
+    return one[kept], two[kept], np.maximum(apart[kept], 0.0)
+
+
 def _distinct(flaws: list[Flaw], apart: float) -> list[Flaw]:
     """The deepest first; of those between the same two blocks and `apart` [m] or less from each other, the deepest."""
     told: dict[tuple[str, int, int], list[tuple[float, float]]] = {}

@@ -1,7 +1,7 @@
 """A survey looked at before it is computed: outlines, joints, and one list of all gaps, overlaps and near misses."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -9,11 +9,13 @@ import numpy as np
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.contacts import Contacts, Flaw, Overlap, find_contacts, nearest, shortest_joint
 from extrados.model.geometry.drawing import MOST_POINTS, Drawing, Polygon
+from extrados.model.geometry.mortar import closed_outlines
 from extrados.model.geometry.polygons import crossing_edges, following, inside, properties, signed_area
 
 FARTHEST = 1e5  # m from the origin
 #: No tolerance mends what is deeper than this [m], or than this part of the smaller of two blocks.
 MOST_TOLERANCE, MOST_PART = 0.1, 0.1
+JOINT = 3e-3  # m: gaps wider than this may be joints of mortar
 SHOWN = 3  # of a list in a sentence
 MOST_LOOSE = 50  # loose blocks whose nearest neighbours are sought
 
@@ -78,7 +80,9 @@ class Inspection:
             worst = next(flaw for flaw, m in zip(flaws, mends, strict=True) if m is None)
             what = "overlap by" if worst.kind == "overlap" else "are apart by"
             return f"blocks {self.between(worst)} {what} too much for a tolerance: draw them again"
-        return f'contact_tolerance = "{1e3 * max(known):.3g} mm" would close {"this gap or overlap" if len(flaws) == 1 else "all of them"}'
+        cure = f'contact_tolerance = "{1e3 * max(known):.3g} mm" would close {"this gap or overlap" if len(flaws) == 1 else "all of them"}'
+        wide = max(known) > JOINT and all(flaw.kind == "gap" for flaw in flaws)
+        return f'{cure}; for joints of mortar, give mortar_gap = "{1e3 * max(known):.3g} mm"' if wide else cure
 
     def complaints(self) -> list[str]:
         """Why it cannot be computed: overlaps, no ground, blocks that nothing holds; empty where it can."""
@@ -157,10 +161,12 @@ def inspect(
     tolerance: float,
     foundation_levels: list[float] | None = None,
     origin: np.ndarray | None = None,
+    mortar: float = 0.0,
 ) -> Inspection:
     """Outlines, joints and flaws of surveyed blocks, those of a drawing less its origin [m].
 
     ground: segments (k, 4) [m]; where it and foundation_levels are None the drawing's, or else the lowest level.
+    mortar [m]: joints up to that wide are closed by moving both faces to their middle.
     BadGeometry where a single outline is no outline; what is amiss between outlines is in the answer.
     """
     polygons = drawing.blocks
@@ -172,6 +178,9 @@ def inspect(
         raise BadGeometry(f"two blocks are called '{twice}'")
     shift = np.zeros(2) if origin is None else np.asarray(origin, dtype=float)
     outlines = [_outline(p, tolerance, shift) for p in polygons]
+    if mortar > 0.0:
+        outlines, note = closed_outlines(outlines, names, mortar, tolerance)
+        drawing = replace(drawing, notes=(*drawing.notes, note))
     given = ground if ground is not None else drawing.ground if foundation_levels is None else None
     segments = np.empty((0, 4)) if given is None else np.asarray(given, dtype=float).reshape(-1, 4) - np.tile(shift, 2)
     if foundation_levels is not None:

@@ -145,6 +145,13 @@ class Bed(Table):
     walls: list[str] = key([], "names of the walls through which the joint runs; default: all walls of the storey", max_length=200)
 
 
+class Seat(Table):
+    """Where the ends of a floor rest on its walls, without a connection."""
+
+    length: Length = key(about="length of the bearing across the wall", gt=0)
+    friction: float = key(about="coefficient of friction between floor and wall", gt=0)
+
+
 class StoreyFloor(Table):
     """A floor or roof on top of a storey: a membrane between walls, or joists, and what it carries."""
 
@@ -174,6 +181,11 @@ class StoreyFloor(Table):
     bears_on: list[str] = key(
         [], "walls that carry the load, in proportion to their length; default: all walls around the floor", max_length=100
     )
+    seat: Seat | None = key(
+        None,
+        "seat of the floor on the walls of `bears_on`: the floor is held by friction under its load alone, and slides off where the wall "
+        "moves away by more than the length; considered by shells. Default: the floor is connected to its walls",
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> "StoreyFloor":
@@ -191,6 +203,8 @@ class StoreyFloor(Table):
             raise ValueError(f"a roof of {self.roof} requires load, the weight per area of its slopes, above 0")
         if self.roof == "rafters" and self.kind == "joists":
             raise ValueError("joists tie the two walls: give roof = 'trusses', or another kind of floor")
+        if self.seat is not None and (self.kind == "none" or self.roof is not None or not self.load > 0.0 or not self.bears_on):
+            raise ValueError("seat: expected a level floor of kind 'joists', 'flexible' or 'rigid' with load above 0 and bears_on")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
             raise ValueError(f"walls: wall '{twice[0]}' occurs twice")
         return self
@@ -369,8 +383,9 @@ class Plan(Structure):
                 raise ValueError(
                     f"prestress[{k}].x: {part.x[0]:g} to {part.x[1]:g} m is not on wall '{part.wall}', whose length is {length:g} m"
                 )
+        held: dict[tuple[str, int], int] = {}
         for k, beam in enumerate(self.ring_beams):
-            self._check_ring_beam(k, beam)
+            self._check_ring_beam(k, beam, held)
         for k, floor in enumerate(self.floors):
             self._check_floor(k, floor)
         return self
@@ -397,8 +412,13 @@ class Plan(Structure):
                     f"{floor.storey}. Give the two walls without gables, or a roof of purlins"
                 )
 
-    def _check_ring_beam(self, k: int, beam: RingBeam) -> None:
+    def _check_ring_beam(self, k: int, beam: RingBeam, held: dict[tuple[str, int], int]) -> None:
         for wall in self.of_ring_beam(beam):
+            if (first := held.setdefault((wall.name, beam.storey), k)) != k:
+                raise ValueError(
+                    f"ring_beams[{k}].walls: wall '{wall.name}' has ring beam {first + 1} on storey {beam.storey} already; one wall can have "
+                    "one ring beam on a level. Name the walls of each beam, or give one beam with the depth of both"
+                )
             self._check_storey(f"ring_beams[{k}].storey", wall.name, beam.storey)
             low = self.storeys[beam.storey - 1] - beam.depth
             for i, opening in enumerate(wall.openings):
@@ -415,6 +435,10 @@ class Plan(Structure):
         if beam.walls:
             return [self.wall(name) for name in beam.walls]
         return [wall for wall in self.walls if self.reach(wall)[0] <= beam.storey <= self.reach(wall)[1]]
+
+    def ring_beam_on(self, wall: PlanWall, level: int) -> RingBeam | None:
+        """The ring beam of a wall on a level, if it has one."""
+        return next((beam for beam in self.ring_beams if beam.storey == level and wall in self.of_ring_beam(beam)), None)
 
     def material_of(self, wall: PlanWall, storey: int) -> str | None:
         """Name of a wall's material in a storey; None: [material]."""

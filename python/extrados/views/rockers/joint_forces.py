@@ -8,10 +8,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from extrados.core import mechanism as core_mechanism
+from extrados.core.restraints import TURN
 from extrados.limit.linkage import Linkage, laden
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.mechanism import carried, hinge_matrix
+from extrados.views.rockers.restraints import Restraint
 
 #: Steps of the table from rest to the critical rotation
 STEPS = 16
@@ -21,14 +23,15 @@ STEPS = 16
 class JointForces:
     """Normal, shear and place of the resultant at the joints that equilibrium fixes, of one side.
 
-    With w = 1 + a_v/g, h = side a_h, and a square of the rate, all forces are linear (fortran/rocking/watch.f90). Hinges carry no
-    moment, so the equations of the parts give their forces; a joint within a part is fixed where it alone ties the blocks on one side
-    of it to the rest, which the blocks on that side then give. What several joints share is left out: `joints` holds the others.
-    Ties, dampers and soils that push are not in it.
+    With w = 1 + a_v/g, h = side a_h, a square of the rate and the forces of restraints, all forces are linear
+    (fortran/rocking/watch.f90). Joints carry no moment at hinges, so the equations of the parts give their forces; a joint within a
+    part is fixed where it alone ties the blocks on one side of it to the rest, which the blocks on that side then give. What several
+    joints share is left out: `joints` holds the others. Soils that push are not in it.
     """
 
     assembly: Assembly
     linkage: Linkage
+    members: tuple[Restraint, ...] = ()
 
     @cached_property
     def _cuts(self) -> list[tuple[int, np.ndarray]]:
@@ -57,7 +60,7 @@ class JointForces:
         return np.array([*hinges, *(j for j, _ in self._cuts)] if hinges else [], dtype=int)
 
     def table(self, rotations: np.ndarray) -> np.ndarray:
-        """(rotations, joints, input w h rate^2, quantity N T M_p/L), of `joints` at rotations >= 0 [rad]."""
+        """(rotations, joints, input w h rate^2 and force of each restraint, quantity N T M_p/L), of `joints` at rotations >= 0 [rad]."""
         a, one, n = self.assembly, self.linkage, len(rotations)
         place, first, second = core_mechanism.follow(one, rotations)
         mass, centroid, inertia = laden(a)
@@ -78,6 +81,9 @@ class JointForces:
         total = (weight * by**2).sum(axis=(1, 2))
         parts = [GRAVITY * (mass * by[..., 1]).sum(axis=1), one.side * (mass * by[..., 0]).sum(axis=1)]
         parts.append((weight * by * twice).sum(axis=(1, 2)))
+        # a restraint of force 1 turns by the work of its wrenches
+        held = self._wrenches(place, at)
+        parts += [-(wrench * by).sum(axis=(1, 2)) for wrench in held]
         acceleration = -np.stack(parts, axis=1) / total[:, None]
         # force and moment about the centroid that each block needs (rotations, inputs, blocks, 3)
         needed = acceleration[:, :, None, None] * by[:, None]
@@ -85,8 +91,10 @@ class JointForces:
         needed[:, 1, :, 0] += one.side
         needed[:, 2] += twice
         needed = needed * weight
+        for row, wrench in enumerate(held, start=3):
+            needed[:, row] -= wrench
         hinge = self._hinge_forces(place, at, needed)
-        out = np.zeros((n, len(self.joints), 3, 3))
+        out = np.zeros((n, len(self.joints), needed.shape[1], 3))
         turned = np.concatenate([np.zeros((n, 1)), place[:, :, 2]], axis=1)
         number = np.append(one.part, 0)
         points = [carried(one, place, pair[0], one.point[h]) for h, pair in enumerate(one.joined)]
@@ -119,11 +127,38 @@ class JointForces:
             out[:, row, :, 2] = outward * turn * moment / a.length[j]
         return out
 
+    def _wrenches(self, place: np.ndarray, at: np.ndarray) -> list[np.ndarray]:
+        """Force [N] on each block and moment about its point `at` (rotations, blocks, 3) [N m] by a force of 1 of each restraint."""
+        a, one, found = self.assembly, self.linkage, []
+        pose = one.blocks(a, place)
+        for member in self.members:
+            out = np.zeros_like(at)
+            found.append(out)
+            if member.sort == TURN:
+                for block, sign in zip(member.blocks, (-1.0, 1.0), strict=True):
+                    if block != GROUND:
+                        out[:, block, 2] += sign
+                continue
+            where = [
+                np.broadcast_to(x, (len(place), 2))
+                if block == GROUND
+                else pose[:, block, :2] + _turned(x - a.centroid[block], pose[:, block, 2])
+                for block, x in zip(member.blocks, member.points, strict=True)
+            ]
+            line = where[1] - where[0]
+            pull = line / np.hypot(*line.T)[:, None]
+            for block, x, sign in zip(member.blocks, where, (1.0, -1.0), strict=True):
+                if block != GROUND:
+                    arm = x - at[:, block, :2]
+                    out[:, block, :2] += sign * pull
+                    out[:, block, 2] += sign * (arm[:, 0] * pull[:, 1] - arm[:, 1] * pull[:, 0])
+        return found
+
     def _hinge_forces(self, place: np.ndarray, at: np.ndarray, needed: np.ndarray) -> np.ndarray:
         """Forces on the first part of each hinge (rotations, inputs, hinges, 2) [N]."""
         a, one, n = self.assembly, self.linkage, len(place)
-        count = len(one.mass)
-        right = np.zeros((n, 3, count, 3))
+        count, inputs = len(one.mass), needed.shape[1]
+        right = np.zeros((n, inputs, count, 3))
         for k in range(count):
             mine = one.part == k + 1
             load, lever = needed[:, :, mine], at[:, mine, :2] - place[:, k, None, :2]
@@ -133,8 +168,8 @@ class JointForces:
         matrix = hinge_matrix(one, place)
         unit = np.array([1.0, 1.0, 1.0 / a.size])
         matrix = (matrix * unit[:, None, None]).reshape(n, 3 * count, -1)
-        force = np.linalg.pinv(matrix) @ np.moveaxis((right * unit).reshape(n, 3, -1), 1, 2)
-        return np.moveaxis(force, 1, 2).reshape(n, 3, -1, 2)
+        force = np.linalg.pinv(matrix) @ np.moveaxis((right * unit).reshape(n, inputs, -1), 1, 2)
+        return np.moveaxis(force, 1, 2).reshape(n, inputs, -1, 2)
 
 
 def _turned(vector: np.ndarray, angle: np.ndarray) -> np.ndarray:

@@ -13,6 +13,7 @@ from extrados.core.errors import CoreError
 from extrados.core.restraints import FREE, LENGTH, TURN, Law, paths, restrained_body
 from extrados.core.rocking import Body
 from extrados.limit.linkage import Linkage
+from extrados.limit.loads import forces_at
 from extrados.model.devices import AddedHinge, Damper
 from extrados.model.errors import WHOLE, BadGeometry, Key, NoView
 from extrados.model.geometry.anchors import stone_at
@@ -100,6 +101,19 @@ class Restraints:
         force = np.array([m.law.prestress for m in self.members])
         right, left = (float(self.paths(side, [0.0])[1][0] @ force) for side in (0, 1))
         return right, left
+
+    def prestress(self, count: int) -> np.ndarray:
+        """Loads (count, 3) of the prestress on the blocks at rest: force x, y [N] and moment about the origin [N m]."""
+        load = np.zeros((count, 3))
+        for m in self.members:
+            if m.sort != LENGTH:
+                continue
+            line = m.points[1] - m.points[0]
+            for block, point, sign in zip(m.blocks, m.points, (1.0, -1.0), strict=True):
+                if block != GROUND:
+                    x, y = sign * m.law.prestress * line / np.hypot(*line)
+                    load += forces_at(count, block, point, (float(x), float(y)))
+        return load
 
     def pull(self, rotation: np.ndarray, force: np.ndarray) -> np.ndarray:
         """Force x, y [N] on a structure of one part (states, 2), at signed rotations [rad]; force as Response.forces."""

@@ -23,7 +23,7 @@ from extrados.views.rockers.mechanism import MechanismModel
 from extrados.views.rockers.restraints import Restraints, block_linkages, block_reach, members_of, three_impacts
 from extrados.views.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
 from extrados.views.rockers.stack import StackModel, rocks_as_stack
-from extrados.views.rockers.watch import Watch, sliding_capacity
+from extrados.views.rockers.watch import Watch, opening_capacity, sliding_capacity
 from extrados.views.rockers.words import refuse_stack, refuse_words, rocks_as_block
 
 OTHER_RULE = 'the impact rule "thesis" is for circular arches without restraints; "energy-safe" is used instead'
@@ -37,7 +37,7 @@ class Rocker:
     of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
     arch [m]; start_rotation [rad], > 0 to +x. restraints: what holds it besides its weight, None where nothing does.
     restitution: None on a compliant base, from which what impacts lose follows; rest: rotation at which it stands [rad].
-    watch: what is known of its joints while it rocks; None where ties, dampers, a wall or a compliant base act on it.
+    watch: what is known of its joints while it rocks; None on a compliant base, and of two stacked blocks.
     """
 
     what: str
@@ -68,7 +68,8 @@ class Rocker:
         """The same without the tables of its joints."""
         if self.watch is None or isinstance(self.model, SoftBaseModel | StackModel):
             return self
-        return replace(self, body=self.model.body, watch=None)
+        bare = self.model.body
+        return replace(self, body=bare if self.restraints is None else self.restraints.hold(bare), watch=None)
 
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
         """Rule -> (c_v, structure) of all impact rules where they differ by more than the factor; none where there is one."""
@@ -132,7 +133,7 @@ def make_rocker(building: Masonry, linear: bool = False, stones: Assembly | None
         )
         resting = stones or _resting(building, piers)
         stones = stones or (resting if piers is None else piers)
-        return _restrained(made, building) or _watched(made, building, stones, block_linkages(block, stones), resting)
+        return _watched(_restrained(made, building), building, stones, block_linkages(block, stones), resting)
     given, stones = stones is not None, stones or (building.blocks() if piers is None else piers)
     if not given and isinstance(stones, ArchAssembly) and not _is_restrained(building):
         arch = ArchModel(stones, building.joints.restitution)
@@ -171,7 +172,7 @@ def make_rocker(building: Masonry, linear: bool = False, stones: Assembly | None
         ratio * critical[0 if ratio >= 0.0 else 1],
         (*model.warnings, *told),
     )
-    return _restrained(made, building) or _watched(made, building, stones, model.linkages)
+    return _watched(_restrained(made, building), building, stones, model.linkages)
 
 
 def _resting(building: Masonry, piers: Assembly | None) -> Assembly:
@@ -200,20 +201,38 @@ def _watched(
         found = np.broadcast_to(np.asarray(given, dtype=float), len(assembly.a))
         return np.where(found < NO_SLIDING_COEFFICIENT, found, np.inf)
 
-    friction = of(stones)
-    model = free.model
+    friction, model, held = of(stones), free.model, free.restraints
+    assert isinstance(model, BlockModel | ArchModel | MechanismModel)
     needed: tuple[np.ndarray, ...] | None = None
     if isinstance(model, ArchModel):
         needed = (model.collapse[0].friction,)
-    elif isinstance(model, MechanismModel) and not isinstance(model, FrameModel):
+    elif isinstance(model, MechanismModel) and not isinstance(model, FrameModel) and held is None:
         needed = tuple(state.friction for state, _ in model.collapse)
-    rocking = model.uplift if isinstance(model, MechanismModel) else (free.uplift, free.uplift)
+    rocking = _starts(model, held)
+    opening, loads = (np.inf, np.inf), replace(tilt_loads(resting), resistance=None)
+    if held is not None and any(m.law.prestress for m in held.members):
+        resting, loads = stones, replace(tilt_loads(stones), resistance=None)
+        loads = replace(loads, dead=loads.dead + held.prestress(len(stones.mass)))
+        opening = opening_capacity(stones, rocking, loads)
+    first = min(rocking[0], opening[0]), min(rocking[1], opening[1])
+    capacity = (np.inf, np.inf) if min(first) <= 0.0 else sliding_capacity(resting, of(resting), first, needed, loads)
+    watch = Watch(stones, linkages, free.critical, friction, capacity, opening, not isinstance(model, BlockModel), held)
+    return replace(free, body=watch.watched(model.body), watch=watch)
+
+
+def _starts(model: BlockModel | ArchModel | MechanismModel, held: Restraints | None = None) -> tuple[float, float]:
+    """Horizontal acceleration of the ground [g] at which a structure starts to rock to +x and to -x, with the prestress of what holds it."""
     if isinstance(model, BlockModel):
-        rocking = float(np.tan(model.alpha[0])), float(np.tan(model.alpha[1]))
-    loads = replace(tilt_loads(resting), resistance=None)
-    capacity = sliding_capacity(resting, of(resting), rocking, needed, loads)
-    watch = Watch(stones, linkages, free.critical, friction, capacity, not isinstance(model, BlockModel))
-    return replace(free, body=watch.watched(free.body), watch=watch)
+        drive = model.block.mass[0] * model.block.radius * (1.0 if model.linear else np.cos(model.alpha))
+        right, left = model.uplift
+    elif isinstance(model, ArchModel):
+        right = left = model.collapse[0].gamma
+    else:
+        drive = np.array([t.drive for t in model.tables])
+        right, left = model.uplift
+    if held is not None:
+        right, left = np.array([right, left]) + np.array(held.moment_at_rest) / (GRAVITY * drive)
+    return float(right), float(left)
 
 
 def _as_stack(building: Masonry, linear: bool, stones: Assembly | None) -> Rocker:
@@ -251,7 +270,7 @@ def _on_soft_base(building: Masonry, linear: bool, stones: Assembly | None) -> R
         structure.kind,
         structure.word,
         model,
-        soft_base_body(model.core, critical),
+        soft_base_body(model.core, critical, model.friction(building.friction())),
         min(model.uplift(1), model.uplift(-1)),
         critical,
         None,
@@ -267,10 +286,10 @@ def _is_restrained(building: Masonry) -> bool:
     return bool(building.restraints) or building.supports.abutting_wall is not None
 
 
-def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
-    """The rocker with the ties, dampers, added hinges and the wall of its building; None where nothing holds it."""
+def _restrained(free: Rocker, building: Masonry) -> Rocker:
+    """The rocker with the ties, dampers, added hinges and the wall of its building."""
     if not _is_restrained(building):
-        return None
+        return free
     model = free.model
     assert not isinstance(model, ArchModel | SoftBaseModel | StackModel) and building.structure is not None
     wall = building.supports.abutting_wall
@@ -279,20 +298,16 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
     if isinstance(model, BlockModel):
         stones = building.pier_blocks() if building.structure.rocks_as == "piers" else building.blocks()
         linkages, reach = block_linkages(model, stones), block_reach(model)
-        drive = model.block.mass[0] * model.block.radius * (1.0 if model.linear else np.cos(model.alpha))
-        weight = GRAVITY * drive * model.uplift
         if wall is not None:
             rebound = (three_impacts(model, 0), three_impacts(model, 1))
     else:
         linkages, stones = model.linkages, model.assembly
         right, left = (table.numbers[2:4] for table in model.tables)
         reach = (float(right[0]), float(right[1])), (float(left[0]), float(left[1]))
-        weight = np.array([t.gravity_moment for t in model.tables])
-        drive = np.array([t.drive for t in model.tables])
     if building.supports.rebound is not None:
         rebound = (building.supports.rebound, building.supports.rebound)
     held = Restraints(members_of(building, stones, linkages), linkages, reach, sides, rebound)
-    uplift = (weight + held.moment_at_rest) / (GRAVITY * drive)
+    starts = _starts(model, held)
     body = held.hold(free.body)
     critical, _ = limits(body)
     ratio = building.initial.rotation_ratio
@@ -312,5 +327,5 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
         warnings=told,
         critical=critical,
         start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
-        uplift=float(uplift[list(sides)].min()),
+        uplift=min(start for start, is_open in zip(starts, sides, strict=True) if is_open),
     )

@@ -8,6 +8,7 @@ import numpy as np
 from extrados.core.soft_base import SoftBase, base_held
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.geometry.assembly import Assembly
+from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.model.structures.block import BlockAssembly
 from extrados.schema.constants import GRAVITY
 from extrados.views.blocks import Masonry
@@ -35,6 +36,11 @@ class SoftBaseModel:
     def weight(self) -> float:
         """[N]"""
         return float(self.block.mass[0]) * GRAVITY
+
+    def friction(self, given: float | np.ndarray | None) -> float:
+        """Friction of the base, infinite where it does not slide; given: of the joints of the block, or of all."""
+        least = np.inf if given is None else float(np.min(given))
+        return least if least < NO_SLIDING_COEFFICIENT else np.inf
 
     @property
     def limit(self) -> np.ndarray:
@@ -181,6 +187,14 @@ class SoftBaseModel:
         edge = np.where(rotation < 0.0, -self.core.toe_left, self.core.toe_right)
         x = edge * (1.0 - np.cos(rotation)) + self.core.height * np.sin(rotation)
         return np.stack([x, self.core.height * np.cos(rotation) - sinking, -rotation], axis=1)[:, None, :]
+
+    def velocity(self, state: np.ndarray) -> np.ndarray:
+        """Velocity of the centre to +x and up [m/s] and counter-clockwise spin [rad/s] (3) in a state (4): rotation [rad], sinking [m] and
+        their rates."""
+        q, _, turning, sinking = state
+        edge = -self.core.toe_left if q < 0.0 else self.core.toe_right
+        x = edge * np.sin(q) + self.core.height * np.cos(q)
+        return np.array([x * turning, -self.core.height * np.sin(q) * turning - sinking, -turning])
 
 
 def soft_base_model(building: Masonry, linear: bool = False, stones: Assembly | None = None) -> SoftBaseModel:

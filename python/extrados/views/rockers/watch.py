@@ -16,6 +16,7 @@ from extrados.model.geometry.assembly import Assembly
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.impact import MOST_BLOCKS, inelastic_impact
 from extrados.views.rockers.joint_forces import STEPS, JointForces
+from extrados.views.rockers.restraints import Restraints
 
 #: How far the thrust line may leave a joint, as a fraction of its length, before another hinge opens there
 OUTSIDE = 0.01
@@ -31,8 +32,9 @@ class Watch:
 
     linkages: of both sides; critical: rotations up to which the joints are looked at [rad]; friction: of the joints of the
     assembly, infinite where they do not slide; capacity: horizontal acceleration of the ground that slides the resting
-    structure the way it would rock to +x, -x, infinite where it rocks first [g]. strikes: whether impacts set blocks in motion
-    (one block on a toe meets the ground as its impact rule says).
+    structure the way it would rock to +x, -x, infinite where it rocks first [g]; opening: the same that opens hinges of another
+    mechanism. strikes: whether impacts set blocks in motion (one block on a toe meets the ground as its impact rule says).
+    restraints: what holds the structure besides its weight.
     """
 
     assembly: Assembly
@@ -40,11 +42,14 @@ class Watch:
     critical: tuple[float, float]
     friction: np.ndarray
     capacity: tuple[float, float]
+    opening: tuple[float, float]
     strikes: bool
+    restraints: Restraints | None = None
 
     @cached_property
     def _forces(self) -> tuple[JointForces, JointForces]:
-        right, left = (JointForces(self.assembly, one) for one in self.linkages)
+        members = () if self.restraints is None else self.restraints.members
+        right, left = (JointForces(self.assembly, one, members) for one in self.linkages)
         return right, left
 
     @cached_property
@@ -63,7 +68,7 @@ class Watch:
         found = []
         for forces, critical in zip(self._forces, self.critical, strict=True):
             # a joint that is unknown on this side presses in its middle
-            table = np.zeros((STEPS + 1, len(self.joints), 3, 3))
+            table = np.zeros((STEPS + 1, len(self.joints), 3 + len(forces.members), 3))
             table[:, :, 0, 0], table[:, :, 0, 2] = 1.0, 0.5
             # the mechanism may lock at the critical rotation itself
             at = np.linspace(0.0, critical * (1.0 - 1e-9), STEPS + 1)
@@ -72,11 +77,13 @@ class Watch:
         return found[0], found[1]
 
     def watched(self, body: Body) -> Body:
-        """The structure of the core with its joints watched; as it is where none is known."""
+        """The structure of the core with what holds it and its joints watched; these as they are where none is known."""
+        if self.restraints is not None:
+            body = self.restraints.hold(body)
         if not len(self.joints):
             return body
-        slides = (self.capacity[0] * GRAVITY, self.capacity[1] * GRAVITY)
-        return watched_body(body, self.tables, self.critical, self.friction[self.joints], OUTSIDE, slides)
+        slides, opens = ((GRAVITY * one[0], GRAVITY * one[1]) for one in (self.capacity, self.opening))
+        return watched_body(body, self.tables, self.critical, self.friction[self.joints], OUTSIDE, slides, opens)
 
     def name(self, place: int) -> str:
         """Name of a joint by its place among those watched."""
@@ -129,5 +136,24 @@ def sliding_capacity(
             raise cannot_stand(limit) from None
         if capacity <= 0.0:
             raise cannot_stand(limit)
+        found.append(capacity if capacity < start * (1.0 - ALIKE) else np.inf)
+    return found[0], found[1]
+
+
+def opening_capacity(assembly: Assembly, rocking: tuple[float, float], loads: Loads) -> tuple[float, float]:
+    """Horizontal acceleration [g] of the ground at which hinges of another mechanism open in the resting structure, the way it would
+    rock to +x and to -x; infinite where the assumed one opens first.
+
+    rocking: acceleration that starts the assumed one [g]; loads: with the prestress of ties, under which the assumed mechanism, that of
+    the weight alone, need not be the first.
+    """
+    limit, found = LimitAnalysis(assembly, loads=loads), []
+    for side, start in zip((1, -1), rocking, strict=True):
+        try:
+            capacity = max(side * limit.collapse(side)[0].gamma, 0.0)
+        except Immovable:
+            capacity = np.inf
+        except NoEquilibrium:
+            capacity = 0.0
         found.append(capacity if capacity < start * (1.0 - ALIKE) else np.inf)
     return found[0], found[1]

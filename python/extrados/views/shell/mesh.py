@@ -66,6 +66,12 @@ class ShellJoint:
     wall: str  # that it is in, or that abuts there
     strength: dict[str, float] = field(default_factory=dict)  # its values of [joints], stiffnesses too; NaN where none
     softening: str = "exponential"
+    floor: str = ""  # of a seat: the floor on its upper side, which rests on the wall below
+
+    @property
+    def inward(self) -> np.ndarray:
+        """Horizontal unit vector (3) of a seat across the wall, towards its floor."""
+        return np.asarray(self.out[0])
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from extrados.model.structures.plan import MEETS, Plan, Prestress, Rod, meeting,
 from extrados.views.mesh.options import LARGEST_MESH
 from extrados.views.shell.mesh import Foot, ShellBar, ShellJoint, ShellMesh, ShellPart, WallPlane, pieces
 from extrados.views.shell.options import ShellOptions
-from extrados.views.shell.plan_floors import add_floor, add_gable, ring_of_floor
+from extrados.views.shell.plan_floors import add_floor, add_gable, ring_of_floor, seat_floor
 from extrados.views.shell.plan_grid import (
     WallGrid,
     holes_of,
@@ -58,8 +58,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     xyz = np.concatenate([xyz, xyz[sources]])
     planes = [_plane(plan, grid) for grid in grids]
     mass, push = np.zeros(len(xyz)), np.zeros((len(xyz), 3))
-    bars: list[ShellBar] = []
-    grown = xyz
+    bars, grown = list[ShellBar](), xyz
     for w, wall in enumerate(plan.walls):
         if wall.gable is not None:
             grown = add_gable(plan, w, grids[w], number, grown, parts, names, size)
@@ -70,7 +69,8 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
             ring = ring_of_floor(plan, floor, grids, number, xyz)
             if (first := rings.setdefault((floor.storey, frozenset(ring)), k)) != k:
                 raise BadGeometry(f"floor {first + 1} is given for the same walls on storey {floor.storey}")
-            grown, mass, push = add_floor(plan, floor, ring, grids, number, (grown, mass, push), parts, materials, bars, size)
+            nodes, over = seat_floor(plan, k, ring, grids, number, (grown, mass, push), building.material.young / size, joints)
+            grown, mass, push = add_floor(plan, floor, ring, grids, number, nodes, over, parts, materials, bars, size)
     used = np.zeros(len(grown), dtype=bool)
     for connect in (*(part.connect for part in parts), *(joint.connect for joint in joints)):
         used[connect] = True
@@ -265,11 +265,13 @@ def _supports(
     plan: Plan, parts: Sequence[ShellPart | ShellJoint], xyz: np.ndarray, used: np.ndarray, above: np.ndarray
 ) -> tuple[list[tuple[int, int]], list[tuple[int, int, float]]]:
     """Nodes on the ground but those above a joint there are held, or stand on springs; nodes of floors alone only move in
-    their plane."""
+    their plane, on a seat up and down too."""
     held, springs = [], []
-    bends = np.zeros(len(xyz), dtype=bool)
+    bends, seated = np.zeros(len(xyz), dtype=bool), np.zeros(len(xyz), dtype=bool)
     for part in parts:
-        if isinstance(part, ShellJoint) or part.bends:
+        if isinstance(part, ShellJoint) and part.floor:
+            seated[part.connect[:, 2:]] = True
+        elif isinstance(part, ShellJoint) or part.bends:
             bends[part.connect] = True
     ground = np.flatnonzero((xyz[:, 2] <= MEETS) & used & ~above)
     if not len(ground):
@@ -284,5 +286,5 @@ def _supports(
             half = 0.5 * np.linalg.norm(xyz[low[on, 0]] - xyz[low[on, 1]], axis=1) * part.thickness[on]
             np.add.at(sole, low[on], half[:, None])
         springs = [(int(n), 2, float(plan.foundation_stiffness * sole[n])) for n in ground]
-    held += [(int(n), d) for n in np.flatnonzero(used & ~bends) for d in (2, 3, 4, 5)]
+    held += [(int(n), d) for n in np.flatnonzero(used & ~bends) for d in ((3, 4, 5) if seated[n] else (2, 3, 4, 5))]
     return held, springs

@@ -8,10 +8,12 @@ import numpy as np
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry
 from extrados.model.properties import NO_SLIDING
-from extrados.model.structures.plan import MEETS, Corner, Plan
+from extrados.model.structures.plan import MEETS, Corner, Plan, PlanWall, Seat
 from extrados.views.shell.mesh import ShellJoint, ShellPart
 from extrados.views.shell.plan_grid import WallGrid, thickness_at
 
+#: Bond of a seat over the pressure on it, and the slip [m] over which it is lost: friction alone carries a load
+SEAT_BOND, SEAT_SLIP = 1e-3, 1e-5
 #: A joint without a stiffness has that of a layer of masonry, as thick as this part of the elements' size
 LAYER = 1.0 / 25.0
 
@@ -110,6 +112,37 @@ def strength_of_joint(plan: Plan, building: Description, name: str, size: float)
     shear = building.joints.shear_stiffness
     own["shear_stiffness"] = building.joints.shear_ratio * own["normal_stiffness"] if shear is None else shear
     return {what: np.nan if value is None else float(value) for what, value in own.items()}
+
+
+def make_seat(
+    seat: Seat, floor: str, wall: PlanWall, s: np.ndarray, nodes: np.ndarray, inward: np.ndarray, pressure: float, stiffness: float
+) -> ShellJoint:
+    """The seat of a floor on a wall. s: places along the wall (n) [m]; nodes (n, 2) of the wall and of the floor there; inward: horizontal
+    unit vector (3) towards the floor; pressure on the seat [Pa]; stiffness of a layer of masonry as thick as an element [Pa/m]."""
+    count, bond = len(s) - 1, SEAT_BOND * pressure
+    lower, upper = nodes.T
+    strength = dict.fromkeys(("compressive_strength", "crushing_energy"), np.nan) | {
+        "tension": bond,
+        "fracture_energy": bond * SEAT_SLIP,
+        "cohesion": bond,
+        "shear_energy": bond * SEAT_SLIP,
+        "friction": seat.friction,
+        "normal_stiffness": stiffness / LAYER,
+        "shear_stiffness": stiffness / LAYER,
+    }
+    return ShellJoint(
+        f"{floor} on {wall.name}",
+        np.column_stack([lower[:-1], lower[1:], upper[1:], upper[:-1]]),
+        np.tile([0.0, 0.0, 1.0], (count, 1)),
+        np.tile(np.append(wall.direction, 0.0), (count, 1)),
+        np.tile(inward, (count, 1)),
+        np.diff(s),
+        np.full(count, seat.length),
+        wall.name,
+        strength,
+        "linear",
+        floor,
+    )
 
 
 def _cells_above(grid: WallGrid, row: int, number: np.ndarray) -> np.ndarray:

@@ -2,15 +2,16 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from extrados.model.errors import BadGeometry
+from extrados.model.geometry.mortar import closed, told
+from extrados.model.geometry.snapping import snapped
 from extrados.model.geometry.solids.contacts import GROUND, Touching, slant, touching
 from extrados.model.geometry.solids.polyhedra import Polyhedron, inertia_of, moments
-from extrados.model.geometry.solids.snapping import snapped
 
 MOST_SOLIDS = 20000
 ROUNDING = 1e-9  # of the size: corners that would move by less stay
@@ -184,9 +185,10 @@ def assemble(
     if tolerance is not None and not found.overlaps:
         order = np.argsort(found.apart, kind="stable").tolist()
         on_ground = _soles(parts, owner, len(blocks), levels, close, found)
-        fitting, moved = snapped(parts, [found.faces[j] for j in order], on_ground, close)
+        places, moved = snapped(parts, [found.faces[j] for j in order], on_ground, close)
         if moved > ROUNDING * size:
-            parts, found = fitting, touching(fitting, owner, close, near)
+            parts = [Polyhedron(vertices, part.faces) for vertices, part in zip(places, parts, strict=True)]
+            found = touching(parts, owner, close, near)
             notes = (
                 f"Corners were moved by up to {1e3 * moved:.3g} mm (contact_tolerance {1e3 * close:.3g} mm) onto the planes of their faces",
             )
@@ -227,6 +229,20 @@ def assemble(
         deviation=moved,
     )
     return made
+
+
+def with_closed_joints(stones: Sequence[Stone], mortar: float, tolerance: float) -> tuple[list[Stone], tuple[str, ...]]:
+    """Stones whose faces across joints of mortar, up to that wide [m], meet in the middle of these, and a note on the joints. Gaps within
+    the tolerance [m] stay."""
+    parts = [part for stone in stones for part in stone.parts]
+    owner = np.repeat(np.arange(len(stones)), [len(s.parts) for s in stones])
+    met = touching(parts, owner, tolerance, mortar + tolerance, mortar + tolerance)
+    gaps = np.array(met.apart)
+    places = closed(parts, met.faces, gaps, mortar, tolerance)
+    grown = [Polyhedron(vertices, part.faces) for vertices, part in zip(places, parts, strict=True)]
+    volumes = [sum(moments(part.vertices, part.triangles)[0] for part in those) for those in (parts, grown)]
+    made = [replace(stone, parts=[grown[k] for k in np.flatnonzero(owner == i)]) for i, stone in enumerate(stones)]
+    return made, told(gaps[gaps > tolerance], mortar, volumes[1] / volumes[0])
 
 
 def joint_names(names: Sequence[str], a: np.ndarray, b: np.ndarray, normal: np.ndarray) -> list[str]:
@@ -311,7 +327,9 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
     near = {k: gap for one, two, gap in met.gaps for k in (one, two)}
     narrow = _widest(met.slivers)
     for k in lonely[:MOST_TOLD]:
-        told = f"; the nearest face is {1e3 * near[k]:.3g} mm away: contact_tolerance" if k in near else ""
+        told = (
+            f"; the nearest face is {1e3 * near[k]:.3g} mm away: contact_tolerance, or mortar_gap for joints of mortar" if k in near else ""
+        )
         if k in narrow:
             told = (
                 f": the width of its widest contact is {1e3 * narrow[k]:.3g} mm, less than {1e3 * close:.3g} mm{cure}, so this "
@@ -335,7 +353,7 @@ def _nearly(names: Sequence[str], gaps: Sequence[tuple[int, int, float]]) -> tup
     return (
         (
             f"{len(gaps)} pairs of blocks have faces that nearly touch but form no contact. They are at most {1e3 * gap:.3g} "
-            f"mm apart ({names[one]} and {other}); contact_tolerance closes them"
+            f"mm apart ({names[one]} and {other}); contact_tolerance closes them, or mortar_gap if they are joints of mortar"
         ),
     )
 

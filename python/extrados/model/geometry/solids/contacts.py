@@ -57,15 +57,16 @@ def near_pairs(low: np.ndarray, high: np.ndarray, owner: np.ndarray, reach: floa
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
-def touching(parts: Sequence[Polyhedron], owner: np.ndarray, tolerance: float, near: float) -> Touching:
+def touching(parts: Sequence[Polyhedron], owner: np.ndarray, tolerance: float, near: float, mortar: float = 0.0) -> Touching:
     """Contacts of the blocks that own the parts [m]. Two faces touch where their fitted planes lie within `tolerance` of each
     other in the middle of what the faces share, and are as parallel as corners within it leave them; the contact lies midway.
     It is narrow where its area over its diameter is below the tolerance. Gaps up to `near` are told by what would close them.
+    mortar [m]: faces apart by up to that much touch, too.
     """
     found = Touching()
     low, high = (np.array([getattr(part, end) for part in parts]) for end in ("low", "high"))
     for i, j in near_pairs(low, high, owner, near).tolist():
-        _meet(found, parts, (i, j), (int(owner[i]), int(owner[j])), tolerance, near)
+        _meet(found, parts, (i, j), (int(owner[i]), int(owner[j])), tolerance, near, mortar)
     return found
 
 
@@ -76,7 +77,13 @@ def slant(sine: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def _meet(
-    found: Touching, parts: Sequence[Polyhedron], pair: tuple[int, int], owners: tuple[int, int], tolerance: float, near: float
+    found: Touching,
+    parts: Sequence[Polyhedron],
+    pair: tuple[int, int],
+    owners: tuple[int, int],
+    tolerance: float,
+    near: float,
+    mortar: float,
 ) -> None:
     """Contacts, slivers, overlap or gap of two parts."""
     (i, j), (a, b) = pair, owners
@@ -96,7 +103,7 @@ def _meet(
             continue
         points, normal, gap, width = shared
         needed = max(abs(gap), float(turned[f, g]))
-        if needed > tolerance:
+        if needed > (max(tolerance, mortar) if gap > 0.0 else tolerance):
             if -tolerance < gap and needed < near and width > tolerance:
                 closing = min(closing, needed)
         elif width < tolerance:
