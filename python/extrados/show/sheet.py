@@ -43,9 +43,13 @@ class View:
         return np.maximum(size, (LETTER * max(map(len, self.label(scale).split("\n"))), 0.0))
 
     def label(self, scale: int) -> str:
-        """The name, in two lines if it is wider than what is shown."""
+        """The name; in two lines, as short as its words allow, if it is wider than what is shown."""
         wide = 1e3 / scale * float(self.high[0] - self.low[0]) < LETTER * len(self.name)
-        return "\n".join(self.name.rsplit(" ", 1)) if wide else self.name
+        if not wide or " " not in self.name:
+            return self.name
+        words = self.name.split(" ")
+        pairs = [(" ".join(words[:k]), " ".join(words[k:])) for k in range(1, len(words))]
+        return "\n".join(min(pairs, key=lambda pair: max(map(len, pair))))
 
 
 class Sheet:

@@ -407,7 +407,8 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language)
         found.append(Words(f"{a['status']}: {a['reason']}", "bad", foreign))
     if a["answer"] and a["kind"] != "assess":
         found.append(Words(_engineering(a["answer"]), "answer", foreign))
-    found += [Words(words.pair(words("Warning"), _without_keys(w.replace(folder, ""), keys)), "warn", foreign) for w in a["warnings"]]
+    warnings = [w.replace(folder, "") + ("" if w.endswith((".", "!", "?")) else ".") for w in a["warnings"]]
+    found += [Words(words.pair(words("Warning"), _without_keys(w, keys)), "warn", foreign) for w in warnings]
     found += [Figure(f"figures/{name}", caption) for name, caption in figures]
     found += _stresses(run, a, words)
     found += [table for kind, name, table in _own_tables(run, words) if name == a["name"]]
