@@ -26,7 +26,7 @@ def plan(rng: random.Random) -> bytes:
         pairs = list(zip((10, 20, 11, 21), values, strict=True))
         if rng.random() < 0.2:
             pairs = [(90, "2"), (70, w.whole(0, 1)), (10, values[0]), (20, values[1]), (10, values[2]), (20, values[3])]
-            entities.extend([(0, "LWPOLYLINE"), (8, layer), *pairs])
+            entities.extend([(0, "LWPOLYLINE"), (100, "AcDbEntity"), (8, layer), (100, "AcDbPolyline"), *pairs])
         else:
             entities.extend([(0, "LINE"), (8, layer), *pairs])
 

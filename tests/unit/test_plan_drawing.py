@@ -4,7 +4,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from extrados.bridges.plan_drawing import deck_of_plan
+from extrados.bridges.plan_drawing import DrawnWall, deck_of_plan, joined
 from extrados.decks.reader import read_text
 from extrados.model.errors import BadGeometry
 from extrados.schema.files import File
@@ -116,3 +116,10 @@ def test_too_many_walls_are_refused_before_they_are_joined(tmp_path, monkeypatch
     monkeypatch.setattr("extrados.bridges.plan_drawing.joined", lambda _: pytest.fail("joined"))
     with pytest.raises(BadGeometry, match="has 5 walls, more than the 4"):
         deck_of_plan(drawn(tmp_path), ["A-WALL"], ["A-GLAZ"], None, [3.0])
+
+
+def test_a_wall_as_short_as_another_is_thick_keeps_its_ends():
+    """Both of its ends meet the same axis: cut there, the wall would have no length."""
+    thick = DrawnWall(np.array([0.0, -3.0]), np.array([0.0, 3.0]), 1.5)
+    short = DrawnWall(np.array([-0.3, 0.0]), np.array([0.3, 0.0]), 0.3)
+    assert [wall.length for wall in joined([short, thick])] == pytest.approx([0.6, 6.0])

@@ -211,7 +211,8 @@ class _Batches:
 
 def _are_rows(arrays: dict[str, np.ndarray]) -> bool:
     """Whether all arrays have the same number of members, at least one."""
-    return all(array.ndim for array in arrays.values()) and len({len(array) for array in arrays.values()} | {0}) == 2
+    counts = {array.shape[:1] for array in arrays.values()}
+    return len(counts) == 1 and counts.isdisjoint({(), (0,)})
 
 
 def _rows(arrays: dict[str, np.ndarray]) -> int:

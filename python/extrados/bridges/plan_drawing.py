@@ -187,6 +187,8 @@ def joined(walls: list[DrawnWall]) -> list[DrawnWall]:
             for k, at in enumerate((0.0, wall.length)):
                 if abs(s - at) <= reach:
                     ends[k] = wall.a + s * wall.way
+        if (ends[1] - ends[0]) @ wall.way < CLOSE:  # both ends meet one axis, which is as thick as the wall is long
+            ends = [wall.a, wall.b]
         moved = float((ends[0] - wall.a) @ wall.way)
         own = [
             (a - moved, b - moved)
