@@ -7,7 +7,7 @@ PYTHON := .venv/bin/python
 # An import after a pull may build anew; meson then requires numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: browser pictures run test times verify bench oldest lint format wheel setup table-5-3 impact-map docs coverage release clean
+.PHONY: browser pictures run test times verify faults bench oldest lint format wheel setup table-5-3 impact-map docs coverage release clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -25,8 +25,10 @@ browser: setup  ## chromium and Playwright, if available, for the tests of the i
 
 verify: setup  ## long validation and whole trials, in an hour on two cores; writes docs/verification.md
 	@EXTRADOS_TRIALS=1 $(PYTHON) -m pytest -v -m "" -n auto --maxprocesses 8 --dist load --maxschedchunk 1
-	@$(PYTHON) tools/seeded_faults.py
 	@$(PYTHON) tools/verification_book.py
+
+faults: setup  ## plants 80 faults in Fortran and C, one at a time: an hour of one core; the next `make verify` prints their fates
+	@$(PYTHON) tools/seeded_faults.py
 
 bench: setup  ## comparison with other programs, which it installs; BENCH="arch dem" selects some
 	@$(PYTHON) tests/bench $(BENCH)

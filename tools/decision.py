@@ -18,6 +18,7 @@ class Case:
 TREE: dict[str, list[Case]] = {
     "Does it stand, and how near is collapse?": [
         Case("arch, vault, buttress, section of a church", ("tilt", "thrust"), "limit"),
+        Case("dome or vault as a network of compression over its plan", ("thrust-network",), "solids"),
         Case("bridge under vehicles or trains", ("moving-load", "thrust"), "bridges"),
         Case("supports that settle or spread", ("supports",), "limit"),
         Case("dome, corner, groin vault, any direction", ("tilt",), "solids"),

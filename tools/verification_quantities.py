@@ -48,6 +48,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"thrust_at_rest",
         r"least_part_of_joints",
         r"sections\.(?:least|central|greatest)_N",
+        r"^thrust-network\S*\.",
     ),
     "force in a tie, a wall or a restraint": (r"ties(?:_opposite)?\.", r"bars\.", r"pushover\S*\.walls\.", r"restraints\."),
     "movement of supports": (r"movement_at_fall", r"openings\."),

@@ -136,6 +136,14 @@ def read_walls(file: Path) -> list[Wall]:
     return walls
 
 
+def read_recorded(file: Path) -> dict[str, Predicted]:
+    """Recorded predictions by units, by number of the wall."""
+    lines = [line for line in file.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    return {
+        row["n"]: Predicted(1e3 * float(row["units_kN"] or "nan"), row["units_failure"], note=row["note"]) for row in csv.DictReader(lines)
+    }
+
+
 _TEXTS = {"reference", "name", "units", "failure"}
 
 

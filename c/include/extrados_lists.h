@@ -99,7 +99,8 @@
   ENTRY(12, newton, "Newton step") \
   ENTRY(13, staggered, "staggered step") \
   ENTRY(14, extrapolated, "implicit-explicit step") \
-  ENTRY(15, unbalanced, "step out of balance")
+  ENTRY(15, unbalanced, "step out of balance") \
+  ENTRY(16, dissipated, "arc-length step")
 
 /* What happens after a tooth and where equilibrium is lost, see stop_rules in fortran/sla/state.f90 */
 #define EXTRADOS_SLA_VARIANT_LIST(ENTRY) \

@@ -47,7 +47,8 @@ contains
 
    !> How to run
    subroutine options(handle, end_time, step, fraction, settle_tolerance, settlement, collapse, residual_limit, &
-                      settle_damping, collapse_turn, collapse_drop, settle_steps, stop_at_rest, threads, status)
+                      settle_damping, collapse_turn, collapse_drop, safe, above, settle_steps, stop_at_rest, threads, &
+                      status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use dem_handle, only : built_model, model_take, set_options
@@ -63,6 +64,8 @@ contains
       real(c_double), intent(in) :: settle_damping            !! [s]
       real(c_double), intent(in) :: collapse_turn             !! [rad]
       real(c_double), intent(in) :: collapse_drop             !! [m]
+      real(c_double), intent(in) :: safe                      !! [J], or 0
+      real(c_double), intent(in) :: above                     !! [J]
       integer(c_int), intent(in) :: settle_steps              !! at most; 0: no settling
       integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet
       integer(c_int), intent(in) :: threads
@@ -73,7 +76,7 @@ contains
       call set_options(built, run_options(end_time=end_time, step=step, fraction=fraction, &
          settle_tolerance=settle_tolerance, settlement=settlement, collapse=collapse, residual_limit=residual_limit, &
          settle_damping=settle_damping, collapse_turn=collapse_turn, collapse_drop=collapse_drop, &
-         settle_steps=int(settle_steps), stop_at_rest=stop_at_rest /= 0, threads=int(threads)), status)
+         safe=safe, above=above, settle_steps=int(settle_steps), stop_at_rest=stop_at_rest /= 0, threads=int(threads)), status)
       call handle_leave(handle)
    end subroutine options
 

@@ -26,7 +26,7 @@ contains
       integer(c_int), intent(in) :: count
       integer(c_int), intent(in) :: choice(6, count)
       integer(c_int), intent(in) :: freedom(6, count)
-      real(c_double), intent(in) :: property(24, count)
+      real(c_double), intent(in) :: property(25, count)
       integer(c_int), intent(out) :: status
       type(frame), pointer :: model
       call frame_take(handle, .true., n, .false., model, status)

@@ -126,7 +126,7 @@ contains
       use sla_handle, only : model_take, stage_new, stage_loaded
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
-      integer(c_int), intent(in) :: how                !! 0 not at all, 1 Newton and staggered, 2 implicit-explicit
+      integer(c_int), intent(in) :: how                !! 0 not at all, 1 Newton and staggered, 2 implicit-explicit, 3 arc length
       real(c_double), intent(in) :: longest            !! step of the control [m]
       real(c_double), intent(in) :: least              !! displacement below which nothing runs away [m]
       real(c_double), intent(in) :: unit               !! resultant of the reference load, 1 where supports move [N]
@@ -134,11 +134,12 @@ contains
       type(element_model), pointer :: model
       call model_take(handle, stage_new, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (how < 0 .or. how > 2 .or. .not. longest > 0.0_c_double .or. .not. unit > 0.0_c_double) then
+      if (how < 0 .or. how > 3 .or. .not. longest > 0.0_c_double .or. .not. unit > 0.0_c_double) then
          status = status_invalid_argument
       else
          model%rules%continues = how > 0
-         model%path%implicit = how == 1
+         model%path%implicit = how /= 2
+         model%path%by_energy = how == 3
          model%path%unit = unit
          model%path%longest = longest * unit
          model%path%least_runaway = least

@@ -266,6 +266,10 @@ contains
                record%calm_looks = merge(record%calm_looks + 1, 0, run%measure_unbalance() < 1.0e-3_wp &
                   .and. (model%quasi_static .or. energy%kinetic < 1.0e-6_wp * record%round))
                if (record%calm_looks >= 50 .and. record%reason == stop_end) record%reason = stop_rest
+               if (energy%kinetic < options%safe .and. abs(options%above + energy%potential + energy%elastic &
+                  - record%start%potential - record%start%elastic) < options%safe .and. record%reason == stop_end) then
+                 record%reason = stop_rest
+               end if
             end if
             if (record%reason /= stop_end .or. model%t - model%drift >= options%end_time - 0.5_wp * model%step) exit
             record%paused = .true.

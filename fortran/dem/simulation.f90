@@ -31,6 +31,10 @@ module dem_simulation
       real(wp) :: collapse_drop = 0.0_wp     !! or is lower by more [m]; both 0: the displacement alone counts
       integer :: settle_steps = 0            !! at most; 0: no settling
       logical :: stop_at_rest = .false.      !! once the ground is quiet
+      !> Of kinetic energy, and of that of the places over those at rest: below it the blocks recover, and a run that stops at rest ends
+      !> once the ground is quiet [J]; 0: not used
+      real(wp) :: safe = 0.0_wp
+      real(wp) :: above = 0.0_wp             !! energy of the places at the start over those at rest [J]
       integer :: threads = 1
    end type run_options
 

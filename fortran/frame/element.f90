@@ -29,6 +29,7 @@ module frame_element
       real(wp) :: drift(2) = huge(1.0_wp)    !! limits: in flexure, in shear
       real(wp) :: kept = 0.0_wp              !! beam: share of its strength that is left beyond a limit
       logical :: second_order = .true.       !! P-Delta
+      real(wp) :: own_weight = 0.0_wp        !! pier: N grows by it from the upper end to the lower one, both nodes carry half of it [N]
       real(wp) :: inertia_stiffness = 0.0_wp !! beam: E I [N m^2]
       real(wp) :: axial_stiffness = 0.0_wp   !! beam: E A [N]
       real(wp) :: moment = huge(1.0_wp)      !! beam: strength of the hinges [N m]
@@ -47,6 +48,7 @@ module frame_element
       !> As it failed: N, shortening, mean of the end moments, half their difference, difference of the rotations
       real(wp) :: failed(5) = 0.0_wp
       real(wp) :: left = 1.0_wp              !! share of the strength in shear that is still there
+      logical :: settled = .false.           !! under its loads: N follows its own weight
    end type element_state
 
    real(wp), parameter :: place3(3) = [0.0_wp, 0.5_wp, 1.0_wp]
@@ -182,7 +184,7 @@ contains
       real(wp) :: place(most_sections), weight(most_sections), b(2, 3), s(2), k(2, 2), f(2, 2), gap(2)
       real(wp) :: flexible(3, 3), missing(3), a(3), gradient(3), step(2, most_sections), change(4), over
       real(wp) :: own(2, 3, most_sections), loose(2, most_sections), resistance, by(2), back, by_slip, sense
-      real(wp) :: scale(3), reach, slope0, slope1, trial(2), resisted
+      real(wp) :: scale(3), reach, slope0, slope1, trial(2), resisted, heavy(2, most_sections)
       integer :: n, i, iteration, halving, end
       logical :: slides, done
       n = element%sections
@@ -194,6 +196,8 @@ contains
          weight = weight5 * element%length
       end if
       a = [0.0_wp, 1.0_wp, 1.0_wp] / element%length
+      heavy = 0.0_wp   ! N of a section beyond that at the middle
+      if (past%settled) heavy(1, 1:n) = element%own_weight * (0.5_wp - place(1:n))
       associate (section => element%section, q => state%force)
          slides = state%slip /= past%slip
          sense = sign(1.0_wp, state%slip - past%slip)
@@ -212,7 +216,7 @@ contains
                over = k(1, 1) * k(2, 2) - k(1, 2) * k(2, 1)
                f(1, :) = [k(2, 2), -k(1, 2)] / over
                f(2, :) = [-k(2, 1), k(1, 1)] / over
-               gap = matmul(b, q) - s
+               gap = matmul(b, q) + heavy(:, i) - s
                reach = max(reach, abs(gap(1)) / scale(1), abs(gap(2)) / scale(2))
                own(:, :, i) = matmul(f, b)
                loose(:, i) = matmul(f, gap)
@@ -277,7 +281,8 @@ contains
                   b(1, :) = [1.0_wp, 0.0_wp, 0.0_wp]
                   b(2, :) = [0.0_wp, 1.0_wp - place(i), -place(i)]
                   call section_forces(section, state%strain(:, i), past%crushed(i), s, k)
-                  slope0 = slope0 + weight(i) * dot_product(s - matmul(b, q + change(1:3)), step(:, i))
+                  slope0 = slope0 + weight(i) * dot_product(s - heavy(:, i) - matmul(b, q + change(1:3)), &
+                     step(:, i))
                end do
                do halving = 1, 8
                   slope1 = 0.0_wp
@@ -286,7 +291,8 @@ contains
                      b(2, :) = [0.0_wp, 1.0_wp - place(i), -place(i)]
                      trial = state%strain(:, i) + over * step(:, i)
                      call section_forces(section, trial, past%crushed(i), s, k)
-                     slope1 = slope1 + weight(i) * dot_product(s - matmul(b, q + change(1:3)), step(:, i))
+                     slope1 = slope1 + weight(i) * dot_product(s - heavy(:, i) - matmul(b, q + change(1:3)), &
+                        step(:, i))
                   end do
                   if (slope1 <= 0.7_wp * abs(slope0)) exit
                   over = over * max(0.1_wp, min(0.6_wp, slope0 / (slope0 - slope1)))

@@ -15,7 +15,7 @@ module frame_handle
    public :: frame_new, frame_destroy, frame_take, set_elements, set_links, set_loads, frame_properties
 
    !> Numbers of an element, in the order of `property` in set_elements
-   integer, parameter :: frame_properties = 24
+   integer, parameter :: frame_properties = 25
 
 contains
 
@@ -71,10 +71,10 @@ contains
       !> 1: the shear strength makes the hinge's
       integer(c_int), intent(in) :: choice(:, :)
       integer(c_int), intent(in) :: freedom(:, :)   !! (6, elements) u, w, rotation of both nodes, 1-based; 0 is held
-      !> (24, elements) offsets along the wall and upward of both ends; deformable length; of the section length,
+      !> (25, elements) offsets along the wall and upward of both ends; deformable length; of the section length,
       !> thickness, modulus, strength, residual share; shear stiffness, cohesion, friction, diagonal strength,
       !> slenderness, compliance, softening, slip at the peak; drift limits in flexure and shear, kept share;
-      !> beam: E I, E A, moment
+      !> beam: E I, E A, moment; pier: own weight
       real(wp), intent(in) :: property(:, :)
       integer(c_int), intent(out) :: status
       type(macro_element), allocatable :: element(:)
@@ -114,6 +114,7 @@ contains
             element(e)%inertia_stiffness = p(22)
             element(e)%axial_stiffness = p(23)
             element(e)%moment = p(24)
+            element(e)%own_weight = p(25)
          end associate
       end do
       call move_alloc(element, model%element)

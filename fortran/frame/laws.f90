@@ -95,14 +95,15 @@ contains
       real(wp), intent(inout) :: force(2)
       real(wp), intent(inout) :: tangent(2, 2)
       real(wp) :: edge, yield, slope, b, db(2), r, dr(2), d_edge(2), lost(2), d_lost(2, 2)
-      logical :: grows
+      logical :: grows, presses
       associate (length => section%length, t => section%thickness)
          yield = section%strength / section%young
          d_edge = [1.0_wp, 0.5_wp * side * length]
          edge = dot_product(d_edge, e)
          slope = side * e(2)
          if (edge <= 0.0_wp) return
-         grows = edge > yield * ductility .and. slope >= 0.0_wp
+         presses = leads(slope, side)
+         grows = edge > yield * ductility .and. presses
          if (grows) then
             b = section%young * (edge - yield)
             db = section%young * d_edge
@@ -115,7 +116,7 @@ contains
          r = huge(1.0_wp)
          dr = 0.0_wp
          if (share > 0.0_wp) r = 1.0_wp / (share * length)
-         if (edge > yield .and. slope >= 0.0_wp) then
+         if (edge > yield .and. presses) then
             if (slope / (edge - yield) < r) then
                r = slope / (edge - yield)
                dr = [0.0_wp, side] / (edge - yield) - slope / (edge - yield)**2 * d_edge
@@ -143,6 +144,14 @@ contains
       end associate
    end subroutine take_crushed
 
+   !> Whether crushing begins at this edge: at that of the greater strain; of uniform strains at one edge alone, which counts it once
+   pure function leads(slope, side)
+      real(wp), intent(in) :: slope              !! of the strain towards the edge
+      real(wp), intent(in) :: side               !! -1 or 1
+      logical :: leads
+      leads = slope > 0.0_wp .or. (slope >= 0.0_wp .and. side > 0.0_wp)
+   end function leads
+
    !> Crushing after a section has been at these strains
    pure function crushed_further(section, e, past) result(after)
       type(masonry_section), intent(in) :: section
@@ -157,7 +166,7 @@ contains
       do k = 1, 2
          slope = real(2 * k - 3, wp) * e(2)
          edge = e(1) + 0.5_wp * section%length * slope
-         if (edge <= yield .or. slope < 0.0_wp) cycle
+         if (edge <= yield .or. .not. leads(slope, real(2 * k - 3, wp))) cycle
          after%ductility(k) = max(past%ductility(k), edge / yield)
          after%share(k) = max(past%share(k), min(whole, (edge - yield) / max(slope * section%length, tiny(1.0_wp))))
       end do

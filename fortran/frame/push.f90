@@ -61,7 +61,9 @@ contains
       path%state = 0
    end subroutine push_path_new
 
-   !> Equilibrium under the weight, brought on in parts where it is not found at once
+   !> Equilibrium under the weight, brought on in parts where it is not found at once.
+   !>
+   !> Own weights act between the nodes in the end alone: without pressure they would open the upper half of each element.
    subroutine weigh_frame(model, state, status)
       type(frame), intent(in) :: model
       type(frame_state), intent(out) :: state
@@ -85,9 +87,16 @@ contains
             call commit(model, now, failed)
             call take_over(now, state)
          end do
-         if (status == status_ok .or. parts >= 16) return
+         if (status == status_ok .or. parts >= 16) exit
          parts = 4 * parts
       end do
+      if (status /= status_ok .or. .not. any(model%element%own_weight > 0.0_wp)) return
+      state%element%settled = .true.
+      call take_over(state, now)
+      call equilibrate(model, 1.0_wp, state, nothing, nothing, 0.0_wp, .false., now, multiple, status)
+      if (status /= status_ok) return
+      call commit(model, now, failed)
+      call take_over(now, state)
    end subroutine weigh_frame
 
    !> Push a frame by a growing multiple of a pattern until the target, a loss of strength, or no equilibrium is found

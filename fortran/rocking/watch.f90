@@ -95,8 +95,8 @@ contains
       real(wp), intent(in) :: pull(:)        !! (restraints) their forces [N], of turns [N m]
       real(wp), intent(in) :: time           !! [s]
       type(joint_demand), intent(inout) :: demand
-      real(wp) :: force(watch%joints, 3), x, t, weight(4), input(3 + watch%restraints), needed, beyond
-      integer :: first, j, k, l
+      real(wp) :: x, t, weight(4), input(3), needed, beyond, normal, shear, moment
+      integer :: first, j, k, l, joints
 
       x = max(q, 0.0_wp) / watch%critical(i)
       if (x > 1.0_wp) return
@@ -105,17 +105,29 @@ contains
       t = x - real(first, wp)
       weight = [-(t - 1.0_wp) * (t - 2.0_wp) * (t - 3.0_wp) / 6.0_wp, 0.5_wp * t * (t - 2.0_wp) * (t - 3.0_wp), &
          -0.5_wp * t * (t - 1.0_wp) * (t - 3.0_wp), t * (t - 1.0_wp) * (t - 2.0_wp) / 6.0_wp]
-      input = [1.0_wp + vertical / gravity, real(3 - 2 * i, wp) * horizontal, v**2, pull]
-      force = 0.0_wp
-      do k = 1, 4
-         do l = 1, size(input)
-            call add_scaled(3 * watch%joints, weight(k) * input(l), watch%value(:, l, first + k - 1, i), force)
+      input = [1.0_wp + vertical / gravity, real(3 - 2 * i, wp) * horizontal, v**2]
+      joints = watch%joints
+      do j = 1, joints
+         normal = 0.0_wp
+         shear = 0.0_wp
+         moment = 0.0_wp
+         do k = 1, 4
+            associate (value => watch%value(:, :, first + k - 1, i))
+               do l = 1, 3
+                  normal = normal + weight(k) * input(l) * value(j, l)
+                  shear = shear + weight(k) * input(l) * value(joints + j, l)
+                  moment = moment + weight(k) * input(l) * value(2 * joints + j, l)
+               end do
+               do l = 1, watch%restraints
+                  normal = normal + weight(k) * pull(l) * value(j, 3 + l)
+                  shear = shear + weight(k) * pull(l) * value(joints + j, 3 + l)
+                  moment = moment + weight(k) * pull(l) * value(2 * joints + j, 3 + l)
+               end do
+            end associate
          end do
-      end do
-      do j = 1, watch%joints
-         if (force(j, 1) > 0.0_wp) then
-            needed = abs(force(j, 2)) / force(j, 1)
-            beyond = max(-force(j, 3) / force(j, 1), force(j, 3) / force(j, 1) - 1.0_wp)
+         if (normal > 0.0_wp) then
+            needed = abs(shear) / normal
+            beyond = max(-moment / normal, moment / normal - 1.0_wp)
          else
             needed = huge(needed)
             beyond = huge(beyond)
@@ -132,15 +144,6 @@ contains
          demand%outside = max(demand%outside, beyond)
       end do
    end subroutine check_demand
-
-   !> total + factor part, of lists
-   pure subroutine add_scaled(n, factor, part, total)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: factor
-      real(wp), intent(in) :: part(n)
-      real(wp), intent(inout) :: total(n)
-      total = total + factor * part
-   end subroutine add_scaled
 
    !> Friction, outside, both times, both joints
    pure function flat(demand) result(list)

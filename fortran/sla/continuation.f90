@@ -6,7 +6,7 @@
 module sla_continuation
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
-   use common_lists, only : code_staggered => sla_event_staggered, &
+   use common_lists, only : code_arc => sla_event_dissipated, code_staggered => sla_event_staggered, &
       code_unbalanced => sla_event_unbalanced, &
       stop_axial => sla_stop_axial, stop_displacement => sla_stop_displacement, stop_far => sla_stop_far, &
       stop_fraction => sla_stop_fraction, stop_load => sla_stop_load, stop_mechanism => sla_stop_mechanism, &
@@ -83,6 +83,8 @@ contains
          path%last_step = 0.0_wp
          path%gap = 0.0_wp
          path%released = 0.0_wp
+         path%snaps = .false.
+         path%most_stored = 0.0_wp
          path%steps = 0
          path%solutions = 0
          if (.not. is_driven(model)) then
@@ -235,7 +237,9 @@ contains
                   path%step = retreat * path%step
                   cycle
                end if
+               if (code == code_arc) length = dot_product(model%load%fb, path%u(0:model%mesh%equations)) - path%drive
                part = part_to_target(model, monitors)
+               if (part < 1.0_wp) path%snaps = .false.
                if (part >= 1.0_wp - near .or. trials == most_trials) exit
                call restore_state(model)
                length = part * length
@@ -363,6 +367,7 @@ contains
          path%gap = ledger%external - energy - ledger%dissipated
          path%force = force
          path%stored = energy
+         path%most_stored = max(path%most_stored, energy)
          path%before(:) = path%now
          path%lambda_before = path%lambda_now
          path%now(:) = path%u

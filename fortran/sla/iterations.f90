@@ -7,14 +7,17 @@
 !>               residual; where no step does, three iterations with the secant matrix
 !>   staggered   where Newton stalls: damage frozen, Newton on the convex energy with Armijo's rule; histories follow;
 !>               again until the new damage leaves no force out of balance. Damage only grows and is bounded
+!>   arc length  where displacements snap back, where asked for: Newton with a prescribed dissipation in the step (Gutierrez 2004;
+!>               Verhoosel, Remmers and Gutierrez 2009). Displacements and multiplier change by du and dl from u0 and l0;
+!>               damaged points unload to the origin, so that twice the dissipated energy is (fa + l0 fb).du - dl fb.u0
 !>   explicit    implicit-explicit integration (Oliver, Huespe and Cante 2008): histories that continue at the rate of
 !>               the last step, one convex problem a step, and a step length from the force that this leaves out of
 !>               balance
 module sla_iterations
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
-   use common_lists, only : code_newton => sla_event_newton, code_staggered => sla_event_staggered, &
-      code_extrapolated => sla_event_extrapolated, code_unbalanced => sla_event_unbalanced
+   use common_lists, only : code_arc => sla_event_dissipated, code_newton => sla_event_newton, &
+      code_staggered => sla_event_staggered, code_extrapolated => sla_event_extrapolated, code_unbalanced => sla_event_unbalanced
    use common_status, only : status_cancelled, status_not_positive_definite, status_ok, status_out_of_memory
    use sla_assembly, only : position
    use sla_c_bindings, only : extrados_sparse_again, extrados_sparse_indefinite
@@ -52,6 +55,14 @@ module sla_iterations
    real(wp), parameter :: share_of_loads = 1.0e-3_wp
    !> Force that extrapolated damage may leave out of balance, over the largest nodal force
    real(wp), parameter :: explicit_tolerance = 5.0e-3_wp
+   !> Of the greatest energy stored so far: dissipated in the first step of an arc length and at most in one; dissipated in a
+   !> step of the control beyond which it may have snapped
+   real(wp), parameter :: first_part = 0.005_wp, most_part = 0.02_wp, snap_part = 0.03_wp
+   !> Times that such a step is tried, each time by so small a part of it, and the error of its dissipation
+   integer, parameter :: most_arcs = 5
+   real(wp), parameter :: less = 0.25_wp, arc_tolerance = 1.0e-3_wp
+   !> Of the prescribed dissipation: so much at least is that of damage
+   real(wp), parameter :: least_share = 0.5_wp
    !> Times that force beyond which such a step is no state in equilibrium
    real(wp), parameter :: largest_error = 4.0_wp
 
@@ -79,8 +90,15 @@ contains
       found = .false.
       status = status_ok
       if (abs(length) > 0.0_wp) then
-         call predict(model, length, status)
-         if (status == status_ok) call newton_step(model, length, iterations, found, status)
+         if (.not. model%path%snaps) then
+            call predict(model, length, status)
+            if (status == status_ok) call newton_step(model, length, iterations, found, status)
+            if (found .and. model%path%by_energy) found = dissipation(model) <= snap_part * model%path%most_stored
+         end if
+         if (status == status_ok .and. .not. found .and. model%path%by_energy .and. .not. is_driven(model)) then
+            code = code_arc
+            call arc_step(model, length, iterations, found, status)
+         end if
       end if
       if (status == status_ok .and. .not. found) then
          code = code_staggered
@@ -90,6 +108,71 @@ contains
       end if
       if (status == status_ok .and. carried) call update_all(model, lost)
    end subroutine implicit_step
+
+   !> Newton's method with a prescribed dissipation, less and less where it does not converge
+   subroutine arc_step(model, length, iterations, found, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length           !! of the control, of the first guess [J]
+      integer, intent(out) :: iterations
+      logical, intent(out) :: found
+      integer(c_int), intent(out) :: status
+      real(wp) :: ratio
+      integer :: trial
+      found = .false.
+      status = status_ok
+      iterations = 0
+      associate (path => model%path)
+         if (.not. path%snaps) path%energy_step = first_part * path%most_stored
+         if (.not. path%energy_step > 0.0_wp) return
+         ratio = 1.0_wp
+         do trial = 1, most_arcs
+            if (path%snaps) then
+               path%u(:) = path%now + ratio * (path%now - path%before)
+               path%lambda = path%lambda_now + ratio * (path%lambda_now - path%lambda_before)
+            else
+               call predict(model, length, status)
+            end if
+            path%on_arc = .true.
+            if (status == status_ok) call newton_step(model, length, iterations, found, status)
+            path%on_arc = .false.
+            if (found) found = dissipated_by_damage(model) > least_share * path%energy_step
+            if (found .or. status /= status_ok) exit
+            ratio = less * ratio
+            path%energy_step = less * path%energy_step
+         end do
+         path%snaps = found
+         if (.not. found) return
+         path%snaps = dot_product(model%load%fb, path%u - path%now) < 0.0_wp
+         if (iterations < few) path%energy_step = min(growth * path%energy_step, most_part * path%most_stored)
+      end associate
+   end subroutine arc_step
+
+   !> Energy that the damage of the present displacements takes [J]: elastic unloading to the origin takes none, within the residual
+   function dissipated_by_damage(model) result(lost)
+      type(element_model), intent(inout) :: model
+      real(wp) :: lost
+      integer :: g
+      lost = 0.0_wp
+      call update_all(model, lost)
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            call group%restore()
+         end select
+      end do
+   end function dissipated_by_damage
+
+   !> Energy that the step so far dissipates where points unload to the origin [J]
+   pure function dissipation(model) result(energy)
+      type(element_model), intent(in) :: model
+      real(wp) :: energy
+      integer :: n
+      n = model%mesh%equations
+      associate (path => model%path, fa => model%load%fa, fb => model%load%fb)
+         energy = 0.5_wp * (dot_product(fa + path%lambda_now * fb, path%u(0:n) - path%now(0:n)) - &
+            (path%lambda - path%lambda_now) * dot_product(fb, path%now(0:n)))
+      end associate
+   end function dissipation
 
    !> Displacements and multiplier at the end of a step: the last two states extrapolated, or by the secant matrix
    subroutine predict(model, length, status)
@@ -253,6 +336,12 @@ contains
          else
             slope = dot_product(fb(1:n), z(:, 2))
             change = target - dot_product(fb, path%u(0:n)) - dot_product(fb(1:n), z(:, 1))
+            if (path%on_arc) then
+               associate (half => 0.5_wp * (model%load%fa + path%lambda_now * fb))
+                  slope = dot_product(half(1:n), z(:, 2)) - 0.5_wp * dot_product(fb, path%now(0:n))
+                  change = path%energy_step - dissipation(model) - dot_product(half(1:n), z(:, 1))
+               end associate
+            end if
             change = merge(change / slope, 0.0_wp, abs(slope) > 0.0_wp)
          end if
          z(:, 1) = z(:, 1) + change * z(:, 2)
@@ -361,6 +450,8 @@ contains
          ratio = residual_of(model, scale)
          model%path%residual = ratio
          found = ratio < tolerance .and. iterations > 0
+         if (model%path%on_arc) found = found .and. &
+            abs(dissipation(model) - model%path%energy_step) <= arc_tolerance * model%path%energy_step
          if (found .or. .not. ratio <= unbounded) return
          call correct(model, model%path%drive + length, status)
          if (status == status_not_positive_definite) then
@@ -375,6 +466,7 @@ contains
          end if
          part = 1.0_wp
          call move(model, part)
+         if (model%path%on_arc) cycle     ! a search on the forces alone would leave the dissipation
          do i = 0, most_halvings
             call evaluate(model, by_secant, .false., energy, scale)
             trial = residual_of(model, scale)

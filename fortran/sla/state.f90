@@ -110,6 +110,10 @@ module sla_state
    type :: equilibrium_path
       logical :: active = .false.
       logical :: implicit = .true.                       !! else implicit-explicit integration
+      logical :: by_energy = .false.                     !! arc length on dissipated energy where the control snaps back
+      logical :: on_arc = .false., snaps = .false.       !! the iteration is one of it; the last step was, and went back
+      real(wp) :: energy_step = 0.0_wp                   !! dissipated energy of such a step [J]
+      real(wp) :: most_stored = 0.0_wp                   !! in any state [J]
       real(wp), allocatable :: u(:)                      !! (0:n + moved) displacements of the iteration [m]
       real(wp), allocatable :: now(:), before(:)         !! (0:n + moved) of the last two states [m]
       real(wp), allocatable :: start(:)                  !! (0:n + moved) of the first state [m]

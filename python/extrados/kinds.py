@@ -206,6 +206,9 @@ def _analysis(
 ANALYSES: dict[str, AnalysisKind] = {
     "tilt": _analysis("limit", "Tilt", "tilt", "solids:draw_tilt", "tilt", "limit/oppenheim", ("tilt",), results="solids:Tilt"),
     "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "thrust", "vault/dejong-a", results="solids:Thrust"),
+    "thrust-network": _analysis(
+        "limit", "ThrustNetwork", "thrust_network", "limit.network:draw", "others", "vault/thrust-network", results="networks:ThrustNetwork"
+    ),
     "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "sweep", "vault/vezelay-sweep"),
     "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "survey", "limit/survey"),
     "imperfections": _analysis("limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "others", "limit/church"),

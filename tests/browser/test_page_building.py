@@ -291,6 +291,26 @@ def test_what_stands_in_space_is_turned_and_pushed(page: Any) -> None:
     page.screenshot(path=SHOTS / "wall.png")
 
 
+def test_a_block_is_clicked_and_the_tolerance_tried(page: Any) -> None:
+    """Names, mass and contacts of a drawn block; another tolerance reads the file again."""
+    page.evaluate("window.extrados.open({ preset: 'solid/gaps' })")
+    until(page, "window.extrados.scene?.seen?.of === 'solids'")
+    settled(page)
+    assert page.evaluate("window.extrados.scene.seen.joints") == 55
+    box = page.locator(".stage-box .space").bounding_box()
+    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    page.wait_for_selector("[data-block]")
+    told = page.locator("[data-block]").inner_text()
+    assert told.startswith("stone ") and " kg" in told and told.count("m²") >= 3, told
+    page.screenshot(path=SHOTS / "block.png")
+    page.evaluate("window.extrados.change({ 'structure.contact_tolerance': 0.004 })")
+    until(page, "window.extrados.scene.seen?.warnings.some(w => w.includes('contact_tolerance 4 mm'))")
+    page.evaluate("window.extrados.change({ 'structure.mortar_gap': 0.001 })")
+    until(page, "document.querySelector('.bad')?.textContent.includes('touches neither')")
+    page.evaluate("window.extrados.change({ 'structure.mortar_gap': 0.012 })")
+    until(page, "window.extrados.scene.seen?.joints === 55")
+
+
 def test_what_holds_a_building_is_drawn(page: Any) -> None:
     open_text(page, HELD)
     drawn = (

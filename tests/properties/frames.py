@@ -91,6 +91,21 @@ def frames_are_held_by_their_weight(deck: Deck, within: float) -> None:
     at_most("overturning", run.peak_base_shear_N * height, answer.results.weight_N * 0.75 * width, within)
 
 
+@relation("frame-pushover", plans(), 0.02, share=0.5)
+def walls_deflect_within_their_rigid_mechanism(deck: Deck, within: float) -> None:
+    """A wall out of its plane carries with its deflection at most what its weakest part carries as a rigid body, and something."""
+    answer = push(deck, drop=0.95)
+    ok(answer)
+    rows = answer.results.walls_out_of_plane
+    must(len(rows) == len(deck["structure"]["walls"]), f"{len(rows)} walls")
+    for row in rows:
+        at_most(f"wall '{row.wall}'", row.acceleration_g, max(row.rigid_acceleration_g, 0.0), within)
+        must(
+            row.reached and (row.acceleration_g > 0.0 or row.rigid_acceleration_g < 0.02),
+            f"wall '{row.wall}': {row.acceleration_g} g, {row.deflection_m} m",
+        )
+
+
 @relation("frame-pushover", st.tuples(plans(), number(5.0, 85.0, 8)), 1e-4, share=0.3)
 def frames_on_a_turned_plan(deck: Deck, angle: float, within: float) -> None:
     """The plan and the push turned together, and the walls in another order: the same curve."""

@@ -233,6 +233,14 @@ WRONG = {
         + STEEL
         + PUSH,
     ),
+    "two ring beams of one wall": (
+        "wall 'a' has ring beam 1 on storey 1 already",
+        ROOMS
+        + '[[structure.ring_beams]]\nstorey = 1\ndepth = 0.2\nmaterial = "steel"\n'
+        + '[[structure.ring_beams]]\nstorey = 1\ndepth = 0.3\nmaterial = "steel"\nwalls = ["a"] # here\n'
+        + STEEL
+        + PUSH,
+    ),
     "ring beam of nothing": (
         "no [materials.gold]",
         ROOMS + '[[structure.ring_beams]] # here\nstorey = 1\ndepth = 0.2\nmaterial = "gold"\n' + PUSH,

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from extrados.decks import explain, manual
-from extrados.decks.positions import key_lines
+from extrados.decks.positions import key_lines, line_of
 from extrados.decks.reader import DeckError, make_deck, read_deck, read_text
 from extrados.schema.quantities import parse
 
@@ -221,6 +221,16 @@ def test_lines_of_nested_keys() -> None:
     lines = key_lines(text)
     assert lines["a",] == 1 and lines["b", "c"] == 5
     assert lines["t", 0, "k"] == 9 and lines["t", 1, "k"] == 11 and lines["t", 1, "u", "v"] == 13
+
+
+def test_lines_of_entries_of_inline_lists() -> None:
+    """Entries on another line than their list have a line of their own; strings, comments and commas at the end change nothing."""
+    text = 'a = { b = [\n  { k = "},\\"", p = [1, 2] }, # }]\n  { k = 2,\n    q = [\n 1,\n 2,\n    ] },\n], c = """\n{,"\n""" }\nd = [\'\'\'\n],\'\'\',\n3]\ne = 1\n'
+    lines = key_lines(text)
+    assert (lines["a", "b", 0], lines["a", "b", 1], lines["a", "b", 1, "q"]) == (2, 3, 4)
+    assert (lines["a", "b", 1, "q", 0], lines["a", "b", 1, "q", 1], lines["a", "c"]) == (5, 6, 8)
+    assert (lines["d",], lines["d", 1], lines["e",]) == (11, 13, 14)
+    assert line_of(("a", "b", 0, "p", 1), lines) == 2 and line_of(("a", "b", 1, "k"), lines) == 3
 
 
 def test_explain_schema_and_starters() -> None:

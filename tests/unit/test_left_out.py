@@ -87,6 +87,7 @@ LONG = {"survey", "fragility", "dem-domain", "assess"}
 DECKS = {
     "tilt": (ARCH, None, {}),
     "thrust": (ARCH, None, {}),
+    "thrust-network": ({**ARCH, "depth": 0.2}, None, {"lines": 4}),
     "sweep": (ARCH, None, {"vary": "thickness", "start": 1.4, "stop": 1.6, "count": 2}),
     "imperfections": (ARCH, None, {"count": 10, "deviation": 0.01}),
     "supports": (ARCH, None, {"steps": 10}),

@@ -308,6 +308,14 @@ def test_numbers_are_not_broken_on_paper_and_long_keys_are() -> None:
     )
 
 
+def test_a_short_paragraph_in_a_box_and_a_unit_are_kept_whole(tmp_path: Path) -> None:
+    """A long paragraph may continue on the next page."""
+    short, long = (
+        typeset.markup(Document("t", [], [Words(text, "answer")], "t"), tmp_path) for text in ("density 2300 kg/m^3", "a" * 2000)
+    )
+    assert "kg/\u2060m" in short and ", false, (" in short and ", true, (" in long
+
+
 def test_a_note_flows_as_one_paragraph() -> None:
     assert _flowing("one\ntwo  three\n\nfour") == "one two three\nfour"
 

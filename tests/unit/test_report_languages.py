@@ -16,7 +16,7 @@ from extrados.results.validity import validity_of
 from extrados.results.verdict import CHECKED, SHARES
 from extrados.schema.code import Code
 from extrados.show import language
-from extrados.show.building import DIMENSIONS, PARTS
+from extrados.show.building import DIMENSIONS, PARTS, joint_of
 from extrados.show.language import NAMES, Language, catalogue
 from extrados.show.opening import OUTCOMES, TITLES
 from extrados.show.report import write_report
@@ -93,3 +93,10 @@ def test_a_report_speaks_one_language_and_marks_what_is_english(tmp_path: Path, 
         assert 'class="answer" lang="en"' in page and "Limits of validity" not in page and "safety factor<" not in page
         write_report(tmp_path / "out", language="en")
         assert "Limits of validity" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_french_separates_colons_and_joints_are_named_in_the_language() -> None:
+    french, german = Language("fr"), Language("de")
+    assert (french.pair("flèche", "2,87 m"), german.pair("Stich", "2,87 m")) == ("flèche\u00a0: 2,87 m", "Stich: 2,87 m")
+    named = [joint_of(german, name) for name in ("A 1 on the ground", "A 1 on A 2", "joint 3")]
+    assert named == ["A 1 auf dem Boden", "A 1 auf A 2", "joint 3"]

@@ -1,11 +1,17 @@
 """Walls under constant axial load, followed past the events that find no equilibrium."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
+from extrados.core.sla import EVENT
 from extrados.decks.reader import make_deck
+
+CASES = Path(__file__).parents[2] / "cases"
 
 #: Steps of equilibrium iterations: tolerance of the residual, and of the energy balance that the trapezium rule allows
 RESIDUAL, BALANCE = 1e-3, 5e-3
@@ -262,3 +268,35 @@ def test_damage_that_goes_ahead_in_staggered_steps_is_dissipated() -> None:
     r = run_deck(pier(0.2, 10.0, 0.25, crushing=True, target_displacement=2e-2)).results
     assert r["stop"] == "axial capacity lost"
     assert r["released_energy_J"] < 0.1 * r["dissipated_energy_J"]
+
+
+def test_a_film_has_states_on_the_whole_way_of_the_curve() -> None:
+    """Events and steps: no two pictures are further apart than two parts of the way and a step."""
+    plain, filmed = (run_deck(pier(0.1, 50.0, 0.25, target_displacement=3e-3, **more)) for more in ({}, {"animation": "gif"}))
+    events = array(filmed, "state_event") - 1
+    assert len(set(events.tolist())) == len(events) > 40 > len(array(plain, "state_event"))
+    way = array(filmed, "event_displacement")[events]
+    assert np.diff(way).max() <= 2.0 * 3e-3 / 80.0 + 2e-4
+    assert np.array_equal(array(filmed, "event_load"), array(plain, "event_load"))
+
+
+def test_a_notched_bar_snaps_back_on_its_closed_form() -> None:
+    """Elongation s L / E and a crack w = w_c (1 - s / ft): from the peak on both decrease. Displacement control drops, and loses energy."""
+    deck = extrados.live(CASES / "sla" / "snap-back.toml").deck.data
+    result = run_deck(deck)
+    way, load = array(result, "event_displacement"), array(result, "event_load")
+    arc = array(result, "event_code") == EVENT["dissipated"]
+    assert arc.sum() > 10 and result.results["released_energy_J"] == 0.0
+    share = load[arc][:-1] / 25e3  # the last one is torn
+    assert (np.diff(way[arc][:-1]) < 0.0).all() and share.min() < 0.1
+    assert way[arc][:-1] == pytest.approx(1e-4 + 2e-4 * share, rel=2e-3)
+    assert result.results["dissipated_energy_J"] == pytest.approx(5.0 * 0.25, rel=1e-3)  # Gf times the section
+
+
+def test_an_arc_length_follows_the_curve_of_displacement_control() -> None:
+    """A pier that does not snap back has the same curve."""
+    curves = [run_deck(pier(0.1, 50.0, 0.25, target_displacement=3e-3, continuation=how)) for how in ("newton", "dissipation")]
+    at = np.linspace(0.2e-3, 3e-3, 15)
+    one, two = (np.interp(at, array(c, "envelope_displacement"), array(c, "envelope_load")) for c in curves)
+    assert two == pytest.approx(one, rel=0.02)
+    check_steps(curves[1])

@@ -1,6 +1,7 @@
 """A block on a base that gives way: against an integration of its own, closed forms, the rigid block, and a deck's refusals."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from extrados.views.building import Building
 from extrados.views.rockers.soft_base import soft_base_model
 
 WINKLER, SPRINGS = False, True
+GENERATED = {"kind": "generated", "mmi": 8, "duration": 8.0}
 
 
 def block(width: float, height: float, stiffness: float, damping_ratio: float = 0.0, **keys) -> SoftBase:
@@ -449,3 +451,59 @@ def test_start_and_linear_form_through_the_building() -> None:
     assert run.array("rocking", "rotation")[0] == pytest.approx(-0.2 * found.critical_rotation_left_rad)
     with pytest.raises(NoView, match="rocking"):
         building.rocker()
+
+
+def sliding_deck(seed: int) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
+    """A block and its pulse; what makes its base one of two springs; and joints and base of discrete elements with these springs."""
+    rng = np.random.default_rng([3, seed])
+
+    def within(low: float, high: float) -> float:
+        return float(f"{rng.uniform(low, high):.3g}")
+
+    width, friction, stiffness, damping = within(0.6, 1.2), within(0.2, 0.4), float(f"{10 ** rng.uniform(7.7, 8.7):.3g}"), within(0.1, 0.5)
+    height = float(f"{width * within(2.0, 4.0):.3g}")
+    pulse = {"kind": "sine-pulse", "amplitude": f"{width / height * within(1.3, 3.5):.3g} g", "period": within(0.4, 1.4)}
+    base = {"stiffness": stiffness, "foundation": "two-spring", "damping_ratio": damping}
+    beta = 2.0 * damping * float(np.sqrt(2000.0 * height / stiffness))
+    springs = {"friction": friction, "normal_stiffness": 1e14, "shear_stiffness": 10.0 * stiffness, "beta": beta}
+    made = {"structure": {"kind": "block", "width": width, "height": height}, "motion": pulse}
+    return made, {"supports": base, "joints": {"friction": friction}}, {"supports": {"stiffness": stiffness}, "joints": springs}
+
+
+@pytest.mark.parametrize("seeds", [(0, 1, 2), pytest.param(tuple(range(3, 40)), marks=pytest.mark.verify)])
+def test_a_block_on_two_springs_that_slides_ends_as_discrete_elements_from_rest(seeds: tuple[int, ...]) -> None:
+    """Whether it collapses; and the slip to 5 % where it slides by more than a tenth of the width without collapse: before it slides the base of
+    elements also yields along the ground, by the shear springs."""
+    compared = slipped = 0
+    for seed in seeds:
+        made, two_spring, elements = sliding_deck(seed)
+        found = extrados.run(made | two_spring | {"analysis": {"kind": "rocking"}}).results[0].results
+        if "hand_over" not in found.model_dump(exclude_unset=True):
+            continue
+        run = found.hand_over.contacts
+        table = {"kind": "dem", "floor": 0.0, "collapse_displacement": run.collapse_displacement_m}
+        rest = extrados.run(made | elements | {"analysis": table}).results[0].results
+        print(seed, found.hand_over.time_s, found.outcome, rest.outcome, run.peak_slip_m, rest.peak_slip_m)
+        compared += 1
+        assert (found.outcome == "collapse") == (rest.outcome == "collapse") or rest.decided_by_last_digits or run.decided_by_last_digits, (
+            seed
+        )
+        if found.outcome != "collapse" and rest.peak_slip_m > 0.1 * made["structure"]["width"]:
+            slipped += 1
+            assert run.peak_slip_m == pytest.approx(rest.peak_slip_m, rel=0.05)
+    print(compared, slipped)
+    assert compared >= 2
+
+
+def test_cells_and_members_on_two_springs_are_handed_over() -> None:
+    """Of a domain and of an ensemble; a bed is not: its force moves along the base."""
+    made, two_spring, _ = sliding_deck(1)
+    domain = {"kind": "failure-domain", "pulse": "sine", "durations": [0.8], "amplitudes": 3, "max_amplitude": "1.0 g"}
+    run = extrados.run(made | two_spring | {"analysis": domain}).results[0].results
+    assert run.handed_over and run.conditions.sliding
+    statistics = {"kind": "fragility", "count": 4, "seed": 1, "hand_over": True}
+    assert extrados.run(made | two_spring | {"motion": GENERATED, "analysis": statistics}).results[0].results.handed_over
+    bed = {**two_spring, "supports": two_spring["supports"] | {"foundation": "winkler"}}
+    found = extrados.run(made | bed | {"analysis": {"kind": "rocking"}}).results[0]
+    assert "hand_over" not in found.results.model_dump(exclude_unset=True)
+    assert found.results.conditions.slides_first is not None and found.verdict.outcome in ("open", "collapses")

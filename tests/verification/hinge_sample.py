@@ -4,11 +4,14 @@ R 1 m, stiff joints (1e12 Pa/m), friction that does not let them slide. Amplitud
 periods between 0.7 and 4 times the arch's own time (1/p of a block), both spread evenly over their logarithms.
 """
 
+import fcntl
 import os
+import tempfile
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -159,7 +162,20 @@ class Sample:
 
 @cache
 def fell() -> np.ndarray:
-    """Which of the arches fall under which of their pulses in discrete elements (arches, pulses)."""
+    """Which of the arches fall under which of their pulses in discrete elements (arches, pulses); one of the processes of a test run
+    calculates it, and the others wait for it."""
+    run = os.environ.get("PYTEST_XDIST_TESTRUNUID")
+    if run is None:
+        return _fell()
+    kept = Path(tempfile.gettempdir()) / f"extrados-hinges-{run}.npy"
+    with kept.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not kept.exists():
+            np.save(kept, _fell())
+        return np.load(kept)
+
+
+def _fell() -> np.ndarray:
     for one in SAMPLES:
         one.elements  # noqa: B018  the first look makes it, before threads share it
     runs = [(one, motion) for one in SAMPLES for _, motion in one.pulses]

@@ -118,15 +118,18 @@ def test_chosen_hinges_are_not_nearer() -> None:
 
 @pytest.mark.parametrize("scale", [1.0, 1.2])
 def test_the_arch_of_the_readme(scale: float) -> None:
-    """Outside its thrust line for more than half of the time, it still ends as the elements do by the default rule."""
+    """Outside its thrust line for more than half of the time, it still ends as the elements do by the default rule.
+
+    The arch rocks from 1.7 to 5.1 s or collapses. The elements are followed to 9 s: the whole record of 37 s, left out for
+    its time, ended the same way."""
     deck = tomllib.loads(README.read_text())
     deck["motion"]["scale"] = scale
 
-    def outcome(kind: str, joints: dict, **keys: bool) -> str:
+    def outcome(kind: str, joints: dict, **keys: bool | float) -> str:
         run = extrados.run(deck | {"joints": joints, "analysis": [{"kind": kind, "output_step": 0.01, **keys}]}, threads=1)
         return run[kind]["outcome"]
 
-    elements = outcome("dem", {"friction": 2.0, "normal_stiffness": 1e11})
+    elements = outcome("dem", {"friction": 2.0, "normal_stiffness": 1e11}, end_time=9.0)
     said = {rule: outcome("rocking", {"restitution": rule}, hand_over=False) for rule in RULES}
     print(f"\nEl Centro times {scale}: elements {elements}, {said}")
     # `dem` calls recovery by what moved: its blocks rocked.

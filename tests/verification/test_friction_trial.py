@@ -175,9 +175,10 @@ def test_least_of_all_states(units: int, courses: int, friction: float) -> None:
     assert limit.collapse()[0].gamma == pytest.approx(least_by_integers(assembly, friction), abs=1e-5)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 6])
+@pytest.mark.parametrize("seed", [0, 2, 4, 6])
 def test_rigid_contacts_collapse_within_the_interval(seed: int) -> None:
-    """Slowly tilted, both ways: at or above the least state found, at or below the associated bound, within the accuracy."""
+    """Slowly tilted, both ways: at or above the least state found, at or below the associated bound, within the accuracy. The walls
+    of seeds 1 and 3 did so, too, and are left out for their time."""
     accuracy = 2e-3
     deck = {
         "structure": coursed(seed),

@@ -14,6 +14,8 @@ from extrados.decks.reader import make_deck
 YOUNG, NU, STRENGTH, ENERGY = 37e9, 0.2, 3.9e6, 143.0
 LAWS = ("hordijk", "linear", "exponential")
 DEPTHS = (0.05, 0.1, 0.2)
+#: One of squares and two of random triangles
+MESHES = (("structured", 1), ("random", 1), ("random", 2))
 #: Parts of the peak load at which the tail is compared
 TAIL = (0.75, 0.5, 0.25)
 
@@ -21,6 +23,11 @@ TAIL = (0.75, 0.5, 0.25)
 def beam_of(depth: float, slot: float) -> Beam:
     """The half-notched beams of Gregoire and others, of which all sizes are in proportion."""
     return Beam(depth, 3.5 * depth, 2.5 * depth, 0.5 * depth, slot, 0.4 * depth, 0.05)
+
+
+def nine(shift: int) -> list[tuple[str, float, str, int]]:
+    """Of the 27 beams of all laws, depths and meshes nine: every pair of two of these occurs once."""
+    return [(law, depth, *MESHES[(i + shift * j) % 3]) for i, law in enumerate(LAWS) for j, depth in enumerate(DEPTHS)]
 
 
 def reference(depth: float, slot: float, law: str, elements: int = 192) -> Path:
@@ -181,22 +188,20 @@ def test_fixed_cracks_do_not_meet_it() -> None:
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize(("pattern", "seed"), [("structured", 1), ("random", 1), ("random", 2)])
-@pytest.mark.parametrize("depth", DEPTHS)
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("law", "depth", "pattern", "seed"), nine(1))
 def test_fine_teeth_meet_the_tail(law, depth, pattern, seed) -> None:
     """Teeth a quarter as wide, 24 elements over the ligament: within 5 % at the peak and all along the tail. What is off there
-    at the default p is the width of the teeth, which near a quarter of the peak is a large part of what is left."""
+    at the default p is the width of the teeth, which near a quarter of the peak is a large part of what is left. The other 18
+    beams met the same bounds until they were left out for their time."""
     found = errors(depth, law, 24, pattern, seed, ripple=0.0125)
     assert max(abs(e) for e in (found.peak, *found.tail, found.work)) < 0.05
 
 
 @pytest.mark.verify
-@pytest.mark.parametrize(("pattern", "seed"), [("structured", 1), ("random", 1), ("random", 2)])
-@pytest.mark.parametrize("depth", DEPTHS)
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("law", "depth", "pattern", "seed"), nine(2))
 def test_fine_teeth_and_36_elements(law, depth, pattern, seed) -> None:
-    """Within 5 % to half of the peak, and in squares all along; at a quarter one mesh of triangles is 5.7 % too low."""
+    """Within 5 % to half of the peak, and in squares all along; at a quarter one mesh of triangles is 5.7 % too low. Other nine
+    beams than with 24 elements; the rest of the 27 met the same bounds until they were left out for their time."""
     found = errors(depth, law, 36, pattern, seed, ripple=0.0125)
     assert max(abs(e) for e in (found.peak, *found.tail[:2], found.work)) < 0.03
     assert abs(found.tail[2]) < (0.05 if pattern == "structured" else 0.06)

@@ -61,15 +61,13 @@ def test_a_bed_that_slides_at_once_dissipates_what_the_loads_supply() -> None:
 def test_walls_of_units_are_predicted_as_recorded() -> None:
     """Two quick walls, a flexural and a hybrid one; bias and scatter of all that are recorded."""
     walls = {wall.name.split()[0]: wall for wall in tool.read_walls(TABLE)}
-    with TABLE.with_name("wall-tests-units.csv").open(encoding="utf-8") as file:
-        recorded = {row["n"]: row for row in csv.DictReader(line for line in file if not line.startswith("#"))}
+    recorded = tool.read_recorded(TABLE.with_name("wall-tests-units.csv"))
     for n in ("110", "112"):
         found = tool.by_units(walls[n])["units"]
-        assert found.strength == pytest.approx(1e3 * float(recorded[n]["units_kN"]), rel=0.02), n
-        assert found.failure == recorded[n]["units_failure"]
-    pairs = [(walls[n], tool.Predicted(1e3 * float(row["units_kN"]), row["units_failure"])) for n, row in recorded.items()]
-    bias, scatter, count = tool.statistics(pairs)
-    assert (count, bias, scatter) == (12, pytest.approx(0.94, abs=0.02), pytest.approx(0.21, abs=0.03))
+        assert found.strength == pytest.approx(recorded[n].strength, rel=0.02), n
+        assert found.failure == recorded[n].failure
+    bias, scatter, count = tool.statistics([(walls[n], found) for n, found in recorded.items()])
+    assert (count, bias, scatter) == (23, pytest.approx(0.976, abs=0.01), pytest.approx(0.241, abs=0.01))
 
 
 @pytest.mark.verify

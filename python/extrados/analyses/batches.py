@@ -166,11 +166,15 @@ class _Batches:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
             end = 0
             for first, arrays, path in self.kept.placed(self.name, context.warnings):
-                if end <= first <= count - _rows(arrays):
+                if _are_rows(arrays) and not end <= first <= count - _rows(arrays):  # of another run that was going on at the same time
+                    context.warnings.append(f"a saved batch overlaps another batch and is not used; it begins at member {first}")
+                elif not _are_rows(arrays) or (self.names and set(arrays) != set(self.names)):  # of a stranger
+                    context.warnings.append(
+                        f"a saved batch does not contain results of this analysis and is not used; it begins at member {first}"
+                    )
+                else:
                     self._put(first, arrays, path)
                     end = first + _rows(arrays)
-                else:  # of another run that was going on at the same time
-                    context.warnings.append(f"a saved batch overlaps another batch and is not used; it begins at member {first}")
         self.done = sum(self.rows.values())
         tell(self.done)
 
@@ -203,6 +207,11 @@ class _Batches:
     def swept(self, stopped: str = "", interrupted: bool = False) -> Swept:
         parts = [(first, self.rows[first]) for first in sorted(self.parts)]
         return Swept(parts, self.names, self._pick, self.count, self.on_disk, stopped, interrupted)
+
+
+def _are_rows(arrays: dict[str, np.ndarray]) -> bool:
+    """Whether all arrays have the same number of members, at least one."""
+    return all(array.ndim for array in arrays.values()) and len({len(array) for array in arrays.values()} | {0}) == 2
 
 
 def _rows(arrays: dict[str, np.ndarray]) -> int:

@@ -23,18 +23,19 @@ def growth_step(time_unit: float, end_time: float) -> float:
     return max(SPACING * time_unit, end_time / MOST_TIMES)
 
 
-def growth(runs: Sequence[np.ndarray]) -> float:
+def growth(runs: Sequence[np.ndarray], until: int | None = None) -> float:
     """Greatest separation of perturbed runs from the first one at equal times, over the perturbation.
 
     runs: of each the histories (times) or (times, components) as shares of the limit: rotations over the critical one to their
     side, displacements over the one that counts as collapse. The first is under the motion, the others under the motion times
-    1 plus or minus NUDGE. Only the time until the first of them passes its limit counts: beyond it every difference grows. A
+    1 plus or minus NUDGE. Only the time until the first of them passes its limit counts, or the first `until` times: beyond it every
+    difference grows. A
     smooth response is about 1 to 1e3, a chaotic one grows exponentially with its impacts up to 1e6, where histories have
     nothing in common.
     """
     length = min(len(run) for run in runs)
     share = np.stack([run[:length].reshape(length, -1) for run in runs])
-    beyond = (np.abs(share) > 1.0).any(axis=(0, 2))
+    beyond = (np.abs(share) > 1.0).any(axis=(0, 2)) if until is None else np.arange(length) >= until
     if beyond.any():
         share = share[:, : int(beyond.argmax())]
     return float(np.abs(share[1:] - share[0]).max(initial=0.0)) / NUDGE

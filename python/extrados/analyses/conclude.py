@@ -59,7 +59,7 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
             return result
         assumptions = assumptions_of(options, context.deck.building, building)
     except Exception as error:  # the other analyses of the deck still count
-        return replace(faulty(result.kind, error), seconds=result.seconds)
+        return replace(faulty(result.kind, error, context.resume), seconds=result.seconds)
     # also of a motion that the verdict alone has taken
     result = replace(result, warnings=[*result.warnings, *(w for w in context.warnings if w not in result.warnings)])
     if verdict is None:
@@ -74,10 +74,11 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
 
 
-def faulty(kind: str, error: Exception) -> Result:
+def faulty(kind: str, error: Exception, resumed: bool = False) -> Result:
     """What an analysis gives where memory lacked or the program is at fault: the reason, and a file to report.
 
-    A MemoryError that stands for no other error was foreseen and needs no file.
+    A MemoryError that stands for no other error was foreseen and needs no file. resumed: batches of an earlier run may have been used,
+    of which a checksum shows damage, but not that a stranger made them.
     """
     if isinstance(error, MemoryError) and error.__cause__ is None:
         return Result(kind, "failed", room.words(error))
@@ -90,6 +91,9 @@ def faulty(kind: str, error: Exception) -> Result:
         reason = str(error) if isinstance(error, MemoryError) else f"not enough memory: {said}"
         return Result(kind, "failed", f"{reason} ({name} says where)" if files else reason, files=files)
     beside = f" with {name}" if files else ""
+    if resumed:
+        reason = f"the saved batches of this run do not hold results of this analysis: {said}. Run again without --resume; if that fails too, please report it{beside}"
+        return Result(kind, "failed", reason, files=files)
     return Result(kind, "failed", f"internal error of extrados, please report it{beside}: {said}", files=files)
 
 

@@ -40,7 +40,7 @@ def run_analyses(context: Context) -> list[Result]:
         try:
             result = concluded(run_one(context, options, building), options, context, building)
         except (MemoryError, SystemError) as error:  # there was no room to tell the end before the analysis had let go
-            result = faulty(options.kind, error)
+            result = faulty(options.kind, error, context.resume)
         _, notes = building.told()
         if notes != told:  # what was made of a survey is told once
             result.warnings, told = [*notes, *result.warnings], notes
@@ -87,7 +87,7 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         if len(interrupts.asked) > signals:  # a library that was interrupted while it is loaded says what it likes
             result = Result(options.kind, "interrupted", "the analysis was interrupted before it had a result")
         else:  # the other analyses of the deck still count
-            result = faulty(options.kind, error)
+            result = faulty(options.kind, error, context.resume)
     remarks, _ = building.told()
     result.warnings = [*remarks, *result.warnings]
     result.seconds = time.perf_counter() - begin

@@ -51,6 +51,16 @@ def parse_ifc(content: bytes) -> dict[str, Any]:
     except ImportError:
         raise Unreadable("needs the extra ifc: pip install extrados[ifc]") from None
     model = ifcopenshell.file.from_string(content.decode("utf-8", "replace"))
+    try:
+        return _parsed(model)
+    except RuntimeError as error:
+        raise Unreadable(f"no IFC model of a schema that ifcopenshell reads, such as IFC2X3 or IFC4: {error}") from None
+    except (AttributeError, TypeError, ValueError, IndexError, OverflowError) as error:
+        raise Unreadable(f"an entity does not follow the schema of IFC: {error}") from None
+
+
+def _parsed(model: Any) -> dict[str, Any]:
+    """What `parse_ifc` gives, of an open model."""
     scale = _scale(model)
     elevations = sorted({round(scale * float(s.Elevation or 0.0), 4) for s in model.by_type("IfcBuildingStorey")})
     walls, left, cut = [], 0, 0

@@ -77,7 +77,8 @@ class RunOptions:
     then, where their own is less [s]. collapse: displacement that counts as collapse [m], 0 none, of a body that also turned
     by more than `collapse_turn` [rad] or is lower by more than `collapse_drop` [m]; both 0: the displacement alone counts. residual_limit: of the total energy exchanged, above it the run is stopped. stop_at_rest: end once
     all rests and the ground is still. rigid: contacts without springs (the joints' stiffness and damping play no part, `step` 0
-    takes one that suits the smallest block), with Newton's coefficient `rebound` at each point; quasi_static: without inertia."""
+    takes one that suits the smallest block), with Newton's coefficient `rebound` at each point; quasi_static: without inertia. safe: kinetic energy, and energy of the places over those at rest, below which
+    blocks recover, so that a run that stops at rest ends as soon as the ground is still; above: the latter energy at the start [J]."""
 
     end_time: float
     output_step: float = 0.01
@@ -96,6 +97,8 @@ class RunOptions:
     rigid: bool = False
     quasi_static: bool = False
     rebound: float = 0.0
+    safe: float = 0.0
+    above: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -284,6 +287,8 @@ class BodyModel(Owner, ABC, Generic[Found]):
             o.settle_damping,
             o.collapse_turn,
             o.collapse_drop,
+            o.safe,
+            o.above,
             int(o.settle_steps) if settle else 0,
             int(o.stop_at_rest),
             thread_count(o.threads),

@@ -31,7 +31,8 @@ class MacroElement:
     end, along the wall and upward, of both ends. length, depth, thickness of the deformable part. strength: of the stress
     block. shear: a word of the list frame_shear; cohesion, friction, tension (f_t) its strengths, slenderness its b.
     damage: c_t, beta of the law "damage". drifts: limits in flexure and in shear; kept: share of the moments left beyond.
-    moment: strength of the hinges of a beam, by_shear where its shear strength makes it.
+    moment: strength of the hinges of a beam, by_shear where its shear strength makes it. own_weight [N] of a pier: the normal force
+    grows by it from the upper end to the lower one; the nodes carry half of it each.
     """
 
     freedoms: tuple[int, int, int, int, int, int]
@@ -56,6 +57,7 @@ class MacroElement:
     second_order: bool = True
     moment: float = UNLIMITED
     by_shear: bool = False
+    own_weight: float = 0.0
 
     @property
     def choices(self) -> list[int]:
@@ -88,6 +90,7 @@ class MacroElement:
             self.young * self.thickness * self.depth**3 / 12.0,
             0.0,
             self.moment,
+            self.own_weight,
         ]
 
 
@@ -145,7 +148,7 @@ class Frame(Owner):
         super().__init__(handle)
         freedom = indices("freedoms", np.array([e.freedoms for e in elements]).reshape(-1, 6).T + 1, self.n + 1, (6, None))
         choice = np.asfortranarray(np.array([e.choices for e in elements], dtype=np.int32).reshape(-1, 6).T)
-        values = real("elements", np.array([e.properties for e in elements]).reshape(-1, 24).T, (24, None))
+        values = real("elements", np.array([e.properties for e in elements]).reshape(-1, 25).T, (25, None))
         check(_core.api_frame.elements(handle, self.n, choice, freedom - np.int32(1), values), "elements of a frame")
         if links:
             where, parts = np.full((8, len(links)), -1), np.zeros((8, len(links)), order="F")

@@ -106,7 +106,7 @@ START, HELD, HELD_RATE, MARK, MODE = 0, 1, 6, 8, 10
 #: What happens after a tooth and where equilibrium is lost, see Model.run
 VARIANTS = tuple(lists.numbers("sla_variant"))
 #: How a run goes on without equilibrium, in the order of fortran/api/api_sla.f90 (follow)
-CONTINUATIONS = ("newton", "implicit-explicit")
+CONTINUATIONS = ("newton", "implicit-explicit", "dissipation")
 #: Rows of the histories of a point, see fortran/sla/group.f90
 HISTORIES = 8
 

@@ -7,8 +7,10 @@ from itertools import zip_longest
 from typing import Any
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([^\]]*[^\]\s])\s*\]\]?")
-_KEY = re.compile(r"""^\s*((?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*'))*)\s*=""")
+_KEY = re.compile(r"""\s*((?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*'))*)\s*=""")
 _PART = re.compile(r"""[A-Za-z0-9_-]+|"[^"]*"|'[^']*'""")
+_STRING = re.compile(r""""(?:\\.|[^"\\])*"|'[^']*'""")
+_CLOSING = {'"""': re.compile(r'(?:\\.|[^\\])*?"""+'), "'''": re.compile(r".*?'''+")}
 
 Path = tuple[str | int, ...]
 
@@ -17,15 +19,27 @@ def _parts(dotted: str) -> tuple[str, ...]:
     return tuple(part.strip("\"'") for part in _PART.findall(dotted))
 
 
+@dataclass
+class _Open:
+    """A list (index) or inline table (none) that a value has opened: its path, its line, and the path of its current value."""
+
+    path: Path
+    line: int
+    index: int | None
+    value: Path | None = None
+
+
 def key_lines(text: str) -> dict[Path, int]:
-    """Path -> line number (1-based) of every table header and key of a valid TOML text."""
+    """Path -> line number (1-based) of every table header and key of a valid TOML text; within a value, of the entries of lists and
+    inline tables that are on another line than the list or table itself."""
     lines: dict[Path, int] = {(): 1}
     tables: dict[tuple[str, ...], int] = {}
     here: Path = ()
-    depth = 0
+    opened: list[_Open] = []
     quote = ""
     for number, line in enumerate(text.split("\n"), start=1):
-        if not quote and depth == 0:
+        start, path = 0, here
+        if not quote and not opened:
             if header := _HEADER.match(line):
                 name = _parts(header[2])
                 if header[1] == "[[":
@@ -39,38 +53,59 @@ def key_lines(text: str) -> dict[Path, int]:
                 lines.setdefault(name, number)
                 continue
             if found := _KEY.match(line):
-                lines.setdefault(here + _parts(found[1]), number)
-                line = line[found.end() :]
-        quote, depth = _scan(line, quote, depth)
+                path = here + _parts(found[1])
+                lines.setdefault(path, number)
+                start = found.end()
+        quote = _scan(line, start, number, quote, path, opened, lines)
     return lines
 
 
-def _scan(line: str, quote: str, depth: int) -> tuple[str, int]:
-    """Follow strings and brackets over one line: open multi-line quote and bracket depth at its end."""
-    i = 0
+def _scan(line: str, start: int, number: int, quote: str, path: Path, opened: list[_Open], lines: dict[Path, int]) -> str:
+    """Follow the value of a path, its strings, lists and inline tables, over one line; the multi-line quote that is open at its end."""
+    i = start
     while i < len(line):
         if quote:
-            if quote[0] == '"' and line[i] == "\\":
-                i += 2
-                continue
-            if line.startswith(quote, i):
-                i += len(quote)
-                quote = ""
-                continue
-        elif line.startswith(('"""', "'''"), i):
-            quote = line[i : i + 3]
-            i += 3
+            end = _CLOSING[quote].match(line, i)
+            if end is None:
+                return quote
+            quote, i = "", end.end()
             continue
-        elif line[i] in "\"'":
-            quote = line[i]
-        elif line[i] == "#":
+        if line[i] == "#":
             break
-        elif line[i] in "[{":
-            depth += 1
-        elif line[i] in "]}":
-            depth = max(0, depth - 1)
+        if line[i] not in " \t\r,]}" and opened and (key := _begin(opened[-1], line, i, number, lines)):
+            i = key
+            continue
+        if line.startswith(('"""', "'''"), i):
+            quote, i = line[i : i + 3], i + 3
+            continue
+        if line[i] in "\"'":
+            found = _STRING.match(line, i)
+            i = found.end() if found else len(line)
+            continue
+        if line[i] in "[{":
+            opened.append(_Open((opened[-1].value or opened[-1].path) if opened else path, number, 0 if line[i] == "[" else None))
+        elif line[i] in "]}" and opened:
+            opened.pop()
+        elif line[i] == "," and opened:
+            one = opened[-1]
+            one.value, one.index = None, None if one.index is None else one.index + 1
         i += 1
-    return (quote if len(quote) == 3 else ""), depth
+    return quote
+
+
+def _begin(one: _Open, line: str, i: int, number: int, lines: dict[Path, int]) -> int:
+    """Begin an entry of a list or inline table unless one has begun: its path and line; the place after the key of a table, else 0."""
+    if one.value is not None:
+        return 0
+    found = None
+    if one.index is None:
+        found = _KEY.match(line, i)
+        one.value = one.path + (_parts(found[1]) if found else ())
+    else:
+        one.value = (*one.path, one.index)
+    if number != one.line:
+        lines.setdefault(one.value, number)
+    return found.end() if found else 0
 
 
 def line_of(path: Path, lines: Mapping[Path, int]) -> int:

@@ -41,7 +41,8 @@ def seen(building: Building, mesh: Any = None) -> Drawn | None:
 
 def of_solids(assembly: SolidAssembly) -> Drawn:
     """Blocks in space: `vertex` (nv, 3) [m], `face` numbers of vertices one face after the other, `face_start`,
-    `face_body` whose they are, `body_centre` (nb, 3) [m]."""
+    `face_body` whose they are, `body_centre` (nb, 3) [m], `body_mass` (nb) [kg], `contact_body` (nj, 2) the blocks of each contact, -1 for
+    the ground, and its area `contact_area` (nj) [m^2]."""
     found = {name: array.numbers for name, array in scene_arrays(assembly).items()}
     vertex = found["solid_vertex"]
     words = {
@@ -49,6 +50,8 @@ def of_solids(assembly: SolidAssembly) -> Drawn:
         "of": "solids",
         "blocks": len(assembly.mass),
         "joints": len(assembly.a),
+        "names": assembly.block_names,
+        "contacts": assembly.joint_names,
         "measures": assembly.measures,
         "weight_N": GRAVITY * float(assembly.mass.sum() + assembly.fill[:, 1].sum()),
         "size_m": np.ptp(vertex, axis=0).tolist(),
@@ -60,6 +63,9 @@ def of_solids(assembly: SolidAssembly) -> Drawn:
         "face_start": found["solid_face_start"],
         "face_body": found["solid_face_block"],
         "body_centre": found["solid_centroid"],
+        "body_mass": assembly.mass,
+        "contact_body": np.column_stack([assembly.a, assembly.b]),
+        "contact_area": assembly.area,
     }
 
 

@@ -185,10 +185,9 @@ class Checkpoint:
         for path in sorted((self.folder / name).glob("*.npz")):
             if not _NAME.fullmatch(path.name):
                 continue  # a stranger's
-            content = _sound(path)
-            if content is not None:
-                with np.load(io.BytesIO(content), allow_pickle=False) as store:
-                    yield int(path.name.partition("-")[0]), {key: store[key] for key in store.files}, path
+            arrays = _arrays(path)
+            if arrays:
+                yield int(path.name.partition("-")[0]), arrays, path
             else:
                 told = f"{path.parent.name}/{path.name}"
                 warnings.append(f"a saved batch of results is damaged and is calculated again: {told} is now {path.name}.damaged")
@@ -220,6 +219,16 @@ class Checkpoint:
 
 def _digest(name: str, first: int, content: bytes) -> str:
     return hashlib.sha256(f"{name}\0{first}\0".encode() + content).hexdigest()[:32]
+
+
+def _arrays(path: Path) -> dict[str, np.ndarray]:
+    """The arrays of a batch; none where it was changed, or where a stranger gave its checksum to something else."""
+    content = _sound(path)
+    try:
+        with np.load(io.BytesIO(content or b""), allow_pickle=False) as store:
+            return {key: store[key] for key in store.files}
+    except (OSError, ValueError, KeyError, EOFError, AttributeError, TypeError, MemoryError, zipfile.BadZipFile):
+        return {}
 
 
 def _sound(path: Path) -> bytes | None:

@@ -7,6 +7,7 @@ from extrados.results.limit import DILATANT
 from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
 from extrados.schema.code import Jurisdiction
+from extrados.schema.quantities import three_figures
 
 Applied = Literal["holds", "fails", "not-applicable", ""]
 
@@ -130,7 +131,7 @@ class Checked(KindResults):
         if (weakest := self.weakest()) is not None:
             name, check = weakest
             return judge(
-                f"{name} gives the lowest strength, {(check.capacity or 0.0) / 1e3:.4g} kN ({check.note}).{remarks}",
+                f"{name} gives the lowest strength, {three_figures((check.capacity or 0.0) / 1e3)} kN ({check.note}).{remarks}",
                 None,
                 check.capacity,
                 "N",

@@ -107,6 +107,20 @@ class OutOfPlane(ResultModel):
     statement: str = fact("verdict in words")
 
 
+class WallDeflection(ResultModel):
+    """A wall out of its plane, with its deflection, under a constant acceleration across its plane."""
+
+    wall: str = fact("its name")
+    acceleration_g: float = fact("greatest constant acceleration that the wall carries; 0: no equilibrium under the weight", "g")
+    deflection_m: float = fact("greatest deflection at this acceleration", "m")
+    height_m: float = fact("height of the greatest deflection above the ground", "m")
+    reached: bool = fact("whether the acceleration decreases with further deflection; if not, it is a lower bound")
+    rigid_acceleration_g: float | None = fact(
+        "collapse multiplier of its weakest rigid part above a storey, by local-mechanism; null if floors hold the wall", "g"
+    )
+    held_at_m: list[float] = fact("heights at which rigid floors and props hold the wall", "m")
+
+
 class FramePushover(KindResults):
     """frame-pushover: a building as a frame of macro-elements under growing horizontal forces."""
 
@@ -125,7 +139,28 @@ class FramePushover(KindResults):
     remarks: list[str] = fact("parts of the building that the frame model neglects")
     ring_beam_moment_Nm: float = maybe("greatest moment of the elastic ring beams up to the peaks of all runs", "N*m")
     out_of_plane: OutOfPlane = maybe("check of the walls out of their planes; only with a seismic action")
+    walls_out_of_plane: list[WallDeflection] = maybe(
+        "walls out of their planes with their deflection, cracking and crushing, under a constant acceleration, the weakest first"
+    )
     verification: Verification = maybe("displacement-based verification: all runs at the limit states of the code")
+
+    def weakest_wall(self) -> str:
+        """The wall that carries the least acceleration out of its plane, in words; empty without such a calculation."""
+        if not self.walls_out_of_plane:
+            return ""
+        wall, ratio = self.walls_out_of_plane[0], self.base_shear_N / self.weight_N
+        if not wall.acceleration_g > 0.0:
+            return f"Out of its plane wall '{wall.wall}' has no equilibrium under its weight."
+        least = "" if wall.reached else "at least "
+        before = (
+            f" This is less than the base shear of the frame over the weight, {ratio:.3g}: the wall fails first."
+            if wall.acceleration_g < ratio
+            else ""
+        )
+        return (
+            f"Out of its plane wall '{wall.wall}' carries {least}a constant acceleration of {wall.acceleration_g:.3g} g, with a deflection of "
+            f"{1e3 * wall.deflection_m:.3g} mm at a height of {wall.height_m:.3g} m, without the transverse walls.{before}"
+        )
 
     def judged(self, demand: Demand) -> Verdict:
         """The verification by displacement; without one the least base shear, without an outcome."""
@@ -133,6 +168,8 @@ class FramePushover(KindResults):
         text = f"The frame can carry a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
         if self.ring_beam_moment_Nm is not None:
             text += f" Greatest moment of the ring beams, which remain elastic: {self.ring_beam_moment_Nm / 1e3:.3g} kN m."
+        if self.walls_out_of_plane and self.walls_out_of_plane[0].acceleration_g < self.base_shear_N / self.weight_N:
+            text += f" {self.weakest_wall()}"
         if self.out_of_plane is not None and self.out_of_plane.outcome in ("collapses", "cannot-stand"):
             factor = "" if self.out_of_plane.factor is None else f" (safety factor {self.out_of_plane.factor:.3g})"
             text += f" A wall does not satisfy the check of out-of-plane failure{factor}. {self.out_of_plane.statement}"

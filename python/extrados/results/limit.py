@@ -6,6 +6,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge, judge_acceleration
+from extrados.schema.quantities import three_figures
 
 Side = Literal["intrados", "extrados"]
 #: Ends of any joint, of arches by their sides
@@ -457,7 +458,7 @@ class MovingLoad(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The adequacy factor of the train against 1, or the load of the deck against the least collapse load [N]."""
-        text = f"The collapse load is {self.collapse_load_N / 1e3:.4g} kN at the most dangerous position"
+        text = f"The collapse load is {three_figures(self.collapse_load_N / 1e3)} kN at the most dangerous position"
         bound: Bound | None = "upper" if self.dilating_joints else None
         more = f" Joints slide: {DILATANT}." if self.dilating_joints else ""
         judged = f"{more} {CHARACTERISTIC}" if self.characteristic else more
@@ -484,7 +485,7 @@ class MovingLoad(KindResults):
                 f"{text}. The deck gives no load for comparison.{more}", None, self.collapse_load_N, "N", bound=bound, violated=violated
             )
         return judge(
-            f"{text}. This is {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{judged}",
+            f"{text}. This is {self.safety_factor:.3g} times the load of {three_figures(self.load_N / 1e3)} kN.{judged}",
             self.load_N,
             self.collapse_load_N,
             "N",
@@ -536,7 +537,7 @@ class MovingSupports(KindResults):
                 "Under the given movements the structure stands, with open joints. No limit of the movement is calculated.", None, None, "m"
             )
         return judge(
-            f"The arch follows the movement of its support up to {move:.4g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
+            f"The arch follows the movement of its support up to {move:.3g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
             "% of the span). It then collapses.",
             None,
             move,

@@ -6,6 +6,7 @@ from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.sla import SlaCurve
 from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge
 from extrados.results.verification import Verification
+from extrados.schema.quantities import three_figures
 
 
 class WallShare(ResultModel):
@@ -181,13 +182,15 @@ class Pushover(PushCurve, KindResults):
         load, capacity = least.greatest_load_N or 0.0, least.capacity_N or 0.0
         slides, reached = capacity < load, least.greatest_acceleration_g
         unit, value = ("N", capacity) if reached is None else ("g", abs(reached) * capacity / load if load else 0.0)
-        told = f"{capacity / 1e3:.4g} kN" + ("" if reached is None else f" ({value:.3g} g times the masses)")
+        told = f"{three_figures(capacity / 1e3)} kN" + ("" if reached is None else f" ({value:.3g} g times the masses)")
         fallen = "".join(f" Then {seat.told}." for curve in curves for seat in curve.seats or [] if seat.slid_off)
         if self.verification is not None and self.verification.decides:
             return self.verification.judged(f"The greatest base shear is {told}.{fallen}")
         if slides:
             text = f"Sliding at {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
-            violated = [f"The model excludes this sliding and carries {load / 1e3:.4g} kN, {load / capacity:.3g} times the sliding limit."]
+            violated = [
+                f"The model excludes this sliding and carries {three_figures(load / 1e3)} kN, {load / capacity:.3g} times the sliding limit."
+            ]
             return capacity_alone(text, value, unit, "upper", violated)
         if least.peak_load_N is None:
             text = f"The base shear has reached {told} without a peak. The capacity is therefore not known."

@@ -5,6 +5,7 @@ from typing import Literal
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge, judge_acceleration
 from extrados.results.verification import Verification
+from extrados.schema.quantities import three_figures
 
 #: How the names of arrays begin that belong to the first sense of the load, and to the second
 PREFIXES = ("", "minus_")
@@ -216,7 +217,7 @@ class Sla(SlaCurve, KindResults):
             text = f"No equilibrium state with a load was found. The run ended for this reason: {self.stop}."
             return judge(text, None, None, "N", "open" if self.stones and demand.peak_g is not None else None)
         least = min(curves, key=lambda c: c.greatest_load_N or 0.0)
-        reached, load = least.greatest_acceleration_g, f"{(least.greatest_load_N or 0.0) / 1e3:.4g} kN"
+        reached, load = least.greatest_acceleration_g, f"{three_figures((least.greatest_load_N or 0.0) / 1e3)} kN"
         if reached is not None and not self.stones:
             peaks = least.peak_load_N is not None
             if self.verification is not None and self.verification.decides:

@@ -29,6 +29,13 @@ Thrust = Validity(
     "One admissible thrust line proves that the structure stands. The actual thrust line is indeterminate: it depends on "
     "settlements and on the history of construction.",
 )
+ThrustNetwork = Validity(
+    "The weight is carried by compression along the branches of one form diagram in plan. The branches meet at nodes "
+    "within the thickness of the masonry. Stone does not crush, and joints do not slide.",
+    "A network within the masonry proves that the structure can stand if joints do not slide. Another diagram may give "
+    "a greater safety factor, less or greater thrust, and a greater horizontal load. Horizontal loads act at the "
+    "nodes, not at the centroids of the blocks. Without a network nothing is proved.",
+)
 Sweep = Validity(
     "Limit analysis gives the capacity at each value of one key; all other keys keep their values.",
     "Between two calculated values the capacity is not known. The limits of limit analysis apply to each value.",

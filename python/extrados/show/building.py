@@ -67,7 +67,9 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
         sheet.dimension(foot[0], foot[1], words.number(depth), -LINE)
         sheet.finish(words, _titled(deck), blocks)
         saved = style.save(fig, folder, NAME)
-    told = "; ".join(f"{name_of(words, row['name'])}: {words.number(row['length_m'])} m" for row in rows)
+    told = (" ; " if words.code == "fr" else "; ").join(
+        words.pair(name_of(words, row["name"]), f"{words.number(row['length_m'])} m") for row in rows
+    )
     told = f" {told[:1].upper()}{told[1:]}." if told else ""
     views = words(
         "The building: section, cross-section and elevation at scale 1:{scale} on A4."
@@ -150,6 +152,14 @@ def name_of(words: Language, name: str) -> str:
     if part in PARTS:
         return f"{words(what)}{words(PARTS[part], number=number)}"
     return f"{words(what)}{words(' of {part}', part=where)}" if of else words(name)
+
+
+def joint_of(words: Language, name: str) -> str:
+    """The name of a joint: "a on b" by the names of its two blocks."""
+    a, on, b = name.partition(" on ")
+    if not on:
+        return name
+    return words("{a} on the ground", a=a) if b == "the ground" else words("{a} on {b}", a=a, b=b)
 
 
 #: Numbered parts whose dimensions have names
@@ -278,9 +288,9 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
         sheet.finish(words, _titled(deck))
         saved = style.save(fig, folder, NAME)
     *first, last = [words.number(h) for h in structure["storeys"]]
-    heights = f"{words('Storeys, from the ground up')}: {', '.join([*first, last])} m" if first else f"{words('Storey')}: {last} m"
+    heights = words.pair(words("Storeys, from the ground up" if first else "Storey"), f"{', '.join([*first, last])} m")
     told = words("for each wall the length of its middle plane and its thicknesses, that of the lowest storey first")
-    found = [(saved, f"{words('Plan of the building')}: {told}. {heights}.")]
+    found = [(saved, f"{words.pair(words('Plan of the building'), told)}. {heights}.")]
     faces = elevation.wall_views(walls, storeys, words)
     with style.canvas() as fig:
         sheet = Sheet(fig, faces)

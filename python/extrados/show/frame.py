@@ -20,6 +20,8 @@ COLOURS = ("#e8e2d4", "#cfe3d6", "#f2c28b", "#e08b5a", "#e0342b", "#5b1136")
 WORDS = ("elastic", "cracked", "flexural strength", "shear strength", "drift limit in flexure", "drift limit in shear")
 #: Drifts beyond it are those of a collapsed frame, without meaning [%]
 LARGEST_DRIFT = 5.0
+#: Walls of which the acceleration out of plane is drawn, at most
+MOST_WALLS = 20
 #: Storeys whose plans are drawn, at most
 MOST_PLANS = 3
 #: Modes that are drawn, at most, and the colours of their levels
@@ -69,6 +71,8 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             f"at a loss of 20 % of the base shear or when all piers of a wall in one storey reach their drift limits.",
         )
     )
+    if r.walls_out_of_plane:
+        made.append(_out_of_plane(r, name, folder))
     weakest = [min((row.peak_base_shear_N, k) for k, row in enumerate(r.runs, 1) if row.direction_deg == angle) for angle in angles]
     for (_, number), angle in sorted(zip(weakest, angles, strict=True)):
         row = r.runs[number - 1]
@@ -76,6 +80,29 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
         told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"
         made.append(_walls(run, name, folder, state[-1], f"{angle:g}", told))
     return made
+
+
+def _out_of_plane(r: FramePushover, name: str, folder: Path) -> tuple[str, str]:
+    """Greatest accelerations of the walls out of their planes, beside those of rigid bodies and the base shear of the frame."""
+    walls = (r.walls_out_of_plane or [])[:MOST_WALLS]
+    places = np.arange(len(walls))
+    with style.figure(6.5, 1.6 + 0.28 * len(walls)) as (fig, (ax,)):
+        ax.barh(places, [w.acceleration_g for w in walls], 0.6, color=style.STONE, edgecolor=style.EDGE, label="with deflection")
+        rigid = [(w.rigid_acceleration_g, k) for k, w in enumerate(walls) if w.rigid_acceleration_g is not None]
+        if rigid:
+            ax.plot(*zip(*rigid, strict=True), "|", color=style.HINGE, markersize=12, markeredgewidth=2, label="rigid mechanism")
+        ax.axvline(r.base_shear_N / r.weight_N, color=style.THRUST, linewidth=1.0, label="base shear of the frame / weight")
+        for k, w in enumerate(walls):
+            ax.annotate(f"{1e3 * w.deflection_m:.3g} mm", (0.0, k), (4, 0), textcoords="offset points", va="center", fontsize=7)
+        ax.set_yticks(places, [w.wall for w in walls])
+        ax.invert_yaxis()
+        ax.margins(x=0.15)
+        ax.set_xlim(left=0.0)
+        ax.grid(visible=False, axis="y")
+        ax.set_xlabel("constant acceleration across the plane of the wall [g]")
+        style.legend_below(fig, ax)
+        saved = style.save(fig, folder, f"{name}-out-of-plane")
+    return saved, "Walls out of their planes: greatest constant acceleration, and the deflection at this acceleration."
 
 
 def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:

@@ -16,7 +16,7 @@ TEMPLATE = """<!doctype html>
 body{font:15px/1.5 Georgia,serif;hyphens:manual;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}
 h1,h2,h3{color:{{ document.colour }}}h1{font-size:1.6rem}h2{font-size:1.25rem;border-bottom:1px solid #ccc;margin-top:2.2rem}h3{font-size:1.05rem;margin-top:1.6rem}
 p{white-space:pre-line}
-p.answer{background:#f6f2ea;border-left:4px solid #b3261e;padding:.7rem 1rem}
+p.answer{background:#f6f2ea;border-left:4px solid #8c7f66;padding:.7rem 1rem}
 p.bad{background:#fbe9e7;border-left:4px solid #b3261e;padding:.7rem 1rem}
 p.warn{background:#fff7e0;border-left:4px solid #d9a400;padding:.5rem 1rem}
 figure{margin:1.2rem 0;break-inside:avoid}figure img{max-width:100%}figcaption{font-size:.85rem;color:#555}

@@ -43,6 +43,10 @@ class Language:
         told = self.catalogue.get(text) or text
         return told.format(**fields) if fields else told
 
+    def pair(self, label: str, text: str) -> str:
+        """A label and its text: French has a space before the colon, at which no line ends."""
+        return f"{label}\u00a0: {text}" if self.code == "fr" else f"{label}: {text}"
+
     def has(self, text: str) -> bool:
         """Whether the catalogue of this language contains the text."""
         return self.code == "en" or bool(self.catalogue.get(text))

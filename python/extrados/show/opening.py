@@ -22,6 +22,7 @@ WALLS = "-walls-"
 TITLES = {
     "tilt": "Collapse acceleration by limit analysis",
     "thrust": "Thrust lines",
+    "thrust-network": "Thrust network",
     "sweep": "Variation of one value",
     "survey": "Survey of sections",
     "imperfections": "Uncertainty of the survey",

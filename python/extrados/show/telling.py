@@ -17,7 +17,7 @@ from extrados.results.store import STORE, SUMMARY, Stored
 from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
 from extrados.results.verdict import outcome_words
-from extrados.show.building import heading, name_of
+from extrados.show.building import ELEVATION, heading, joint_of, name_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 from extrados.show.language import Language
 from extrados.show.opening import governing_figure, opening, title_of
@@ -309,7 +309,10 @@ def _building(run: Stored, deck: dict[str, Any], drawings: Figures, words: Langu
     used = {key for a in run.analyses for key in a["assumptions"]}
     rows = [p for p in deck.get("properties", []) if p["table"] != "motion" and _counts(p, used)]
     found: list[Block] = [Heading(words("Building"))] if rows or drawings or deck.get("dimensions") else []
-    found += [Figure(f"figures/{name}", caption) for name, caption in drawings]
+    # The section often fills a page: the front before it fills the page of the contents.
+    plan = (deck["resolved"].get("structure") or {}).get("kind") == "building"
+    ahead = [] if plan else [d for d in drawings if d[0] == ELEVATION]
+    found += [Figure(f"figures/{name}", caption) for name, caption in [*ahead, *(d for d in drawings if d not in ahead)]]
     if deck.get("dimensions"):
         sizes = [(name_of(words, d["name"]), words.quantity(d["length_m"], "m")) for d in deck["dimensions"]]
         found.append(Table(_heads(words, "dimension", "length"), sizes, (3.0, 1.0)))
@@ -346,9 +349,8 @@ def label_of(words: Language, table: str, key: str) -> str:
     for part in table.split(".")[1:]:
         name, _, number = part.partition(" ")
         parts.append(f"{words(name.replace('_', ' '))} {number}".strip())
-    before = f"{' '.join(parts)}: " if parts else ""
-    label = LABELS.get(key) if words.code == "en" else None
-    return f"{before}{label or words(key.replace('_', ' '))}"
+    label = (LABELS.get(key) if words.code == "en" else None) or words(key.replace("_", " "))
+    return words.pair(" ".join(parts), label) if parts else label
 
 
 def _properties(rows: list[dict[str, Any]], words: Language) -> Table:
@@ -400,12 +402,12 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language)
     folder = f"{Path(deck['path']).parent}/"
     found: list[Block] = [Heading(title_of(words, a["name"], a["kind"]))]
     if how:
-        found.append(Words(f"{words('Settings')}: {how}."))
+        found.append(Words(f"{words.pair(words('Settings'), how)}."))
     if a["status"] != "ok":
         found.append(Words(f"{a['status']}: {a['reason']}", "bad", foreign))
     if a["answer"] and a["kind"] != "assess":
         found.append(Words(_engineering(a["answer"]), "answer", foreign))
-    found += [Words(f"{words('Warning')}: {_without_keys(w.replace(folder, ''), keys)}", "warn", foreign) for w in a["warnings"]]
+    found += [Words(words.pair(words("Warning"), _without_keys(w.replace(folder, ""), keys)), "warn", foreign) for w in a["warnings"]]
     found += [Figure(f"figures/{name}", caption) for name, caption in figures]
     found += _stresses(run, a, words)
     found += [table for kind, name, table in _own_tables(run, words) if name == a["name"]]
@@ -446,7 +448,7 @@ def _stresses(run: Stored, a: dict[str, Any], words: Language) -> list[Block]:
         long = float(np.hypot(*(q[j] - p[j])))
         rows.append(
             (
-                name,
+                joint_of(words, name),
                 place,
                 words.quantity(long, "m"),
                 words.quantity(float(normal[j]), "N"),

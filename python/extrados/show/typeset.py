@@ -15,7 +15,8 @@ LARGEST = 1_500_000
 TALLEST = 1.1
 #: Marks after which a long key, path or list may break: between letters or names of files, not within a number
 BREAKS = re.compile(r"(?<=[A-Za-z]{2})[_.](?=[A-Za-z]{3})|(?<=[A-Za-z])/(?=\w)")
-#: The space before a unit
+#: The slash within a unit, and the space before a unit
+SLASH = re.compile(r"(?<![\w/])(k?N|k?g|t)/(?=m)")
 UNIT = re.compile(r"(?<=\d) (?=(?:%|k?N|kN/m|[kM]Pa|m?m|k?g|s)(?![\w]))")
 COLOURS = {
     "stands": "#3b7a57",
@@ -27,7 +28,7 @@ COLOURS = {
     "fails": "#b3261e",
     "open": "#a86400",
 }
-BOXES = {"answer": ("#f6f2ea", "#b3261e"), "bad": ("#fbe9e7", "#b3261e"), "warn": ("#fff7e0", "#d9a400")}
+BOXES = {"answer": ("#f6f2ea", "#8c7f66"), "bad": ("#fbe9e7", "#b3261e"), "warn": ("#fff7e0", "#d9a400")}
 
 HEAD = """#set document(title: {title}, date: none)
 #set page(paper: "a4", margin: (x: 20mm, top: 20mm, bottom: 22mm), numbering: "1 / 1", footer: context [
@@ -46,12 +47,12 @@ HEAD = """#set document(title: {title}, date: none)
 #show table: set par(leading: 0.45em)
 #show figure.caption: set text(8.5pt)
 #set figure(supplement: {figure}, placement: none)
-#let box-of(fill, line, body) = block(width: 100%, fill: rgb(fill), stroke: (left: 3pt + rgb(line)), inset: 8pt, breakable: true, body)
+#let box-of(fill, line, long, body) = block(width: 100%, fill: rgb(fill), stroke: (left: 3pt + rgb(line)), inset: 8pt, breakable: long, body)
 """
 #: Width of the text [mm], of a letter in a table and of what stands beside the letters of a cell
 PAGE, LETTER, BESIDE = 170.0, 1.55, 2.4
-#: Rows of a table that is kept on one page
-KEPT = 8
+#: Rows of a table, and characters of a paragraph in a box, that are kept on one page
+KEPT, SHORT = 8, 1500
 
 
 def available() -> bool:
@@ -70,8 +71,8 @@ def text_of(value: str) -> str:
 
 
 def _kept(value: str) -> str:
-    """Text whose lines do not part a number from its unit, or the sign of a direction from its axis."""
-    return re.sub(r"(?<![\w-])-(?=[xyz]\b)", "−", UNIT.sub("\u00a0", value))
+    """Text whose lines do not part a number from its unit, a unit, or the sign of a direction from its axis."""
+    return re.sub(r"(?<![\w-])-(?=[xyz]\b)", "−", UNIT.sub("\u00a0", SLASH.sub("\\1/\u2060", value)))
 
 
 def _words(value: str) -> str:
@@ -140,7 +141,7 @@ def _paragraph(block: Words) -> str:
         body = f"text(lang: {text_of(block.lang)}, {body})"
     if block.look in BOXES:
         fill, line = BOXES[block.look]
-        return f"#box-of({text_of(fill)}, {text_of(line)}, {body})"
+        return f"#box-of({text_of(fill)}, {text_of(line)}, {'true' if len(block.text) > SHORT else 'false'}, {body})"
     return f"#par({body})"
 
 

@@ -33,6 +33,7 @@ from extrados.results.limit import DILATANT, SAME
 from extrados.results.model import Array, Result, TableData
 from extrados.results.verdict import Bound
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import three_figures
 from extrados.schema.table import FloorBelow, storeys_in
 from extrados.views.building import Building
 from extrados.views.rockers.mechanism import MechanismModel, NoMotion
@@ -294,9 +295,9 @@ def _result(judged: _Judged) -> Result:
     d0 = found.d0
     limit = "" if d0 is None else f", and becomes zero at d_0* = {d0:.3g} m"
     result.answer = (
-        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}. Of the kinematic chain of "
-        f"{found.weight / 1e3:.4g} kN, {100 * found.part:.3g} % participate (M* = {found.mass:.4g} kg). The acceleration "
-        f"a_0* is {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. {r.overall().statement}"
+        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.3g}. Of the kinematic chain of "
+        f"{three_figures(found.weight / 1e3)} kN, {100 * found.part:.3g} % participate (M* = {three_figures(found.mass)} kg). The acceleration "
+        f"a_0* is {r.activation_acceleration_g:.3g} g with FC {fc:g}{limit}. {r.overall().statement}"
     )
     return result
 
@@ -399,7 +400,7 @@ def _weaker(context: Context, options: LocalMechanism, side: int, turning: float
         why, without = "Blocks crush at the hinges", "crushing"
         found = replace(found, words=f"{found.words}, which crushes,")
     context.warnings.append(
-        f"{why} before the rigid-body mechanism starts (multiplier {turning:.4g} without {without}). The displacement "
+        f"{why} before the rigid-body mechanism starts (multiplier {turning:.3g} without {without}). The displacement "
         "capacity is therefore not known."
     )
     return found
@@ -441,8 +442,8 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
                 associated = None
             else:
                 context.warnings.append(
-                    f"Joints slide: the multiplier lies between {least:.4g} (lowest value found without dilatancy) and "
-                    f"{multiplier:.4g} ({DILATANT}). The checks use the lower value."
+                    f"Joints slide: the multiplier lies between {least:.3g} (lowest value found without dilatancy) and "
+                    f"{multiplier:.3g} ({DILATANT}). The checks use the lower value."
                 )
     return _Turning(
         found,

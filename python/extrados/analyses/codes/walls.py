@@ -36,9 +36,9 @@ class WallPart:
 
 
 @dataclass
-class _Actions:
-    """Of each wall and storey: load [N] on its top, the part of it that rests on the gable, thrust (2) [N] there; and whether a floor
-    or a prop restrains the top, and a rigid roof the gable."""
+class FloorActions:
+    """What floors and props do to walls. Of each wall and storey: load [N] on its top, the part of it that rests on the gable, thrust
+    (2) [N] there; and whether a floor or a prop restrains the top, and a rigid roof the gable."""
 
     loads: dict[tuple[str, int], float]
     on_gable: dict[str, float]
@@ -56,7 +56,7 @@ def wall_parts(building: Building) -> list[WallPart]:
     """
     plan = building.structure
     assert isinstance(plan, Plan)
-    actions = _floors(plan)
+    actions = floor_actions(plan)
     parts = []
     for wall in plan.walls:
         first, last = plan.reach(wall)
@@ -73,9 +73,9 @@ def wall_parts(building: Building) -> list[WallPart]:
     return parts
 
 
-def _floors(plan: Plan) -> _Actions:
+def floor_actions(plan: Plan) -> FloorActions:
     """What floors and props do to each wall; BadGeometry if a floor names a wall that is not adjacent to it."""
-    found = _Actions(defaultdict(float), defaultdict(float), defaultdict(lambda: np.zeros(2)), defaultdict(set), set())
+    found = FloorActions(defaultdict(float), defaultdict(float), defaultdict(lambda: np.zeros(2)), defaultdict(set), set())
     for k, floor in enumerate(plan.floors):
         with blaming("floors", k):
             ring = plan.around(floor)
@@ -100,7 +100,7 @@ def _floors(plan: Plan) -> _Actions:
     return found
 
 
-def _material(building: Building, plan: Plan, wall: PlanWall, storey: int) -> Material:
+def material_of(building: Building, plan: Plan, wall: PlanWall, storey: int) -> Material:
     """The material of a wall in a storey; BadGeometry if the deck has no table of that name."""
     name = plan.material_of(wall, storey)
     if name is not None and name not in building.materials:
@@ -114,16 +114,16 @@ def _masonry(building: Building, plan: Plan, wall: PlanWall, storey: int) -> lis
     foot = float(plan.levels[storey - 1])
     found = []
     for k in range(storey, last + 1):
-        unit = _material(building, plan, wall, k).density * plan.thickness_of(wall, k)
+        unit = material_of(building, plan, wall, k).density * plan.thickness_of(wall, k)
         floor = float(plan.levels[k - 1]) - foot
         found += [(unit * length * (high - low), floor + 0.5 * (low + high)) for length, low, high in plan.strips(wall, k)]
     if wall.gable is not None:
-        unit = _material(building, plan, wall, last).density * plan.thickness_of(wall, last)
+        unit = material_of(building, plan, wall, last).density * plan.thickness_of(wall, last)
         found.append((0.5 * unit * wall.length * wall.gable.rise, float(plan.levels[last]) - foot + wall.gable.rise / 3.0))
     return found
 
 
-def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, actions: _Actions) -> WallPart:
+def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, actions: FloorActions) -> WallPart:
     """The part of a wall above the foot of a storey; of the storey above its highest, its gable."""
     last = plan.reach(wall)[1]
     base = min(storey, last)
@@ -153,7 +153,7 @@ def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, actions: 
         weights += [Weight(p.force, arm, top, sways=False) for p in plan.prestress if p.wall == wall.name and (p.level or last) == k]
         thrust = abs(float(actions.thrusts.get((wall.name, k), np.zeros(2)) @ normal))
         pushes += [Push(thrust, top)] if thrust > 0.0 else []
-    strength = _material(building, plan, wall, base).compressive_strength
+    strength = material_of(building, plan, wall, base).compressive_strength
     if strength is not None:
         weights = set_back(weights, strength, sole, 2.0 * arm)
     return WallPart(wall.name, storey, foot, Overturning(tuple(weights), tuple(pushes)), storey > last)

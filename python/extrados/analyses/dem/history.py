@@ -48,8 +48,8 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
     seen = Seen.of(model, found, options.floor is not None)
     result = begun_result(context, found)
 
-    def outcome_of(one: dem.Run) -> str:
-        return Seen.of(model, one, options.floor is not None).fate(trial.collapse).outcome
+    def look(one: dem.Run) -> Seen:
+        return Seen.of(model, one, options.floor is not None)
 
     def job_of(factor: float) -> Runs:
         return trial.job([model.values], factor, output_step=step)
@@ -61,7 +61,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         found,
         model.rigid.count,
         trial.collapse,
-        outcome_of,
+        look,
         result,
         f"{name}-perturbed",
     )

@@ -9,6 +9,7 @@ from extrados.analyses.chaos import CHAOTIC, NUDGE, growth, perturbed, turning, 
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
 from extrados.analyses.dem.job import Runs, SolidRuns, answered
+from extrados.analyses.dem.seen import BlocksSeen
 from extrados.core import dem, dem3
 from extrados.results.model import Result
 
@@ -38,12 +39,16 @@ def probe_chaos(
     found: dem.Run | dem3.Run,
     count: int,
     collapse: measures.Collapse,
-    outcome_of: Callable[[Any], str],
+    look: Callable[[Any], BlocksSeen],
     result: Result,
     name: str = "dem-perturbed",
 ) -> dict[str, Any]:
     """Results on chaos of a run of `count` bodies. job_of: the run under the motion times a factor, None where it is not wanted;
-    idle: nothing moves the building; outcome_of: of a run; name: of what is kept of it. An interruption is told in `result`."""
+    idle: nothing moves the building; look: what is read off a run; name: of what is kept of it. An interruption is told in `result`."""
+
+    def outcome_of(run: Any) -> str:
+        return look(run).fate(collapse).outcome
+
     if idle:
         return chaos_of(outcome_of(found), 0.0, 0.0)
     unknown: dict[str, Any] = {"decided_by_last_digits": False, "perturbation_growth": None, "perturbed_outcome": None, "violated": []}
@@ -52,7 +57,10 @@ def probe_chaos(
     outcome, limit = outcome_of(found), collapse.displacement
 
     def grown(run: Any) -> float:
-        return growth([measures.shares(one, count, limit) for one in (found, run)])
+        # until one of them has collapsed, by the measure of the outcome
+        gone = [collapse.reached(*look(one).moved).any(axis=1) for one in (found, run)]
+        until = min(int(one.argmax()) if one.any() else len(one) for one in gone)
+        return growth([measures.shares(one, count, limit) for one in (found, run)], until)
 
     try:
         (first,) = answered(context, name, job_of(FACTOR), "perturbed motion")

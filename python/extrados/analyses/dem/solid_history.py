@@ -67,10 +67,10 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     seen = solid_measures.look(model, found, options.floor is not None)
     result = begun_result(context, found)
 
-    def outcome_of(one: dem3.Run) -> str:
-        return solid_measures.look(model, one, options.floor is not None).fate(collapse).outcome
+    def look(one: dem3.Run) -> solid_measures.SolidsSeen:
+        return solid_measures.look(model, one, options.floor is not None)
 
-    chaos = probe_chaos(context, job_of if options.perturbed else None, idle, found, model.count, collapse, outcome_of, result)
+    chaos = probe_chaos(context, job_of if options.perturbed else None, idle, found, model.count, collapse, look, result)
     numbers = _numbers(options, seen, collapse) | chaos
     result.results = r = SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
     _store(options, seen, ground, result)

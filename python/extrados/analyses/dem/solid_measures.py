@@ -82,8 +82,9 @@ def displacements(model: SolidModel, run: dem3.Run) -> np.ndarray:
 
 
 def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Opening, slip (time, contact) [m] and state of the contacts, from the settled state."""
-    one = model.assembly
+    """Opening, slip (time, contact) [m] and state of the contacts, from the settled state; a gap is open, and a slip leaves the contact,
+    by its least width."""
+    one, width = model.assembly, widths(model)
     shape = (len(run.time), len(one.a))
     opening, slip, state = np.zeros(shape), np.zeros(shape), np.full(shape, CLOSED)
     for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
@@ -98,8 +99,8 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
         nearest = gap.argmin(axis=1)
         opening[:, j] = np.maximum(gap.max(axis=1, initial=0.0), 0.0)
         slip[:, j] = along[np.arange(len(along)), nearest]
-        small, width = OPEN * np.sqrt(one.area[j]), np.sqrt(one.area[j])
-        gone = (gap > small).all(axis=1) | ((GROUND not in (a, b)) & (slip[:, j] > width))
+        small = OPEN * width[j]
+        gone = (gap > small).all(axis=1) | ((GROUND not in (a, b)) & (slip[:, j] > width[j]))
         state[:, j] = np.where(gone, APART, np.where((gap > small).any(axis=1), ROCKS, CLOSED))
     return opening, slip, state
 

@@ -60,7 +60,7 @@ def _openings(model: SolidModel, run: dem3.Run) -> list[str]:
     """Names of the contacts that gape or slide as it begins to go, the widest first."""
     at = _begun(model, run)
     opening, slip, _ = solid_measures.contacts(model, run)
-    width = np.sqrt(model.assembly.area)
+    width = solid_measures.widths(model)
     amiss = np.maximum(opening[at] / (measures.OPEN * width), slip[at] / (measures.SLIDES * width))
     order = np.argsort(-amiss, kind="stable")
     return [model.assembly.joint_names[j] for j in order[amiss[order] > 1.0][:20].tolist()]

@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.codes.kinematics import NoMechanism
 from extrados.analyses.codes.verification import confidence_factor
+from extrados.analyses.codes.walls import wall_parts
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.frame.deflected import deflected_walls
 from extrados.analyses.frame.drawn import drawn_arrays
 from extrados.analyses.frame.modes import Mode, modes_of, rest_of, way_of
 from extrados.analyses.frame.tables import FramePushover
@@ -117,6 +120,7 @@ def run(context: Context, options: FramePushover) -> Result:
         piers=frame.piers,
         spandrels=frame.spandrels,
         **_ring_beams(frame, paths),
+        **_deflected(context, options),
         walls=[wall.name for wall in frame.plan.walls],
         remarks=frame.remarks + frame.weaknesses,
     )
@@ -265,6 +269,17 @@ def _ring_beams(frame: EquivalentFrame, paths: Sequence[Path]) -> dict[str, Any]
     return {"ring_beam_moment_Nm": max(float(np.abs(p.force[: int(p.multiple.argmax()) + 1, own, 1:]).max()) for p in paths)}
 
 
+def _deflected(context: Context, options: FramePushover) -> dict[str, Any]:
+    """Every wall out of its plane, with its deflection, if the deck does not exclude it."""
+    if not options.deflected_walls:
+        return {}
+    try:
+        parts = wall_parts(context.building)
+    except NoMechanism:  # floors hold every wall
+        parts = []
+    return {"walls_out_of_plane": deflected_walls(context.building, options.frame, parts)}
+
+
 def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> None:
     """What figures need: walls and elements once; of each run the states of its elements."""
     result.arrays.update(drawn_arrays(frame))
@@ -306,6 +321,8 @@ def _answer(r: out.FramePushover) -> str:
             f" The first element beyond its drift limit is {first.element}, in {first.mode}, at "
             f"{1e3 * first.control_displacement_m:.3g} mm."
         )
+    if r.walls_out_of_plane:
+        text += f" {r.weakest_wall()}"
     lost = [f"{row.name} ({row.lost_at})" if row.lost_at else row.name for row in r.runs if row.stop.startswith("no equilibrium")]
     if lost:
         text += f" These runs ended without equilibrium at the least step: {', '.join(lost)}."

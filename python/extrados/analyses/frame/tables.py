@@ -98,6 +98,12 @@ class FramePushover(FrameAnalysis):
         "with a seismic action: check every wall, above the foot of each storey, for out-of-plane failure by "
         "`local-mechanism`. The floor spectrum uses the period of the frame",
     )
+    deflected_walls: bool = key(
+        True,
+        "calculate the greatest constant acceleration that every wall carries out of its plane, with cracking, crushing and the "
+        "second-order effect of its deflection between rigid floors",
+        source="after Vanin, Penna and Beyer 2020",
+    )
     control_level: int | None = key(
         None,
         "number of the control storey: the control displacement is the mean displacement, weighted by the masses, at the top "

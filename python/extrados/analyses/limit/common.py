@@ -27,6 +27,7 @@ from extrados.model.structures.blocks import Blocks
 from extrados.results.fields import Keys
 from extrados.results.limit import Hinge, Reaction, Side, TieForce
 from extrados.results.model import Array
+from extrados.schema.quantities import three_figures
 from extrados.views.building import Building
 
 #: Length over which a point load on earth presses [m]
@@ -253,7 +254,9 @@ def spoken_ties(rows: list[TieForce] | None) -> str:
         return ""
     words = {"yields": "{name} yields at {force}", "slack": "{name} is slack", "carries": "{name} carries {force}"}
     told = [
-        words[r.state].format(name=r.name, force=f"{abs(r.force_N) / 1e3:.4g} kN in {'tension' if r.force_N > 0.0 else 'compression'}")
+        words[r.state].format(
+            name=r.name, force=f"{three_figures(abs(r.force_N) / 1e3)} kN in {'tension' if r.force_N > 0.0 else 'compression'}"
+        )
         for r in rows[:MOST_TIES]
     ]
     text = ", ".join(told) + (f" and {len(rows) - MOST_TIES} more" if len(rows) > MOST_TIES else "")

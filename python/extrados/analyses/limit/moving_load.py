@@ -41,6 +41,7 @@ from extrados.results import limit as out
 from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import three_figures
 from extrados.views.building import Building
 
 #: Times that the intervals beside the least factors are halved, and factors over the least beside which they are
@@ -545,19 +546,19 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
     """The result in words; what: the chain or the structure that the load crosses."""
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
-        factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
+        factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.3g}"
         text = (
             f"{what[:1].upper()}{what[1:]} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
-            f"the most dangerous place, with {where}{heading}: {r.collapse_load_N / 1e3:.4g} kN are then on the structure."
+            f"the most dangerous place, with {where}{heading}: {three_figures(r.collapse_load_N / 1e3)} kN are then on the structure."
         )
     else:
-        text = f"The least collapse load of {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with {where}."
+        text = f"The least collapse load of {what} is {three_figures(r.collapse_load_kN_per_m)} kN per metre of depth, with {where}."
         if not {"axles", "uniform"} & options.model_fields_set:
             text += " The load is a single axle (default)."
     if r.places_without_limit:
         text += f" At {r.places_without_limit} of {positions} positions no multiple of the load causes collapse."
     if options.force is not None:
-        text += f" The safety factor of the given load of {options.force / 1e3:.4g} kN is {r.safety_factor:.2f}."
+        text += f" The safety factor of the given load of {three_figures(options.force / 1e3)} kN is {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
     if r.permissible_factor is not None:

@@ -17,6 +17,7 @@ from extrados.results.fields import given
 from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import three_figures
 
 MOST_SAID = 4  # sections told in words
 ROUNDING = 1e-9  # of the weight
@@ -155,7 +156,7 @@ def _table(limit: SolidLimit, state: SolidState) -> TableData:
 
 def _spoken(thrust: float, weight: float) -> str:
     """A thrust [N] in words; rounding beside the weight [N] is 0."""
-    return f"{thrust / 1e3 if abs(thrust) > ROUNDING * weight else 0.0:.4g} kN"
+    return f"{three_figures(thrust / 1e3 if abs(thrust) > ROUNDING * weight else 0.0)} kN"
 
 
 def _words(r: out.SolidThrust) -> str:

@@ -21,6 +21,7 @@ from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.chains import in_order, is_stack
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.schema.quantities import three_figures
 
 OPENS = 1e-7  # of the greatest opening: joints that move by less do not
 SMALL = 1e-3  # of the width: how far a support moves unless the deck says
@@ -91,10 +92,10 @@ def run(context: Context, options: MovingSupports) -> Result:
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
         f"The right support {way}: the arch follows on three hinges "
-        f"({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) and collapses at {movement[-1]:.4g} "
+        f"({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) and collapses at {movement[-1]:.3g} "
         f"m({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
-        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {force[0, 0] / 1e3:.4g} "
-        f"to {force[-1, 0] / 1e3:.4g} kN."
+        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} "
+        f"to {three_figures(force[-1, 0] / 1e3)} kN."
     )
     return result
 
@@ -248,7 +249,7 @@ def _opened_in_words(word: str, movement: np.ndarray, opened: list[out.JointOpen
         + (f": {shown}" if shown else "")
         + (f" and {len(wide_open) - 6} more" if len(wide_open) > 6 else "")
         + (f"; {_counted(slid, 'joint')} {'slides' if slid == 1 else 'slide'}" if slid else "")
-        + f". The weight does a work of {work:.4g} J."
+        + f". The weight does a work of {three_figures(work)} J."
     )
 
 

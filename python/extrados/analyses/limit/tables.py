@@ -157,6 +157,26 @@ class Thrust(SpatialLimit):
     )
 
 
+class ThrustNetwork(BuildingAnalysis):
+    """Thrust networks in a vault or dome on a form diagram in plan: least and greatest thrust, safety, horizontal load."""
+
+    kind: Literal["thrust-network"]
+    structures: ClassVar = ("arch", "pointed-arch", "elliptical-arch", "blocks", "dome", "cross-vault")
+    solid: ClassVar = True
+    uses: ClassVar[tuple[str, ...]] = ("material.density",)
+    starter_structure: ClassVar[str] = "dome"
+    starter: ClassVar = {"lines": "5", "meridians": "8"}
+    form: Literal["radial", "grid", "crossed"] | None = key(
+        None,
+        "form diagram in plan. radial: meridians and hoops; grid: lines along x and y; crossed: a grid and both diagonals. "
+        "Default: radial for a dome, crossed for a cross-vault, otherwise grid",
+        source="O'Dwyer 1999; Block and Ochsendorf 2007",
+    )
+    lines: int = key(10, "number of branches along the longer side of the plan, or along a meridian", ge=2, le=60)
+    meridians: int = key(16, "number of meridians of a radial diagram", ge=4, le=90)
+    direction: Angle = key(0.0, "direction of the horizontal load in plan: angle from +x towards +y", ge=-360, le=360)
+
+
 class Sweep(SpatialLimit):
     """One deck key of the structure varied: capacity, mechanism and its changes, the optimum (Figs 3-4, 3-6a, 3-7b)."""
 

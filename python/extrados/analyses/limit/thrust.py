@@ -26,6 +26,7 @@ from extrados.model.geometry.chains import is_stack
 from extrados.results import limit as out
 from extrados.results.fields import Keys, given
 from extrados.results.model import Result, TableData
+from extrados.schema.quantities import three_figures
 
 
 def run(context: Context, options: Thrust) -> Result:
@@ -135,19 +136,19 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
         if central is not None and is_stack(assembly, assembly.chains[r.chain]):  # determinate: all lines are one at its base
             text = (
                 f"At {r.gamma_g:g} g the most central thrust line of the stack (horizontal thrust "
-                f"{central.horizontal_kN_per_m:.4g} kN/m at its base) {needs}."
+                f"{three_figures(central.horizontal_kN_per_m)} kN/m at its base) {needs}."
             )
         else:
             text = (
-                f"At {r.gamma_g:g} g the horizontal thrust of {with_article(r.chain)} lies between {least:.4g} and {most:.4g} kN per metre "
+                f"At {r.gamma_g:g} g the horizontal thrust of {with_article(r.chain)} lies between {three_figures(least)} and {three_figures(most)} kN per metre "
                 f"of depth, at its {'crown' if tied else 'left springing'}"
             )
             if central is not None:
-                text += f"; the most central thrust line ({central.told_kN_per_m(r.depth_m):.4g} kN/m) {needs}"
+                text += f"; the most central thrust line ({three_figures(central.told_kN_per_m(r.depth_m))} kN/m) {needs}"
             text += "."
             if tied:
                 shown = central or r.least
-                text += f" Of this thrust, {shown.horizontal_kN_per_m:.4g} kN/m act at the left springing, and the ties carry the rest."
+                text += f" Of this thrust, {three_figures(shown.horizontal_kN_per_m)} kN/m act at the left springing, and the ties carry the rest."
     low, high = r.admissible_interval_g
     shown = central or r.least
     text += spoken_ties(None if shown is None else shown.ties)

@@ -4,8 +4,9 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking import arch as arch_rocking
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
+from extrados.analyses.rocking import pair_contacts
 from extrados.analyses.rocking import soft_base as soft_base_rocking
-from extrados.analyses.rocking import stack_contacts
+from extrados.analyses.rocking import stack as stack_rocking
 from extrados.analyses.rocking.common import with_moving_supports
 from extrados.analyses.rocking.shapes import film_arrays, on_contacts
 from extrados.analyses.rocking.tables import Rocking
@@ -21,9 +22,9 @@ def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
     context = with_moving_supports(context)
     if rocks_as_stack(context.building):
-        return _with_friction(context, stack_contacts.run(context, options))
+        return _with_friction(context, pair_contacts.run(context, options, stack_rocking.run, stack_rocking.SETTLE))
     if context.building.supports.stiffness is not None:
-        return _with_friction(context, soft_base_rocking.run(context, options))
+        return _with_friction(context, pair_contacts.run(context, options, soft_base_rocking.run, soft_base_rocking.SETTLE))
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: arch_rocking.run}
     result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)

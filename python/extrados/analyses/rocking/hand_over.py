@@ -4,9 +4,9 @@ The mechanism is right up to the moment at which a condition fails. There the pl
 contacts without springs (Moreau 1988), which open and slide wherever the state requires it, under the rest of the motion.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground
 from extrados.core.restraints import LENGTH
 from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, ensemble, history
+from extrados.core.soft_base import SoftBaseResponse, soft_base_history, soft_base_start
 from extrados.core.stack import StackResponse, stack_history
 from extrados.limit.linkage import Linkage
 from extrados.model.errors import BadGeometry
@@ -36,8 +37,10 @@ from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results.dem import DemRun
 from extrados.results.model import Array, Result
 from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, SLID, WholeOutcome
+from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 from extrados.views.rockers.rocker import Rocker
+from extrados.views.rockers.soft_base import SoftBaseModel
 from extrados.views.rockers.stack import StackModel
 from extrados.views.rockers.watch import LOST
 
@@ -49,10 +52,14 @@ COARSE = 0.02
 #: one up to which a recovery is accepted at this step. In 258 motions of one cycle the least rotations of wrong recoveries were 0.72, 1.1,
 #: 2.4 and 2.8. Coarse steps lose more energy, but may also err to a collapse: it is accepted only if the next step collapses too.
 STEPS = ((0.04, 0.4), (0.02, 0.7), (0.01, 1.2), (0.005, 1.8), (0.0, np.inf))
+#: Share of the energy barrier below which blocks recover after the motion, in maps and ensembles
+SAFE = 0.1
 #: Blocks have collapsed beyond a fifth of the size, and so many times as far as at the critical rotation, from which they may recover
 FALLEN, BEYOND = 0.2, 1.5
 #: Rotation from which a block at the end of a run has overturned, where no critical rotation exceeds it [rad]
 LIES = 0.25 * np.pi
+#: Shear stiffness of the springs under edges, which do not slide in the mechanism, over their normal stiffness
+SHEAR = 10.0
 #: Heights of joints on the ground that differ by no more than this share of the size are one level
 LEVEL = 1e-6
 #: Outcome of `rocking` for one of contacts
@@ -122,14 +129,13 @@ class Leaving:
         return max(self.limits)
 
     @property
-    def reach(self) -> float:
-        """Greatest displacement of the centre of a block at the critical rotations [m]."""
-        n, found = len(self.blocks.mass), 0.0
+    def unstable(self) -> np.ndarray:
+        """Displacements (sides, blocks, 2) of the centres at the critical rotations [m]."""
+        n, found = len(self.blocks.mass), []
         for one, limit in zip(self.linkages, self.limits, strict=True):
             place = core_mechanism.follow(one, [limit * (1.0 - 1e-9)])[0]  # it may lock at the critical rotation itself
-            away = one.blocks(self.blocks, place)[0, :n, :2] - self.blocks.centroid
-            found = max(found, float(np.hypot(*away.T).max()))
-        return found
+            found.append(one.blocks(self.blocks, place)[0, :n, :2] - self.blocks.centroid)
+        return np.array(found)
 
     def respond(self, ground: Ground, end_time: float, step: float, scale: float = 1.0) -> Response:
         """The response of the mechanism."""
@@ -174,14 +180,42 @@ class Leaving:
 
 
 @dataclass(frozen=True)
-class StackLeaving:
-    """Two stacked blocks until a joint slides or parts as a whole; see Leaving."""
+class PairLeaving:
+    """A structure of two coordinates until a condition fails; see Leaving."""
 
     body: Body
-    pair: StackModel
     start: float
     time_unit: float
-    tolerance: float = 1e-8
+    tolerance: float = field(default=1e-8, kw_only=True)
+
+    def leave(self, ground: Ground, end_time: float, scale: float) -> Left:
+        """When and how a run leaves the assumption that joints neither slide nor part as a whole."""
+        one = np.zeros(1, dtype=int)
+        options = {"start_rotation": self.start, "tolerance": self.tolerance, "stop_when_safe": False}
+        found = ensemble([self.body], [ground], one, one, [scale], end_time, **options, threads=1)
+        if found.interrupted:
+            raise Cancelled(status_code("cancelled"), "rocking in two coordinates interrupted")
+        outcome = int(found.outcome[0])
+        if outcome == FAILED:
+            return Left(None, False, outcome, 0.0, 0.0)
+        time = _first([float(found.joints.slips_at[0]), float(found.joints.leaves_at[0])], self.time_unit)
+        rocks = bool(self.start) or (bool(time) and self.rocked(ground, time or 0.0, scale))
+        return Left(time, rocks, outcome, float(found.peak[0]), float(found.peak_ratio[0]))
+
+    def plastic(self, _ground: Ground, _time: float, _scale: float) -> np.ndarray:
+        """See Leaving: nothing holds it."""
+        return np.zeros(0)
+
+    def rocked(self, ground: Ground, time: float, scale: float) -> bool:
+        """Whether it rocks up to a time [s] above zero."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class StackLeaving(PairLeaving):
+    """Two stacked blocks until a joint slides or parts as a whole; see Leaving."""
+
+    pair: StackModel
 
     @property
     def blocks(self) -> Assembly:
@@ -194,28 +228,11 @@ class StackLeaving:
         return max(self.pair.whole[0], self.pair.alone[0])
 
     @property
-    def reach(self) -> float:
+    def unstable(self) -> np.ndarray:
         """See Leaving: of both blocks as one, and of the upper alone."""
         whole, alone = self.pair.whole[0], self.pair.alone[0]
-        at = self.pair.pose(np.array([[whole, whole], [0.0, alone]]), np.array([[1.0, 0.0], [0.0, 1.0]]))[:, :, :2] - self.blocks.centroid
-        return float(np.hypot(at[..., 0], at[..., 1]).max())
-
-    def leave(self, ground: Ground, end_time: float, scale: float) -> Left:
-        """When and how a run leaves the assumption that joints neither slide nor part as a whole."""
-        one = np.zeros(1, dtype=int)
-        found = ensemble([self.body], [ground], one, one, [scale], end_time, start_rotation=self.start, tolerance=self.tolerance, threads=1)
-        if found.interrupted:
-            raise Cancelled(status_code("cancelled"), "rocking of two blocks interrupted")
-        outcome = int(found.outcome[0])
-        if outcome == FAILED:
-            return Left(None, False, outcome, 0.0, 0.0)
-        time = _first([float(found.joints.slips_at[0]), float(found.joints.leaves_at[0])], self.time_unit)
-        rocks = bool(self.start) or (bool(time) and self._until(ground, time or 0.0, scale).outcome != "no-hinging")
-        return Left(time, rocks, outcome, float(found.peak[0]), float(found.peak_ratio[0]))
-
-    def plastic(self, _ground: Ground, _time: float, _scale: float) -> np.ndarray:
-        """See Leaving: nothing holds them."""
-        return np.zeros(0)
+        pose = self.pair.pose(np.array([[whole, whole], [0.0, alone]]), np.array([[1.0, 0.0], [0.0, 1.0]]))
+        return np.asarray(pose[:, :, :2] - self.blocks.centroid)
 
     def greatest(self, rotation: np.ndarray) -> tuple[float, float]:
         """See Leaving: of the lower block as one with the upper, or of the upper against the lower, as in the core."""
@@ -232,6 +249,10 @@ class StackLeaving:
         start = (self.start, self.start, 0.0, 0.0)
         return stack_history(self.pair.core, ground, time, time, scale=scale, tolerance=self.tolerance, start=start)
 
+    def rocked(self, ground: Ground, time: float, scale: float) -> bool:
+        """See PairLeaving."""
+        return self._until(ground, time, scale).outcome != "no-hinging"
+
     def state(self, ground: Ground, time: float, scale: float, bodies: int) -> tuple[np.ndarray, np.ndarray]:
         """See Leaving."""
         rotation, rate, contacts = np.full(2, self.start), np.zeros(2), np.array([np.sign(self.start), 0.0])
@@ -247,18 +268,87 @@ class StackLeaving:
 
 
 @dataclass(frozen=True)
+class EdgesLeaving(PairLeaving):
+    """A block on springs under its edges until it slides or lifts off as a whole; see Leaving."""
+
+    base: SoftBaseModel
+
+    @property
+    def blocks(self) -> Assembly:
+        """The block."""
+        return self.base.block
+
+    @property
+    def _limits(self) -> np.ndarray:
+        return np.array([self.base.critical(1), self.base.critical(-1)])
+
+    @property
+    def farthest(self) -> float:
+        """See Leaving."""
+        return float(np.abs(self._limits).max())
+
+    @property
+    def unstable(self) -> np.ndarray:
+        """See Leaving."""
+        sunk = np.array([self.base.sinking(float(q)) for q in self._limits])
+        return np.asarray(self.base.pose(self._limits, sunk)[:, :, :2] - self.blocks.centroid)
+
+    def greatest(self, rotation: np.ndarray) -> tuple[float, float]:
+        """See Leaving."""
+        turned = rotation.ravel()
+        peak = float(turned[np.abs(turned).argmax()]) if turned.size else 0.0
+        return peak, peak / float(self._limits[0 if peak >= 0.0 else 1])
+
+    def _until(self, ground: Ground, time: float, scale: float) -> SoftBaseResponse:
+        """The response up to a time [s] above zero."""
+        start = soft_base_start(self.base.core, self.start)
+        return soft_base_history(self.base.core, ground, time, time, scale=scale, tolerance=self.tolerance, start=start)
+
+    def rocked(self, ground: Ground, time: float, scale: float) -> bool:
+        """See PairLeaving."""
+        return self._until(ground, time, scale).outcome != "no-hinging"
+
+    def state(self, ground: Ground, time: float, scale: float, bodies: int) -> tuple[np.ndarray, np.ndarray]:
+        """See Leaving."""
+        reached = np.array(soft_base_start(self.base.core, self.start))
+        if time > 0.0:
+            reached = self._until(ground, time, scale).end
+        shift, speed = np.zeros((2, bodies, 3))
+        shift[0] = self.base.pose(reached[:1], reached[1:2])[0, 0]
+        shift[0, :2] -= self.blocks.centroid[0]
+        speed[0] = self.base.velocity(reached)
+        return shift, speed
+
+
+@dataclass(frozen=True)
 class Contacts:
     """The blocks of a building on rigid contacts, and the mechanism that they leave; floor: height of the level ground on which they
     slide [m], None where they stand on footings."""
 
-    leaving: Leaving | StackLeaving
+    leaving: Leaving | StackLeaving | EdgesLeaving
     model: Model
     floor: float | None
+
+    @property
+    def name(self) -> str:
+        """What follows the blocks, in words."""
+        return "discrete elements on the springs of the base" if isinstance(self.leaving, EdgesLeaving) else "rigid contacts"
 
     @cached_property
     def fallen(self) -> float:
         """Displacement from which a block that also rotates or loses height has collapsed [m]."""
-        return max(FALLEN * self.model.size, BEYOND * self.leaving.reach)
+        return max(FALLEN * self.model.size, BEYOND * float(np.hypot(*np.moveaxis(self.leaving.unstable, -1, 0)).max()))
+
+    @cached_property
+    def safe(self) -> float:
+        """See core.dem_run.RunOptions [J]; 0 where springs hold energy too."""
+        if not self.options.rigid:
+            return 0.0
+        return SAFE * max(GRAVITY * float((self.leaving.unstable[..., 1] @ self.leaving.blocks.mass).min()), 0.0)
+
+    def above(self, shift: np.ndarray) -> float:
+        """Energy of the places over those at rest, of displacements (bodies, 3) [J]."""
+        return GRAVITY * float(self.model.rigid.mass @ shift[:, 1])
 
     @property
     def collapse(self) -> Collapse:
@@ -268,7 +358,8 @@ class Contacts:
     @property
     def options(self) -> Dem:
         """Table of an analysis that follows them."""
-        return Dem(kind="dem", solver="nonsmooth", floor=self.floor, collapse_displacement=self.fallen)
+        solver: Literal["compliant", "nonsmooth"] = "compliant" if isinstance(self.leaving, EdgesLeaving) else "nonsmooth"
+        return Dem(kind="dem", solver=solver, floor=self.floor, collapse_displacement=self.fallen)
 
     @cached_property
     def bodies(self) -> dem.Bodies:
@@ -290,6 +381,8 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
     """The blocks of a rocking structure on rigid contacts, with its ties and dampers; None where its joints are not watched, where it is
     not made of blocks, where a wall or an added hinge acts on it, or where the equations are those of slender blocks."""
     watch, held = rocker.watch, rocker.restraints
+    if isinstance(rocker.model, SoftBaseModel):
+        return _on_edges(rocker, rocker.model, building, tolerance)
     pair = rocker.model if isinstance(rocker.model, StackModel) else None
     if pair is None and (watch is None or not len(watch.joints) or linear):
         return None
@@ -306,7 +399,7 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
     nothing = np.zeros_like(values.cohesion)  # a mechanism has no mortar either
     model = Model(blocks, rigid, replace(values, cohesion=nothing, tension=nothing), ties)
     if pair is not None:
-        return Contacts(StackLeaving(rocker.body, pair, rocker.start_rotation, rocker.time_unit, tolerance), model, floor)
+        return Contacts(StackLeaving(rocker.body, rocker.start_rotation, rocker.time_unit, pair, tolerance=tolerance), model, floor)
     assert watch is not None
     linkages = watch.linkages
     if len(blocks.mass) != len(watch.assembly.mass):  # a wall that rocks as one pier, of all of its bricks
@@ -316,6 +409,27 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
         linkages = right, left
     leaving = Leaving(rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, rocker.critical, tolerance)
     return Contacts(leaving, model, floor)
+
+
+def _on_edges(rocker: Rocker, base: SoftBaseModel, building: Building, tolerance: float) -> Contacts | None:
+    """A block on springs under its edges, as discrete elements with these springs at its corners; None on a bed, whose force moves along the
+    base, of a block of several parts, and where the equations are those of slender blocks."""
+    blocks = building.blocks()
+    core = base.core
+    if not core.edges or core.linear or len(blocks.mass) != 1:
+        return None
+    values, floor = joint_values(building, rigid=True), level_of(blocks)
+    stiffness, nothing = np.full_like(values.stiffness, core.stiffness / blocks.depth), np.zeros_like(values.cohesion)
+    springs = replace(
+        values,
+        stiffness=stiffness,
+        shear_stiffness=SHEAR * stiffness,
+        beta=core.damping / core.stiffness,
+        cohesion=nothing,
+        tension=nothing,
+    )
+    leaving = EdgesLeaving(rocker.body, rocker.start_rotation, rocker.time_unit, base, tolerance=tolerance)
+    return Contacts(leaving, Model(blocks, building.rigid((), floor), springs), floor)
 
 
 def level_of(blocks: Assembly) -> float | None:
@@ -387,7 +501,8 @@ class Fates:
         asked = core_options(context, options, model)
         collapse = contacts.collapse
         brief = replace(asked, end_time=dem_model.settle_time(model), output_step=step, stop_at_rest=True)
-        return cls(contacts, brief, collapse, steps)
+        # springs have the step of their stability
+        return cls(contacts, brief, collapse, steps if contacts.options.rigid else STEPS[-1:])
 
     def alike(self, contacts: Contacts) -> "Fates":
         """The same of another building of the same joints."""
@@ -412,6 +527,8 @@ class Fates:
         many = len(c.bodies.mass) >= BODIES_FOR_THREADS
         rest = max(ground.end, left.time) + self.options.end_time - left.time
         options = replace(self.options, end_time=rest, threads=threads if many else 1)
+        if len(self.steps) > 1:  # the outcome alone is wanted, not the greatest rotation
+            options = replace(options, safe=c.safe, above=c.above(shift))
         seen_ground = ground.seen_from(left.time)
         fate, fell = Fate(UNKNOWN, 0.0, 0.0), False
         for step, sure in self.steps:

@@ -7,7 +7,7 @@ import numpy as np
 from extrados.analyses.chaos import growth, growth_step, over_critical, perturbed, turning, violated_by_chaos
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.conditions import demand_of, of_pair
+from extrados.analyses.rocking.conditions import demand_of
 from extrados.analyses.rocking.course import Course, build_result, keep_events, refuse_long_history
 from extrados.analyses.rocking.history import count
 from extrados.analyses.rocking.shapes import course_arrays
@@ -96,10 +96,8 @@ def _result(
     critical = model.critical(1), model.critical(-1)
     flies = r.force[:, 1] < FLIES * model.weight
     friction = np.where(flies, 0.0, np.abs(r.force[:, 0]) / np.maximum(r.force[:, 1], 1e-300))
-    conditions = of_pair(rocker, seen.joints)
     needed = float(seen.joints.friction[0])
-    chaotic = violated_by_chaos(*chaos)
-    violated = [*chaotic, *conditions.violated]
+    violated = violated_by_chaos(*chaos)
     course = Course(
         of="the block",
         settled=bool(seen.settled[0]),
@@ -113,7 +111,7 @@ def _result(
         coordinates={"rotation": (r.rotation, "rad"), "rotation_rate": (r.rate, "rad/s"), "sinking": (r.sinking, "m")},
         further={"force_up": (r.force[:, 1], "N")},
         event_value="edge that lifts or lands: -1 left, 1 right",
-        chaotic=bool(chaotic),
+        chaotic=bool(violated),
         growth=chaos[0],
         violated=violated,
     )
@@ -131,7 +129,6 @@ def _result(
         frequency_parameter_rad_s=float(model.rigid.frequency[0]),
         uplift_acceleration_g=min(model.uplift(1), model.uplift(-1)),
         required_friction=needed if np.isfinite(needed) else None,
-        conditions=conditions,
         soft_base=_base_results(model, r, flies, rigid),
     )
     result.warnings += violated

@@ -72,8 +72,7 @@ class ShellModel(EventModel):
     @property
     def watched(self) -> list[core.Monitor]:
         """The control displacement, and how far the ends of floors have moved off their seats, seat by seat."""
-        ways = [way for seat in self.seats for way in (seat.inward, seat.along[0])]
-        return [self.control, *(m for seat, way in zip(np.repeat(self.seats, 2), ways, strict=True) for m in _slips(seat, way))]
+        return [self.control, *(m for seat in self.seats for way in (seat.inward, seat.along[0]) for m in _slips(seat, way))]
 
     @property
     def seats(self) -> list[ShellJoint]:

@@ -35,6 +35,8 @@ MORE = 30
 NOTHING = np.zeros(0)
 NOTHING_DONE = (0.0, 0.0, 0.0)  # of the energies of a ledger
 STRAINS_AND_STRESSES = core.REPORT[:6]
+#: States that a film shows, to its target
+PICTURES = 80
 #: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
 #: displacement below which nothing counts as running away, over the extent across the control displacement
 DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
@@ -381,7 +383,7 @@ class _Run:
     """Events under A + lambda B on their way. before: see run_reference_loads; wanted: events whose states are kept; variant: what happens
     without equilibrium; goes_on: equilibrium iterations follow; begin, ends_at: by the clocks of time and of the processor [s]. start: damage
     before the events of this batch, and the first of them. best_step, drop_step, last_step: states after steps of equilibrium iterations at
-    the greatest load, after its drop, and the last."""
+    the greatest load, after its drop, and the last. pictured: way of the control at the last picture of a film [m]."""
 
     core_model: core.Model
     model: EventModel
@@ -400,6 +402,7 @@ class _Run:
     best_step: State | None = None
     drop_step: State | None = None
     last_step: State | None = None
+    pictured: float = 0.0
 
     @property
     def release(self) -> bool:
@@ -428,10 +431,10 @@ class _Run:
             if len(part):
                 self._note(part, done)
             done += len(part)
-            if len(part) and done - 1 in self.wanted:
+            if len(part) and (done - 1 in self.wanted or self._is_pictured(part)):
                 self.way.states.append(_state(self.core_model, done - 1, part))
             load = (part.pull if self.model.driven else self.model.already + part.load * self.model.unit)[-1:]
-            progress(done, self.options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
+            progress(*self._told(part, done, load))
             part.reason = part.reason or self.model.ends(part)
             if part.reason or part.interrupted or not (len(part) or self.core_model.iterates):
                 break
@@ -439,6 +442,29 @@ class _Run:
                 part.reason = SPENT
                 break
             batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
+
+    def _told(self, part: core.Events, done: int, load: np.ndarray) -> tuple[float, float, str]:
+        """Progress: of events their number; of steps the way of the control to its target, by which the remaining time is estimated."""
+        total = self.options.events
+        if not len(part):
+            return done, total, ""
+        moved = abs(float(part.monitors[-1, 0]) - self.sign * self.before)
+        if not part.steps[-1] or self.stop.displacement == np.inf:
+            return done, total, f"event {done}, load {load[0]:.4g} N"
+        share = min(moved / self.stop.displacement, 1.0)
+        drifts = (100.0 * way / self.model.reach for way in (moved, self.stop.displacement))
+        return max(done, share * total), total, "step {}, drift {:.3g} of {:.3g} %, load {:.4g} N".format(done, *drifts, load[0])
+
+    def _is_pictured(self, part: core.Events) -> bool:
+        """Is the state after these events a picture of the film: has the control moved on by its part of the way?"""
+        if getattr(self.options, "animation", "none") == "none" or not part.equilibrium[-1]:
+            return False
+        target = DRIFT * self.model.reach if self.stop.displacement == np.inf else self.stop.displacement
+        moved = abs(float(part.monitors[-1, 0]) - self.sign * self.before)
+        if moved < self.pictured + target / PICTURES:
+            return False
+        self.pictured = moved
+        return True
 
     def _renew(self, done: int, chain: Chain | None) -> bool:
         """Restart from the damage alone, because forces being redistributed between points are not stored. The record of the run is kept. False if a node is free."""
@@ -592,7 +618,7 @@ class _Run:
         for step in (self.drop_step, self.last_step):
             if step is not None and step.event not in {s.event for s in kept}:
                 kept.append(step)
-        kept.sort(key=lambda s: s.event)
+        kept[:] = [state for _, state in sorted({state.event: state for state in kept}.items())]
 
 
 def run_reference_loads(
@@ -622,7 +648,7 @@ def run_reference_loads(
     goes_on = options.without_equilibrium == "continue" and core_model.continues and model.continues
     variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
     follow(core_model, model, options.continuation if goes_on else None)
-    if goes_on and model.steps_alone and not core_model.iterates:
+    if goes_on and (model.steps_alone or options.continuation == "dissipation") and not core_model.iterates:
         core_model.go_on(core_model.displacement(0.0))
     ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
     if ends_by_drift:

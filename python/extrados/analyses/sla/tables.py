@@ -215,7 +215,7 @@ class Staged:
         stop_fraction: float
         budget: float | None
         without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"]
-        continuation: Literal["newton", "implicit-explicit"]
+        continuation: Literal["newton", "implicit-explicit", "dissipation"]
         states: list[int]
         probes: list[float]
 
@@ -349,12 +349,13 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "the other points before the load increases again",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
-    continuation: Literal["newton", "implicit-explicit"] = key(
+    continuation: Literal["newton", "implicit-explicit", "dissipation"] = key(
         "newton",
         "equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
         "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster "
-        "and less accurate)",
-        source="Oliver, Huespe and Cante 2008",
+        "and less accurate); dissipation: as newton, from the first load on, with an arc length on dissipated energy where the "
+        "displacement snaps back",
+        source="Oliver, Huespe and Cante 2008; Gutierrez 2004",
     )
     algorithm: Literal["update", "refactor"] = key(
         "update", "matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again"

@@ -9,16 +9,21 @@ const OF = {
   elements: tr`The finite elements of the wall. A run gives the cracks and the capacity curve: see Results.`,
 };
 
+const CHOSEN = 2; // of the tones of space.js
+
 export function solidPanel(app, stageBox) {
   const view = space(stageBox), it = { view, push: null, page, mechanismAt, mechanism };
   app.space = view;
-  let body = null, swing = null;
+  let body = null, swing = null, chosen = null;
+  view.onpick = (block) => choose(block === chosen ? null : block);
   app.on("scene", (opened) => {
     const seen = app.scene?.seen?.sort === "space" ? app.scene.seen : null;
     if (opened || !seen) { it.push = null; stop(); }
+    if (opened || !(chosen < (seen?.blocks ?? 0))) chosen = null;
     if (!seen) { body = null; view.show(null); return; }
     body = { ...app.arrays, both: seen.of === "walls" };
     view.label = `${app.deck.title || app.name}.`;
+    mark();
     view.show(body, !opened);
     if (!opened && it.push) { it.push = null; app.say(tr`The sizes have changed: calculate again.`); }
   });
@@ -32,6 +37,21 @@ export function solidPanel(app, stageBox) {
     if (arrays.mechanism_pose) mechanism();
   });
 
+  /** A block that is clicked, or none: it is coloured, and the text beside the drawing has its numbers. */
+  function choose(block) { chosen = block; mark(); view.redraw(); app.tellDetail(); }
+  function mark() {
+    if (body?.face_body) body.face_tone = chosen === null ? null : Uint8Array.from(body.face_body, (b) => (b === chosen ? CHOSEN : 0));
+  }
+  /** Name, mass and contacts of the block that is clicked. */
+  function about(seen) {
+    if (seen.of !== "solids" || !seen.names) return null;
+    if (chosen === null) return h("p", { class: "remark" }, tr`Click a block for its name, mass and contacts.`);
+    const rows = seen.contacts.map((name, j) => [name, j]).filter(([, j]) => body.contact_body[2 * j] === chosen || body.contact_body[2 * j + 1] === chosen);
+    return h("div", { "data-block": chosen }, h("h3", {}, seen.names[chosen]), h("table", { class: "numbers" }, h("tbody", {},
+      h("tr", {}, h("th", { scope: "row" }, tr`Mass`), h("td", {}, quantity(body.body_mass[chosen], "kg"))),
+      rows.map(([name, j]) => h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, quantity(body.contact_area[j], "m²")))))));
+  }
+
   /** The text beside the drawing. */
   function page(seen, why) {
     const row = (label, value) => h("tr", {}, h("th", { scope: "row" }, label), h("td", {}, value));
@@ -44,12 +64,13 @@ export function solidPanel(app, stageBox) {
     for (const [key, value] of Object.entries(seen.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
     const parts = [h("p", { class: "verdict" }, OF[seen.of]), h("table", { class: "numbers" }, h("tbody", {}, rows)), h("p", { class: "remark" }, tr`No line of thrust is drawn: ${why}.`)];
     for (const text of seen.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
+    parts.push(about(seen));
     if (seen.of === "walls") parts.push(h("div", { class: "row" }, h("button", { class: "first", "data-plan": true, onclick: () => app.plan.begin() }, tr`✎ Draw the plan`)));
     if (seen.of === "solids") {
       parts.push(h("div", { class: "row" }, h("button", { class: "first", onclick: () => { app.say(tr`calculating the capacity …`); app.ask({ do: "push" }); } }, tr`Calculate capacity`), it.push ? h("button", { onclick: () => mechanism() }, tr`▶ Mechanism`) : null));
       if (it.push) parts.push(h("p", { class: "verdict good", "data-number": "push" }, it.push.answer), ...it.push.warnings.map((text) => h("p", { class: "remark" }, text)), rose());
     }
-    return parts;
+    return parts.filter(Boolean);
   }
   /** Capacity over the direction of the acceleration, from above. */
   function rose() {

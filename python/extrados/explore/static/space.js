@@ -2,7 +2,7 @@
 import { h, quantity, s, set } from "./dom.js";
 import { tr } from "./words.js";
 
-const LIGHT = unit([-0.35, -0.75, 1]), DARKEST = 0.55, FINE = 2;
+const LIGHT = unit([-0.35, -0.75, 1]), DARKEST = 0.55, FINE = 2, STILL = 4; // px that a click may move
 const TONES = ["--stone", "--support", "--c4", "--c1", "--c3", "--bad"]; // walls, floors, and cracks from fine to wide
 
 function unit(v) { const size = Math.hypot(...v); return v.map((x) => x / size); }
@@ -44,9 +44,9 @@ export function space(box) {
   const svg = s("svg", { class: "space", role: "img", tabindex: "0" });
   const frame = h("div", { class: "space-box", hidden: true }, canvas, svg);
   box.append(frame);
-  const it = { svg, frame, show, move, redraw, label: "", azimuth: -60, elevation: 25, zoom: 1 };
+  const it = { svg, frame, show, move, redraw, pick, onpick: null, label: "", azimuth: -60, elevation: 25, zoom: 1 };
   svg.backdrop = canvas;
-  let body = null, vertex = null, bounds = null, rest = null, drawing = null;
+  let body = null, vertex = null, bounds = null, rest = null, drawing = null, seen = null;
 
   /** Show other bodies, or none; keep: from where they are looked at now. */
   function show(next, keep = false) {
@@ -120,6 +120,7 @@ export function space(box) {
       data[4 * i + 3] = f === sheet ? 130 : 255;
     }
     context.putImageData(image, 0, 0);
+    seen = { number, width, height, fine, sheet };
     overlay(p);
 
     /** A convex face where it is nearest to the eye; false where it looks away. */
@@ -148,6 +149,13 @@ export function space(box) {
       }
       return true;
     }
+  }
+  /** The body that is drawn at a place of the page [px]; null for the ground and beside all. */
+  function pick(x, y) {
+    const edge = frame.getBoundingClientRect(), [column, row] = [x - edge.left, y - edge.top].map((v) => Math.floor(v * (seen?.fine ?? 1)));
+    if (!seen || !body?.face_body || column < 0 || row < 0 || column >= seen.width || row >= seen.height) return null;
+    const f = seen.number[row * seen.width + column];
+    return f < 0 || f === seen.sheet ? null : body.face_body[f];
   }
   /** How bright a face is; one of two sides is lit on that which is seen. */
   function lit(corners, both) {
@@ -199,8 +207,12 @@ export function space(box) {
     if (e.button !== 0) return;
     svg.setPointerCapture(e.pointerId);
     let [x, y] = [e.clientX, e.clientY];
+    const begin = [x, y];
     const go = (m) => { turn(0.4 * (m.clientX - x), 0.4 * (m.clientY - y)); [x, y] = [m.clientX, m.clientY]; };
-    const end = () => svg.removeEventListener("pointermove", go);
+    const end = (u) => {
+      svg.removeEventListener("pointermove", go);
+      if (u.type === "pointerup" && Math.hypot(u.clientX - begin[0], u.clientY - begin[1]) < STILL) it.onpick?.(pick(u.clientX, u.clientY));
+    };
     svg.addEventListener("pointermove", go);
     svg.addEventListener("pointerup", end, { once: true });
     svg.addEventListener("pointercancel", end, { once: true });

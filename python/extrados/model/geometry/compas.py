@@ -35,11 +35,11 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
         raise BadGeometry(f"{name}: this file has {len(nodes)} blocks; at most {MOST_BLOCKS} are allowed")
     meshes = {key: mesh_of(node, f"{name}: block {key}") for key, node in nodes.items()}
     for axis in (1, 0, 2):
-        sections = {key: _section(xyz, faces, axis) for key, (xyz, faces) in meshes.items()}
+        sections = {key: section_of(xyz, faces, axis) for key, (xyz, faces) in meshes.items()}
         if all(s is not None for s in sections.values()):
             break
     else:
-        faults = {AXES[a]: next(k for k, m in meshes.items() if _section(*m, a) is None) for a in (1, 0, 2)}
+        faults = {AXES[a]: next(k for k, m in meshes.items() if section_of(*m, a) is None) for a in (1, 0, 2)}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
         raise NoView(
             f"{name}: a plane section requires blocks that are prisms across one plane, and these are not ({told})", ("structure", "file")
@@ -103,7 +103,7 @@ def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int
     return xyz, faces
 
 
-def _section(xyz: np.ndarray, faces: list[list[int]], axis: int) -> tuple[np.ndarray, float] | None:
+def section_of(xyz: np.ndarray, faces: list[list[int]], axis: int) -> tuple[np.ndarray, float] | None:
     """Outline (n, 2), counter-clockwise, and depth of a block that is a prism along an axis; None where it is none."""
     along = xyz[:, axis]
     size = float(np.ptp(xyz, axis=0).max())

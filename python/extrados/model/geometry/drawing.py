@@ -16,6 +16,8 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 GROUND_LAYER = "GROUND"
 
 Role = Literal["stones", "ground", "joints", "left-out"]
+#: Plane of a file in space that is the section; its second axis is vertical
+Plane = Literal["xy", "xz", "yz"]
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,13 @@ import io
 import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from extrados.model.errors import BadGeometry
-from extrados.model.geometry.drawing import GROUND_LAYER, MOST_BLOCKS, UNITS, Drawing, Layer, Polygon
+from extrados.model.geometry.drawing import GROUND_LAYER, MOST_BLOCKS, UNITS, Drawing, Layer, Plane, Polygon
 from extrados.model.geometry.linework import net_of, place_in
 from extrados.model.geometry.polygons import inside, signed_area
 from extrados.schema.contained import Unreadable, read_contained
@@ -52,6 +52,7 @@ MOST_LINES = 200_000
 MOST_VERTICES = 2_000_000  # of all lines, those of arcs and curves by their chords
 DEEPEST = 16  # blocks within blocks
 FARTHEST = 1e15  # of a coordinate, in units of the drawing: double precision tells no unit apart beyond
+FLAT = 1e-6  # of the extent of a drawing: across its plane it has less
 NEAR = 0.1  # m: gaps of loose lines up to this are told
 
 
@@ -76,12 +77,13 @@ def read_dxf(
     meaning: Mapping[str, Layer] | None = None,
     join_tolerance: float = 1e-3,
     sagitta: float = SAGITTA,
+    plane: Plane | None = "xy",
 ) -> Drawing:
     """Blocks, ground and marks of a drawing. Needs the extra `dxf` (ezdxf), which reads in a process of its own.
 
     layers: those to read as stones, all where it is None; none where it is empty, for drawings of lines. meaning: layers that are something else than plain stones;
     GROUND is the ground. Ends of loose lines within `join_tolerance` [m] are one point; `sagitta` [m]: how far
-    chords may lie from curves. What the drawing does not show is not read: invisible entities, and layers that are frozen or
+    chords may lie from curves. plane: that of the section, the second axis upwards; None for that in which all lines lie. What the drawing does not show is not read: invisible entities, and layers that are frozen or
     off unless `layers` or `meaning` names them. BadGeometry names layer and entity; a drawing without a unit is refused
     until `unit` is given.
     """
@@ -97,6 +99,7 @@ def read_dxf(
             meaning={layer: asdict(one) for layer, one in (meaning or {}).items()},
             join_tolerance=join_tolerance,
             sagitta=sagitta,
+            plane=plane,
         )
     except Unreadable as error:
         raise BadGeometry(str(error) if error.at else f"{name}: {error}", error.at or ("structure",)) from None
@@ -119,6 +122,7 @@ def drawing_of(
     meaning: Mapping[str, Layer] | None = None,
     join_tolerance: float = 1e-3,
     sagitta: float = SAGITTA,
+    plane: Plane | None = "xy",
 ) -> Drawing:
     """The drawing in the content of a file, as `read_dxf` has it, read by this process."""
     document = _document(content, name)
@@ -145,7 +149,31 @@ def drawing_of(
             found.other_layers[layer] += 1
     for missing in [one for one in (*(layers or []), *(meaning or {})) if one.upper() not in {s.upper() for s in seen}]:
         raise BadGeometry(f"{name}: layer '{missing}' does not exist; the layers are {', '.join(sorted(seen)) or 'none'}")
-    return _drawing(found, known, name, scale, join_tolerance, layers != [])
+    notes = _project(found, plane)
+    made = _drawing(found, known, name, scale, join_tolerance, layers != [])
+    return replace(made, notes=(*made.notes, *(f"{name}: {note}" for note in notes)))
+
+
+def _project(found: _Read, plane: Plane | None) -> list[str]:
+    """Lines (n, 3) become those in the plane of the section (n, 2); None for the plane in which they all lie. What to tell of it."""
+    rows = [points for _, _, points in (*found.closed, *found.open)]
+    places = np.concatenate([*rows, *found.ground, *(line for lines in found.marks.values() for line in lines), np.zeros((0, 3))])
+    extent = np.ptp(places, axis=0) if len(places) else np.zeros(3)
+    flat = extent <= FLAT * extent.max()
+    lies: Plane = "xy" if flat[2] or not flat.any() else "xz" if flat[1] else "yz"
+    used = plane or lies
+    axes = ["xyz".index(letter) for letter in used]
+    for lines in (found.closed, found.open):
+        lines[:] = [(layer, handle, points[:, axes]) for layer, handle, points in lines]
+    found.ground = [points[:, axes] for points in found.ground]
+    found.marks = {layer: [points[:, axes] for points in lines] for layer, lines in found.marks.items()}
+    (across,) = {0, 1, 2} - set(axes)
+    if not flat[across]:
+        return [
+            f"lines are projected to the plane {used}; along {'xyz'[across]} they extend over {extent[across]:.4g} units of the drawing. "
+            "Key: section"
+        ]
+    return [] if used == "xy" else [f"the section lies in the plane {used}: {used[0]} is horizontal, z is vertical"]
 
 
 class _Hiding:
@@ -295,7 +323,7 @@ def _handle(entity: Any) -> str:
 
 
 def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
-    """Vertices (n, 2) of a line or curve, its chords within `sagitta` of it; BadGeometry where there would be too many, or
+    """Vertices (n, 3) of a line or curve, its chords within `sagitta` of it; BadGeometry where there would be too many, or
     a number is none. Arcs are followed as arcs: the Bezier curves of ezdxf's paths leave them by 0.3 mm a metre of radius."""
     places: Iterable[Any]
     try:
@@ -306,14 +334,14 @@ def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
         else:
             _refuse_wide(entity, kind, sagitta)
             places = entity.flattening(sagitta)
-        found = [(p[0], p[1]) for p in itertools.islice(places, MOST_LINES + 1)]
+        found = [(p[0], p[1], p[2]) for p in itertools.islice(places, MOST_LINES + 1)]
     except BadGeometry:
         raise
     except (ArithmeticError, ValueError, IndexError, RecursionError) as error:  # of ezdxf, at a curve that is none
         raise BadGeometry(f"this curve cannot be evaluated: {error}") from None
     if len(found) > MOST_LINES:
         raise BadGeometry(_many(sagitta))
-    points = np.array(found).reshape(-1, 2)
+    points = np.array(found).reshape(-1, 3)
     if not np.isfinite(points).all():
         raise BadGeometry("a coordinate is not a finite number")
     if np.abs(points).max(initial=0.0) > FARTHEST:
@@ -349,6 +377,9 @@ def _refuse_wide(entity: Any, kind: str, sagitta: float) -> None:
 
 def _polyline(entity: Any, kind: str, sagitta: float) -> list[Any]:
     """The vertices of a polyline, with those of the chords of its arcs."""
+    if kind == "POLYLINE" and entity.is_3d_polyline:
+        places = [tuple(vertex.dxf.location) for vertex in entity.vertices]
+        return [*places, *places[:1]] if entity.is_closed else places
     if kind == "LWPOLYLINE":
         rows = np.array(entity.get_points("xyb"), dtype=float).reshape(-1, 3)
     else:
@@ -364,8 +395,7 @@ def _polyline(entity: Any, kind: str, sagitta: float) -> list[Any]:
         count += len(flat[-1])
         if count > MOST_LINES:
             raise BadGeometry(_many(sagitta))
-    places = [(x, y, 0.0) for x, y in np.concatenate(flat).tolist()]
-    return list(entity.ocs().points_to_wcs(places)) if kind == "LWPOLYLINE" or entity.is_2d_polyline else places
+    return list(entity.ocs().points_to_wcs([(x, y, 0.0) for x, y in np.concatenate(flat).tolist()]))
 
 
 def _bulged(a: np.ndarray, b: np.ndarray, bulge: float, sagitta: float) -> np.ndarray:
@@ -390,7 +420,7 @@ def _bulged(a: np.ndarray, b: np.ndarray, bulge: float, sagitta: float) -> np.nd
 
 def _meet(points: np.ndarray) -> bool:
     """Whether a line ends where it begins; ezdxf's own test is too coarse for georeferenced coordinates."""
-    return len(points) > 3 and float(np.hypot(*(points[-1] - points[0]))) < 1e-6 * float(np.ptp(points, axis=0).max())
+    return len(points) > 3 and float(np.linalg.norm(points[-1] - points[0])) < 1e-6 * float(np.ptp(points, axis=0).max())
 
 
 def _segments(lines: list[np.ndarray]) -> np.ndarray:

@@ -141,7 +141,7 @@ class Inspection:
             worst = closed[0]
             found.append(
                 f"{_count(closed, 'gap or overlap', 'gaps and overlaps')} of up to {length(worst.depth)} were closed within "
-                f"contact_tolerance ({1e3 * self.tolerance:g} mm). The widest is between {self.between(worst)}"
+                f"contact_tolerance ({1e3 * self.tolerance:g} mm). The widest is between {self.between(worst)}."
             )
         return found
 

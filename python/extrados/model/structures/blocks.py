@@ -13,20 +13,24 @@ from extrados.model.errors import BadGeometry, NoView
 from extrados.model.files import LARGEST_FILE, read
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import with_chains
+from extrados.model.geometry.clouds import CLOUDS
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.contacts import MOST_NEIGHBOURS, box_pairs, shortest_joint
-from extrados.model.geometry.drawing import Drawing, Layer, Polygon, parsed, read_json
+from extrados.model.geometry.drawing import Drawing, Layer, Plane, Polygon, parsed, read_json
 from extrados.model.geometry.dxf import SAGITTA, read_dxf
 from extrados.model.geometry.inspection import Inspection, areas, inspect, refuse
 from extrados.model.geometry.linework import MOST_PAIRS
 from extrados.model.geometry.polygons import properties
+from extrados.model.geometry.solids.flat import flat_plane, section_of_meshes
+from extrados.model.geometry.solids.meshes import MODELS, read_meshes
 from extrados.model.structure import Structure
 from extrados.model.structures.earthwork import Fill, Spandrels, Surfacing, covered, refuse_without_fill
+from extrados.model.structures.scan import Scan
 from extrados.schema.constants import IN_SPACE
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
 
-SOLID = (".obj", ".stl")  # files of solids, which have no plane section
+SOLID = (".obj", ".stl", *MODELS)  # files of solids, which have no plane section
 SMALL = 1e-4  # of the size of solids: the greatest tolerance that is a default
 MARKS = 0.01  # m: how far a line that marks joints may lie from their middles
 
@@ -137,14 +141,22 @@ class Blocks(Structure):
     kind: Literal["blocks"]
     file: str | None = key(
         None,
-        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; or solids as OBJ, STL or COMPAS JSON",
+        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; solids as OBJ, STL, glTF (GLB), IFC or COMPAS JSON; or, with "
+        "[structure.scan], a point cloud as PLY, XYZ, LAS or LAZ",
         max_length=500,
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
         None, "unit of a file that gives none (DXF without $INSUNITS, COMPAS, OBJ, STL)"
     )
     up: Literal["y", "z"] | None = key(
-        None, "axis that points up in a file of solids; default z. With y, the x axis remains and the z axis of the file becomes -y"
+        None,
+        "axis that points up in a file of solids; default z, for glTF y. With y, the x axis remains and the z axis of the file becomes -y",
+    )
+    section: Plane | None = key(
+        None,
+        "plane of a file in space that is the section: its second letter is the vertical axis. Default: for DXF, and for OBJ and STL "
+        "without volume, the plane in which everything lies. With this key, solids of OBJ and STL that are prisms across the plane are "
+        "read as a section",
     )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
     layer: list[LayerTable] = key([], "layers of the drawing with a material or another meaning, [[structure.layer]]", max_length=200)
@@ -183,6 +195,7 @@ class Blocks(Structure):
         le=0.1,
     )
     depth: Length | None = key(None, "depth out of plane; default: that of the file, otherwise 1 m", gt=0)
+    scan: Scan | None = key(None, "courses of a point cloud, by which the scanned wall or barrel is cut into blocks")
     fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level above the highest block")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
     spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, considered by their weight")
@@ -197,6 +210,8 @@ class Blocks(Structure):
         for i, block in enumerate(self.block or []):
             if any(len(point) != 2 for point in block.points):
                 raise ValueError(f"block {i + 1}: a vertex does not have the form [x, y]")
+        if (self.scan is None) == (self.file is not None and self.file.lower().endswith(CLOUDS)):
+            raise ValueError(f"scan: the table [structure.scan] belongs to a file with a point cloud ({', '.join(CLOUDS)})")
         refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         names = [layer.name.upper() for layer in self.layer]
         if len(set(names)) < len(names):
@@ -215,12 +230,19 @@ class Blocks(Structure):
         if sort == ".dxf":
             meaning = {layer.name: Layer(layer.role, layer.material) for layer in self.layer}
             fine = min(SAGITTA, max(0.5 * self.contact_tolerance, 1e-6))
-            drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine)
+            drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine, self.section)
             return drawing, None
+        if self.section is not None and sort not in SOLID:
+            raise BadGeometry(f"{self.file}: the key `section` is for .dxf files and files of solids", ("structure", "section"))
+        if sort in CLOUDS:
+            raise NoView(f"{self.file} contains a point cloud, which has no plane section; {IN_SPACE}", ("structure", "file"))
         if sort in SOLID:
+            meshes = read_meshes(file)
+            if plane := self.section or flat_plane(meshes):
+                return section_of_meshes(meshes, plane, self.unit, file.path.name)
             raise NoView(f"{self.file} contains solids, which have no plane section; {IN_SPACE}", ("structure", "file"))
         if sort != ".json":
-            raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")
+            raise BadGeometry(f"{self.file}: expected a .json, .dxf or {', '.join(SOLID)} file, or a point cloud ({', '.join(CLOUDS)})")
         if self.layers is not None or self.layer:
             raise BadGeometry(f"{self.file}: this file has no layers; layers belong to drawings (.dxf)")
         if is_compas(value := parsed(file)):

@@ -383,8 +383,9 @@ class Plan(Structure):
                 raise ValueError(
                     f"prestress[{k}].x: {part.x[0]:g} to {part.x[1]:g} m is not on wall '{part.wall}', whose length is {length:g} m"
                 )
+        held: dict[tuple[str, int], int] = {}
         for k, beam in enumerate(self.ring_beams):
-            self._check_ring_beam(k, beam)
+            self._check_ring_beam(k, beam, held)
         for k, floor in enumerate(self.floors):
             self._check_floor(k, floor)
         return self
@@ -411,8 +412,13 @@ class Plan(Structure):
                     f"{floor.storey}. Give the two walls without gables, or a roof of purlins"
                 )
 
-    def _check_ring_beam(self, k: int, beam: RingBeam) -> None:
+    def _check_ring_beam(self, k: int, beam: RingBeam, held: dict[tuple[str, int], int]) -> None:
         for wall in self.of_ring_beam(beam):
+            if (first := held.setdefault((wall.name, beam.storey), k)) != k:
+                raise ValueError(
+                    f"ring_beams[{k}].walls: wall '{wall.name}' has ring beam {first + 1} on storey {beam.storey} already; one wall can have "
+                    "one ring beam on a level. Name the walls of each beam, or give one beam with the depth of both"
+                )
             self._check_storey(f"ring_beams[{k}].storey", wall.name, beam.storey)
             low = self.storeys[beam.storey - 1] - beam.depth
             for i, opening in enumerate(wall.openings):
@@ -429,6 +435,10 @@ class Plan(Structure):
         if beam.walls:
             return [self.wall(name) for name in beam.walls]
         return [wall for wall in self.walls if self.reach(wall)[0] <= beam.storey <= self.reach(wall)[1]]
+
+    def ring_beam_on(self, wall: PlanWall, level: int) -> RingBeam | None:
+        """The ring beam of a wall on a level, if it has one."""
+        return next((beam for beam in self.ring_beams if beam.storey == level and wall in self.of_ring_beam(beam)), None)
 
     def material_of(self, wall: PlanWall, storey: int) -> str | None:
         """Name of a wall's material in a storey; None: [material]."""

@@ -108,8 +108,9 @@ class Division:
         )
 
     def ring_depth(self, wall: PlanWall, level: int) -> float:
-        """Height of the ring beams of a wall on a level; 0 without any [m]."""
-        return sum(beam.depth for beam in self.plan.ring_beams if beam.storey == level and wall in self.plan.of_ring_beam(beam))
+        """Height of the ring beam of a wall on a level; 0 without one [m]."""
+        beam = self.plan.ring_beam_on(wall, level)
+        return 0.0 if beam is None else beam.depth
 
     def _ring_beam(self, w: int, wall: PlanWall, level: int, k: int, i: int, j: int) -> None:
         depth = self.ring_depth(wall, level)

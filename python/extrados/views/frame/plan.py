@@ -93,6 +93,7 @@ class _Maker(Division):
         for strip in self.strips:
             self._weigh(strip)
         for w, wall in enumerate(plan.walls):
+            self._weigh_around(w, wall)
             self._gable(w, wall)
         rings: dict[tuple[int, frozenset[int]], int] = {}
         for k, floor in enumerate(plan.floors):
@@ -248,7 +249,7 @@ class _Maker(Division):
                 )
 
     def _weigh(self, strip: Strip) -> None:
-        """Weight of a pier: half on each of its levels. Of masonry above and below openings: on the level that it reaches."""
+        """Weight of a pier: half on each of its levels."""
         wall = self.plan.walls[strip.wall]
         if strip.kind != "pier":
             return
@@ -257,10 +258,13 @@ class _Maker(Division):
         force = density * GRAVITY * strip.thickness * (end - start) * (high - low)
         for level in (strip.storey - 1, strip.storey):
             self._load(strip.wall, level, start, end, 0.5 * force)
-        if strip.name.endswith("pier 1"):  # once for each storey of a wall
-            for start, end, height, upper in parts_around_openings(self.plan.openings_in(wall, strip.storey), high - low):
-                level = strip.storey if upper else strip.storey - 1
-                self._load(strip.wall, level, start, end, density * GRAVITY * strip.thickness * (end - start) * height)
+
+    def _weigh_around(self, w: int, wall: PlanWall) -> None:
+        """Weight of masonry above and below openings, on the level that it reaches."""
+        for storey in range(1, self.plan.reach(wall)[1] + 1):
+            unit = self._material(wall, storey).density * GRAVITY * self.plan.thickness_of(wall, storey)
+            for start, end, height, upper in parts_around_openings(self.plan.openings_in(wall, storey), self.plan.storeys[storey - 1]):
+                self._load(w, storey if upper else storey - 1, start, end, unit * (end - start) * height)
 
     def _gable(self, w: int, wall: PlanWall) -> None:
         """Weight of a triangular top on the highest level of its wall, in slices."""
@@ -410,7 +414,8 @@ class _Maker(Division):
         depth, length = high - low, end - start
         drifts, residual, moment, by_shear = (UNLIMITED, UNLIMITED), 1.0, UNLIMITED, False
         if strip.kind == "ring beam":
-            beam = next(b for b in self.plan.ring_beams if b.storey == strip.storey and wall in self.plan.of_ring_beam(b))
+            beam = self.plan.ring_beam_on(wall, strip.storey)
+            assert beam is not None
             if beam.material not in self.building.materials:
                 raise BadGeometry(
                     f"ring beam of storey {beam.storey}: the deck has no [materials.{beam.material}]", ("structure", "ring_beams")
@@ -449,14 +454,12 @@ class _Maker(Division):
         """Tension [N] that rods along the wall and ring beams can balance beside a spandrel; 0 without any."""
         plan, wall = self.plan, self.plan.walls[strip.wall]
         start, end, low, high = strip.part
-        pull = 0.0
-        for beam in plan.ring_beams:
-            if beam.storey == strip.storey and wall in plan.of_ring_beam(beam):
-                if beam.reinforcement is not None:
-                    pull += beam.reinforcement.tension
-                    continue
-                strength = self.building.materials[beam.material].tensile_strength if beam.material in self.building.materials else None
-                pull += UNLIMITED if strength is None else strength * beam.depth * strip.thickness
+        pull, beam = 0.0, plan.ring_beam_on(wall, strip.storey)
+        if beam is not None and beam.reinforcement is not None:
+            pull = beam.reinforcement.tension
+        elif beam is not None:
+            strength = self.building.materials[beam.material].tensile_strength if beam.material in self.building.materials else None
+            pull = UNLIMITED if strength is None else strength * beam.depth * strip.thickness
         for k, strength in self.along_walls.get(strip.wall, []):
             rod = plan.rods[k]
             places = sorted(float((np.asarray(p[:2]) - wall.start) @ wall.direction) for p in (rod.start, rod.end))
@@ -470,27 +473,25 @@ class _Maker(Division):
         """Moment [N m] of the hinges of a ring beam, M_p (1 - H_p/T): the strut H_p of a spandrel beside it takes that part of the tension
         T of its bars. The chord of the domain of moments and axial forces is on the safe side."""
         wall = self.plan.walls[strip.wall]
-        beams = [b for b in self.plan.ring_beams if b.storey == strip.storey and wall in self.plan.of_ring_beam(b)]
-        moment = tension = 0.0
-        for beam in beams:
-            if beam.reinforcement is None:
-                return UNLIMITED
-            concrete = self.building.materials[beam.material].compressive_strength
-            if concrete is None:
-                raise BadGeometry(
-                    f"ring beam of storey {beam.storey}: its reinforcement requires a compressive_strength in [materials.{beam.material}]",
-                    ("structure", "ring_beams", self.plan.ring_beams.index(beam)),
-                )
-            axis = beam.reinforcement.relative_axis(beam.depth, strip.thickness, concrete)
-            if axis > DEEPEST_AXIS:
-                raise BadGeometry(
-                    f"ring beam of storey {beam.storey}, wall '{wall.name}': with bars of {1e4 * beam.reinforcement.area:.3g} cm^2 in all the "
-                    f"neutral axis is at {axis:.2f} of the effective depth; above {DEEPEST_AXIS:g} the concrete crushes before the hinge "
-                    "rotates. Reduce reinforcement.area, or increase depth or the compressive_strength of its material",
-                    ("structure", "ring_beams", self.plan.ring_beams.index(beam)),
-                )
-            moment += beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete)
-            tension += beam.reinforcement.tension
+        beam = self.plan.ring_beam_on(wall, strip.storey)
+        if beam is None or beam.reinforcement is None:
+            return UNLIMITED
+        place = ("structure", "ring_beams", self.plan.ring_beams.index(beam))
+        concrete = self.building.materials[beam.material].compressive_strength
+        if concrete is None:
+            raise BadGeometry(
+                f"ring beam of storey {beam.storey}: its reinforcement requires a compressive_strength in [materials.{beam.material}]",
+                place,
+            )
+        axis = beam.reinforcement.relative_axis(beam.depth, strip.thickness, concrete)
+        if axis > DEEPEST_AXIS:
+            raise BadGeometry(
+                f"ring beam of storey {beam.storey}, wall '{wall.name}': with bars of {1e4 * beam.reinforcement.area:.3g} cm^2 in all the "
+                f"neutral axis is at {axis:.2f} of the effective depth; above {DEEPEST_AXIS:g} the concrete crushes before the hinge "
+                "rotates. Reduce reinforcement.area, or increase depth or the compressive_strength of its material",
+                place,
+            )
+        moment, tension = beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete), beam.reinforcement.tension
         struts = [
             self._strut(one, one.part[3] - one.part[2], pressed, self._tie(one))
             for one in self.strips

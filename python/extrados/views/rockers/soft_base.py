@@ -188,6 +188,14 @@ class SoftBaseModel:
         x = edge * (1.0 - np.cos(rotation)) + self.core.height * np.sin(rotation)
         return np.stack([x, self.core.height * np.cos(rotation) - sinking, -rotation], axis=1)[:, None, :]
 
+    def velocity(self, state: np.ndarray) -> np.ndarray:
+        """Velocity of the centre to +x and up [m/s] and counter-clockwise spin [rad/s] (3) in a state (4): rotation [rad], sinking [m] and
+        their rates."""
+        q, _, turning, sinking = state
+        edge = -self.core.toe_left if q < 0.0 else self.core.toe_right
+        x = edge * np.sin(q) + self.core.height * np.cos(q)
+        return np.array([x * turning, -self.core.height * np.sin(q) * turning - sinking, -turning])
+
 
 def soft_base_model(building: Masonry, linear: bool = False, stones: Assembly | None = None) -> SoftBaseModel:
     """A block, a column or a wall without openings taken as one body, on the base of [supports]; NoView where the

@@ -1,4 +1,4 @@
-"""Files of meshes as stones: OBJ, STL, assemblies of COMPAS. Each stone is a union of closed convex meshes."""
+"""Files of meshes as stones: OBJ, STL, models that a library reads, assemblies of COMPAS. Each stone is a union of closed convex meshes."""
 
 import itertools
 import re
@@ -20,6 +20,8 @@ from extrados.model.geometry.solids.polyhedra import ManyFaces, Polyhedron, fitt
 from extrados.schema.contained import Unreadable, read_contained
 from extrados.schema.files import BadFile, File
 
+#: Formats of models in space that a library reads, and this library
+MODELS = {".glb": ["trimesh"], ".gltf": ["trimesh"], ".ifc": ["ifcopenshell", "ifcopenshell.geom"]}
 MOST_VERTICES = 2_000_000
 MOST_CORNERS = 2_000  # of a convex body: bodies that overlap are compared edge by edge
 MOST_POINTS = 10_000  # of its mesh: Qhull takes the square of those on a circle, and hears no signal meanwhile
@@ -42,10 +44,11 @@ class Mesh:
 
 
 def read_meshes(file: File) -> list[Mesh]:
-    """Meshes of an OBJ or STL file, read by a process of its own; BadGeometry says what is wrong."""
+    """Meshes of an OBJ, STL, glTF or IFC file, read by a process of its own; BadGeometry says what is wrong."""
     name, sort = file.path.name, file.path.suffix.lower()
+    reader = "extrados.model.geometry.solids." + ("models:parse_model" if sort in MODELS else "meshes:parse_meshes")
     try:
-        found = read_contained("extrados.model.geometry.solids.meshes:parse_meshes", file.content, name=name, sort=sort)
+        found = read_contained(reader, file.content, MODELS.get(sort, ()), name=name, sort=sort)
     except Unreadable as error:
         raise BadGeometry(str(error) if error.at else f"{name}: {error}", error.at or ("structure",)) from None
     return [Mesh(**mesh) for mesh in found]
@@ -109,17 +112,24 @@ def read_stl(content: bytes, name: str) -> list[Mesh]:
     """Meshes of an STL, as text or binary: each `solid` of the text that has a name of its own, and what hangs together."""
     solids = _stl_text(content, name) if _is_text(content) else {"": _stl_binary(content, name)}
     found: list[Mesh] = []
+    for title, pieces in shells_of_triangles(solids, name).items():
+        for points, faces in pieces:
+            own = title if title and len(pieces) == 1 else f"block {len(found) + 1}"
+            found.append(Mesh(own, points, faces, own))
+    return found
+
+
+def shells_of_triangles(solids: dict[str, np.ndarray], name: str) -> dict[str, list[tuple[np.ndarray, list[list[int]]]]]:
+    """Closed surfaces, as points (n, 3) and faces, of each solid of triangles (n, 3, 3); corners that lie together are one."""
     size = max(float(np.ptp(t.reshape(-1, 3), axis=0).max()) for t in solids.values())
     if not size * MERGED > 0.0:
         raise BadGeometry(f"{name}: all corners of the body have the same position")
+    found = {}
     for title, triangles in solids.items():
         corners = triangles.reshape(-1, 3)
         _, first, inverse = np.unique(np.round(corners / (MERGED * size)), axis=0, return_index=True, return_inverse=True)
         faces = [f for f in inverse.reshape(-1, 3).tolist() if len(set(f)) == 3]
-        pieces = _shells(faces)
-        for piece in pieces:
-            own = title if title and len(pieces) == 1 else f"block {len(found) + 1}"
-            found.append(Mesh(own, *_alone(corners[first], piece), own))
+        found[title] = [_alone(corners[first], piece) for piece in _shells(faces)]
     return found
 
 

@@ -1,0 +1,137 @@
+"""thrust-network: networks of compression branches within a vault or dome, of least, greatest and most central thrust."""
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.diagrams import FORM, diagram_of, form_of, outside_of
+from extrados.analyses.limit.solids import scene_arrays
+from extrados.analyses.limit.tables import ThrustNetwork
+from extrados.limit.errors import NoEquilibrium
+from extrados.limit.network import Aim, Diagram, Extreme, Network, ThrustNetworks
+from extrados.results import networks as out
+from extrados.results.model import Array, Result, TableData
+
+AIMS: tuple[Aim, ...] = ("central", "least", "greatest", "horizontal")
+ABOUT = {
+    "central": "the most central network",
+    "least": "the network of least thrust",
+    "greatest": "the network of greatest thrust",
+    "horizontal": "the network of the greatest horizontal load",
+}
+
+
+def run(context: Context, options: ThrustNetwork) -> Result:
+    """The networks of the form diagram: thrusts, geometric safety factor and horizontal load, each with its bound."""
+    assembly = context.building.solids()
+    form = form_of(context.building, options)
+    diagram = diagram_of(assembly, form, options.lines, options.meridians)
+    angle = np.radians(options.direction)
+    networks = ThrustNetworks(diagram, np.array([np.cos(angle), np.sin(angle)]))
+    found: dict[Aim, Extreme] = {}
+    result = Result("thrust-network")
+    for done, aim in enumerate(AIMS):
+        context.progress(done, len(AIMS), "networks")
+        if aim != "central" and (found["central"].value is None or found["central"].value > 1.0):
+            break
+        try:
+            found[aim] = networks.extreme(aim)
+        except NoEquilibrium as error:
+            raise Refused(f"{error}. This does not prove collapse: another form, or more `lines`, may hold one", FORM) from None
+    part = found["central"].value
+    if part is None:
+        raise Refused("the search found no network on this diagram. Another form, or more `lines`, may hold one", FORM)
+    states = {aim: one.network for aim, one in found.items() if one.network is not None}
+    values = {aim: found[aim] if aim in found else Extreme(None, None, None) for aim in AIMS}
+    weight = float(diagram.weight.sum())
+    result.results = r = out.ThrustNetwork(
+        form=form,
+        nodes=len(diagram.point),
+        branches=len(diagram.branch),
+        supports=len(diagram.support),
+        least_thrust_N=values["least"].value,
+        least_thrust_bound_N=values["least"].bound,
+        greatest_thrust_N=values["greatest"].value,
+        greatest_thrust_bound_N=values["greatest"].bound,
+        central_thrust_N=states["central"].thrust,
+        least_part_of_depth=part,
+        least_part_bound=values["central"].bound,
+        geometric_safety_factor=1.0 / part if part > 0.0 else None,
+        load_direction_deg=options.direction,
+        horizontal_load_g=values["horizontal"].value,
+        horizontal_load_bound_g=values["horizontal"].bound,
+        weight_N=weight,
+        equilibrium_residual=max(one.residual for one in states.values()),
+        outside_m=max(outside_of(diagram, assembly, one) for one in states.values()),
+    )
+    result.arrays = scene_arrays(assembly) | _arrays(diagram, states)
+    result.tables = {f"network_{aim}": _table(diagram, one) for aim, one in states.items()}
+    result.answer = _words(r)
+    return result
+
+
+def _arrays(diagram: Diagram, states: dict[Aim, Network]) -> dict[str, Array]:
+    """The diagram with its surfaces, and heights and densities of each network."""
+    n = len(diagram.point)
+    arrays = {
+        "network_point": Array(diagram.point, ("node", "axis"), "m", "nodes of the form diagram in plan"),
+        "network_branch": Array(diagram.branch, ("branch", "end"), "", "nodes at the ends of each branch"),
+        "network_low": Array(diagram.low[:n], ("node",), "m", "lowest place of the blocks at each node"),
+        "network_high": Array(diagram.high[:n], ("node",), "m", "highest place of the blocks at each node"),
+        "network_weight": Array(diagram.weight, ("node",), "N", "weight of each node"),
+        "network_support": Array(diagram.support, ("support",), "", "nodes on the ground"),
+    }
+    for aim, one in states.items():
+        arrays[f"{aim}_density"] = Array(one.density, ("branch",), "N/m", f"force density of each branch in {ABOUT[aim]}")
+        arrays[f"{aim}_height"] = Array(one.height, ("node",), "m", f"height of each node in {ABOUT[aim]}")
+    return arrays
+
+
+def _table(diagram: Diagram, network: Network) -> TableData:
+    """Branch by branch: ends, horizontal thrust and force."""
+    first, second = diagram.branch.T
+    run = np.linalg.norm(diagram.point[second] - diagram.point[first], axis=1)
+    rise = network.height[second] - network.height[first]
+    columns = {
+        "start": first,
+        "end": second,
+        **{f"x{k}": diagram.point[at, 0] for k, at in ((1, first), (2, second))},
+        **{f"y{k}": diagram.point[at, 1] for k, at in ((1, first), (2, second))},
+        **{f"z{k}": network.height[at] for k, at in ((1, first), (2, second))},
+        "thrust": 1e-3 * network.density * run,
+        "force": 1e-3 * network.density * np.hypot(run, rise),
+    }
+    return TableData(columns, {**dict.fromkeys(("x1", "x2", "y1", "y2", "z1", "z2"), "m"), "thrust": "kN", "force": "kN"})
+
+
+def _between(value: float | None, bound: float | None, unit: float) -> str:
+    """A value found with its bound; only one where both agree."""
+    if value is None:
+        return "not found" if bound is None else f"not found (bound of the diagram: {bound / unit:.4g})"
+    if bound is None or abs(value - bound) <= out.AGREE * abs(value):
+        return f"{value / unit:.4g}"
+    return f"{value / unit:.4g} (bound of the diagram: {bound / unit:.4g})"
+
+
+def _words(r: out.ThrustNetwork) -> str:
+    text = f"Networks on the {r.form} diagram of {r.branches} branches: "
+    if r.least_part_of_depth > 1.0:
+        return (
+            f"{text}no network found lies within the structure. The best one requires {r.least_part_of_depth:.2f} times its depth "
+            f"(bound of the diagram: {r.least_part_bound or 0.0:.2f} times). This does not prove collapse: the diagram is given."
+        )
+    text += (
+        f"the sum of the outward thrusts of the {r.supports} supports lies between {_between(r.least_thrust_N, r.least_thrust_bound_N, 1e3)} "
+        f"and {_between(r.greatest_thrust_N, r.greatest_thrust_bound_N, 1e3)} kN. The most central network found stays within the middle "
+        f"{100.0 * r.least_part_of_depth:.1f} % of the depth (geometric safety factor {1.0 / r.least_part_of_depth:.2f}). "
+    )
+    if not r.horizontal_load_g:
+        if r.horizontal_load_bound_g is None:
+            return text + "No limit of the horizontal load was found on this diagram."
+        return (
+            f"{text}Along {r.load_direction_deg:g} degrees the diagram carries no horizontal load: a straight free edge, or a span "
+            "without supports, would require tension."
+        )
+    return (
+        f"{text}Along {r.load_direction_deg:g} degrees the networks carry a horizontal load of "
+        f"{_between(r.horizontal_load_g, r.horizontal_load_bound_g, 1.0)} times the weight."
+    )

@@ -1,0 +1,265 @@
+"""Point clouds of walls and barrel vaults: planes and circles fitted to their faces, with the misfit.
+
+PLY and XYZ are read by trimesh, LAS and LAZ by laspy (the extra `scan`), in a process of its own.
+"""
+
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from extrados.model.errors import BadGeometry
+from extrados.schema.contained import Unreadable, read_contained
+from extrados.schema.files import File
+
+CLOUDS = (".ply", ".xyz", ".las", ".laz")
+MOST_POINTS, FEWEST_POINTS = 20_000_000, 100
+CONSIDERED = 200_000  # points of a fit: of more, so many at even spacing in the file
+TRIES = 3_000  # points by which the direction of a barrel is sought
+#: Points farther from a face than so many standard deviations (by the median), and than this [m], do not belong to it
+OUTLIER, LEAST_NOISE = 3.0, 1e-4
+ENDS = 0.1  # percent of the points of a face beyond either of its ends
+APART = 4.0  # standard deviations between two faces, at least
+UPRIGHT = 0.3  # vertical part of the normal of a wall, at most
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How points lie on a face: used and not used, root mean square and 95th percentile of their distances [m] from it."""
+
+    name: str
+    used: int
+    dropped: int
+    rms: float
+    most: float
+
+    def told(self) -> str:
+        """The misfit in words."""
+        return (
+            f"{self.name}: {self.used} points within {1e3 * self.most:.3g} mm (95 %; root mean square {1e3 * self.rms:.3g} mm), "
+            f"{self.dropped} points not used"
+        )
+
+
+@dataclass(frozen=True)
+class WallFit:
+    """Faces of a wall: n = back[0] + back[1] s + back[2] z, and front alike [m], with s along `along`, n along `across` (3), from
+    `origin` (3); s, z: both ends."""
+
+    origin: np.ndarray
+    along: np.ndarray
+    across: np.ndarray
+    back: np.ndarray
+    front: np.ndarray
+    s: tuple[float, float]
+    z: tuple[float, float]
+    fits: tuple[Fit, ...]
+
+
+@dataclass(frozen=True)
+class BarrelFit:
+    """Circles (s, z, radius) of intrados and extrados [m], with s along `along` (3) and t along the axis `axis` (3), from `origin` (3);
+    angle: of both springings about the centre of the intrados, from s to z [rad]; t: both ends."""
+
+    origin: np.ndarray
+    along: np.ndarray
+    axis: np.ndarray
+    inner: np.ndarray
+    outer: np.ndarray
+    angle: tuple[float, float]
+    t: tuple[float, float]
+    fits: tuple[Fit, ...]
+
+
+def read_cloud(file: File, scale: float) -> np.ndarray:
+    """Points (n, 3) [m] of a file in units of `scale` [m]; BadGeometry says why there are none."""
+    name, sort = file.path.name, file.path.suffix.lower()
+    library = "laspy" if sort in (".las", ".laz") else "trimesh"
+    try:
+        found = read_contained("extrados.model.geometry.clouds:parse_cloud", file.content, [library], sort=sort)
+    except Unreadable as error:
+        raise BadGeometry(f"{name}: {error}", ("structure", "file")) from None
+    points = scale * np.asarray(found["points"])
+    if len(points) < FEWEST_POINTS:
+        raise BadGeometry(f"{name}: {len(points)} points, at least {FEWEST_POINTS} are required", ("structure", "file"))
+    return points[:: -(-len(points) // CONSIDERED)]
+
+
+def parse_cloud(content: bytes, sort: str) -> dict[str, np.ndarray]:
+    """Points (n, 3) of a file. The contained process calls this; Unreadable gives the reason."""
+    try:
+        if sort in (".las", ".laz"):
+            import laspy
+
+            cloud = laspy.read(io.BytesIO(content))
+            points = np.column_stack([cloud.x, cloud.y, cloud.z])
+        else:
+            import trimesh
+
+            loaded: Any = trimesh.load(io.BytesIO(content), file_type=sort[1:])
+            points = np.asarray(loaded.vertices, dtype=float)
+    except ImportError:
+        raise Unreadable("reading point clouds requires trimesh and laspy. Install them by pip install 'extrados[scan]'") from None
+    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
+        raise Unreadable("the file has no points of three finite coordinates")
+    if len(points) > MOST_POINTS:
+        raise Unreadable(f"the file has more than {MOST_POINTS} points")
+    return {"points": points}
+
+
+def fit_wall(points: np.ndarray, thickness: float | None = None) -> WallFit:
+    """The wall of points (n, 3) [m] on both of its faces, or on one of them if its thickness [m] is given.
+
+    Each face is the plane of least squares of its points, without those farther from it than three standard deviations.
+    """
+    origin = np.median(points, axis=0)
+    normal = np.linalg.svd((points - origin)[:: -(-len(points) // 20_000)], full_matrices=False)[2][2]
+    if abs(normal[2]) > UPRIGHT:
+        raise BadGeometry("the points do not form a vertical wall; give one wall a file", ("structure", "scan"))
+    across = np.array([normal[0], normal[1], 0.0]) / np.hypot(normal[0], normal[1])
+    along = np.array([across[1], -across[0], 0.0])
+    s, n, z = _local(points - origin, along, across)
+    ones = np.column_stack([np.ones_like(s), s, z])
+
+    def plane(chosen: np.ndarray) -> np.ndarray:
+        found: np.ndarray = np.linalg.lstsq(ones[chosen], n[chosen], rcond=None)[0]
+        return found
+
+    def off(face: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        rest: np.ndarray = n[chosen] - ones[chosen] @ face
+        return rest
+
+    sides = _sides((points - origin) @ normal) if thickness is None else [np.arange(len(points))]
+    if normal @ across < 0.0:
+        sides = sides[::-1]
+    faces, fits, used = [], [], []
+    for name, side in zip(("back face", "front face"), sides, strict=False):
+        face, kept, fit = _robust(name, side, plane, off)
+        faces.append(face)
+        fits.append(fit)
+        used.append(kept)
+    kept = np.concatenate(used)
+    back = faces[0]
+    front = faces[1] if thickness is None else back + np.array([thickness, 0.0, 0.0])
+    middle = np.array([1.0, float(np.median(s[kept])), float(np.median(z[kept]))])
+    if (front - back) @ middle < APART * max(fit.rms for fit in fits):
+        raise BadGeometry("the points show one face of the wall: give its thickness", ("structure", "scan", "thickness"))
+    return WallFit(origin, along, across, back, front, _ends(s[kept]), _ends(z[kept]), tuple(fits))
+
+
+def fit_barrel(points: np.ndarray, thickness: float | None = None, axis: float | None = None) -> BarrelFit:
+    """The barrel of points (n, 3) [m] on intrados and extrados, or on the intrados if its thickness [m] is given.
+
+    axis [rad]: direction of its horizontal axis in plan from x; the direction of least misfit where None. Circles are of least squares
+    of the distances, without points farther than three standard deviations.
+    """
+    origin = np.median(points, axis=0)
+    local = points - origin
+    few = local[:: -(-len(points) // TRIES)]
+    if axis is None:
+        axis = _least(lambda a: _misfit(few, a, thickness is None))
+    way = np.array([np.cos(axis), np.sin(axis), 0.0])
+    along = np.array([way[1], -way[0], 0.0])
+    s, t, z = _local(local, along, way)
+    flat = np.column_stack([s, z])
+
+    def circle(chosen: np.ndarray) -> np.ndarray:
+        return _circle(flat[chosen])
+
+    def off(found: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        return np.hypot(*(flat[chosen] - found[:2]).T) - found[2]
+
+    whole = circle(np.arange(len(flat)))
+    sides = _sides(off(whole, np.arange(len(flat)))) if thickness is None else [np.arange(len(flat))]
+    found = [_robust(name, side, circle, off) for name, side in zip(("intrados", "extrados"), sides, strict=False)]
+    inner = found[0][0]
+    outer = found[1][0] if thickness is None else inner + np.array([0.0, 0.0, thickness])
+    if outer[2] - inner[2] < APART * max(fit.rms for _, _, fit in found):
+        raise BadGeometry("the points show one face of the vault: give its thickness", ("structure", "scan", "thickness"))
+    kept = np.concatenate([one for _, one, _ in found])
+    below = found[0][1]
+    x, up = (flat[below] - inner[:2]).T
+    low, high = _ends(np.arctan2(x, up))  # from the crown
+    angle = (0.5 * np.pi - high, 0.5 * np.pi - low)
+    return BarrelFit(origin, along, way, inner, outer, angle, _ends(t[kept]), tuple(fit for _, _, fit in found))
+
+
+def _local(arm: np.ndarray, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coordinates of points (n, 3) along two horizontal unit vectors and upwards."""
+    return arm @ first, arm @ second, arm[:, 2]
+
+
+def _sides(distance: np.ndarray) -> list[np.ndarray]:
+    """Numbers of the points of both faces, by two means of their distances (n)."""
+    edge = float(np.mean(distance))
+    for _ in range(50):
+        low, high = distance[distance <= edge], distance[distance > edge]
+        if not len(low) or not len(high):
+            break
+        edge = 0.5 * float(np.median(low) + np.median(high))
+    return [np.flatnonzero(distance <= edge), np.flatnonzero(distance > edge)]
+
+
+def _robust(
+    name: str, side: np.ndarray, fit: Callable[[np.ndarray], np.ndarray], off: Callable[[np.ndarray, np.ndarray], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, Fit]:
+    """A face of some points, the points that belong to it, and the misfit."""
+    if len(side) < FEWEST_POINTS // 2:
+        raise BadGeometry(f"{name}: {len(side)} points are too few", ("structure", "scan"))
+    kept = side
+    for _ in range(20):
+        face = fit(kept)
+        rest = np.abs(off(face, side))
+        limit = max(OUTLIER * 1.4826 * float(np.median(rest)), LEAST_NOISE)
+        again = side[rest <= limit]
+        if len(again) == len(kept) and (again == kept).all():
+            break
+        kept = again
+    rest = off(fit(kept), kept)
+    return face, kept, Fit(name, len(kept), len(side) - len(kept), float(np.sqrt(np.mean(rest**2))), float(np.percentile(np.abs(rest), 95)))
+
+
+def _circle(points: np.ndarray) -> np.ndarray:
+    """Centre and radius (3) of the circle of least squares of the distances of points (n, 2) (Kasa's circle, then Gauss-Newton)."""
+    middle = points.mean(axis=0)
+    arm = points - middle
+    a, b, c = np.linalg.lstsq(np.column_stack([2.0 * arm, np.ones(len(arm))]), (arm**2).sum(axis=1), rcond=None)[0]
+    found = np.array([a, b, np.sqrt(max(c + a * a + b * b, 1e-12))])
+    for _ in range(20):
+        way = arm - found[:2]
+        far = np.maximum(np.hypot(*way.T), 1e-12)
+        step = np.linalg.lstsq(np.column_stack([way / far[:, None], np.ones(len(arm))]), far - found[2], rcond=None)[0]
+        found = found + step
+        if np.abs(step).max() < 1e-9 * abs(found[2]):
+            break
+    return found + np.array([*middle, 0.0])
+
+
+def _misfit(points: np.ndarray, axis: float, two: bool) -> float:
+    """Median distance [m] of points (n, 3) from one or two circles across an axis [rad]."""
+    flat = np.column_stack([points @ np.array([np.sin(axis), -np.cos(axis), 0.0]), points[:, 2]])
+    whole = _circle(flat)
+    rest = np.hypot(*(flat - whole[:2]).T) - whole[2]
+    if two:
+        low, high = _sides(rest)
+        rest[low] -= np.median(rest[low])
+        rest[high] -= np.median(rest[high])
+    return float(np.mean(np.abs(rest)))
+
+
+def _least(misfit: Callable[[float], float]) -> float:
+    """The direction [rad] of least misfit within half a turn."""
+    from scipy.optimize import minimize_scalar  # takes a third of a second to load
+
+    tries = np.radians(np.arange(0.0, 180.0, 5.0))
+    best = float(tries[int(np.argmin([misfit(float(a)) for a in tries]))])
+    return float(minimize_scalar(misfit, bounds=(best - 0.1, best + 0.1), method="bounded", options={"xatol": 1e-5}).x)
+
+
+def _ends(values: np.ndarray) -> tuple[float, float]:
+    """Both ends of evenly scattered values: percentiles, which few stray points do not move, and the shares beyond them."""
+    low, high = np.percentile(values, [ENDS, 100.0 - ENDS]).tolist()
+    beyond = (high - low) * ENDS / (100.0 - 2.0 * ENDS)
+    return low - beyond, high + beyond

@@ -1,0 +1,49 @@
+"""Results of thrust-network: compression networks on a form diagram within a vault or dome."""
+
+from extrados.results.fields import fact
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
+
+#: Relative difference of a value and its bound that is rounding
+AGREE = 1e-4
+
+
+class ThrustNetwork(KindResults):
+    """thrust-network: thrusts, safety and horizontal load of the networks on one form diagram.
+
+    Each bound encloses all networks on the diagram; a value belongs to a network that was found.
+    """
+
+    form: str = fact("form diagram: radial, grid or crossed")
+    nodes: int = fact("nodes of the diagram")
+    branches: int = fact("branches of the diagram")
+    supports: int = fact("nodes on the ground")
+    least_thrust_N: float | None = fact("least sum of the outward thrusts of all supports; null if no network was found", "N")
+    least_thrust_bound_N: float | None = fact("lower bound of this sum for all networks on the diagram; null without one", "N")
+    greatest_thrust_N: float | None = fact(
+        "greatest sum of the outward thrusts of all supports; null if no network was found, or without a limit", "N"
+    )
+    greatest_thrust_bound_N: float | None = fact("upper bound of this sum for all networks on the diagram; null without a limit", "N")
+    central_thrust_N: float = fact("sum of the outward thrusts of all supports in the most central network", "N")
+    least_part_of_depth: float = fact("part of the vertical depth, about its middle, that holds the most central network found")
+    least_part_bound: float | None = fact("part of the depth that holds no network on the diagram; null without one")
+    geometric_safety_factor: float | None = fact(
+        "geometric safety factor: 1 divided by the part of the depth that the most central network needs; null without a demand"
+    )
+    load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
+    horizontal_load_g: float | None = fact(
+        "greatest horizontal load that a network found carries, divided by the weight; null if no network was found, or without a limit",
+        "g",
+    )
+    horizontal_load_bound_g: float | None = fact("upper bound of this load for all networks on the diagram; null without a limit", "g")
+    weight_N: float = fact("weight of the structure", "N")
+    equilibrium_residual: float = fact("ratio of the greatest unbalanced force at a node to the weight")
+    outside_m: float = fact("greatest distance by which a branch that carries force leaves the blocks between its nodes", "m")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The part of the depth that the most central network needs against the whole."""
+        part = self.least_part_of_depth
+        if part > 1.0:
+            return judge(
+                f"No network found on this diagram lies within the structure: it needs {part:.2f} times the depth.", outcome="open"
+            )
+        return judge(f"A network on this diagram stays within the middle {100.0 * part:.3g} % of the depth.", part, 1.0)

@@ -1,0 +1,129 @@
+"""Point clouds of walls and vaults: fitted faces, and the capacity of the blocks that given courses cut."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from extrados.analyses.context import Context
+from extrados.analyses.sequence import run_analyses
+from extrados.decks.reader import make_deck
+from extrados.limit.programme import LimitAnalysis
+from extrados.limit.solids import Programme, SolidLimit
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.clouds import fit_barrel, fit_wall
+from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.scan import Scan
+
+FAR = np.array([431250.0, 5062480.0, 310.0])
+NOISE = 5e-3
+
+
+def turned(points: np.ndarray, degrees: float, where: np.ndarray) -> np.ndarray:
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + where
+
+
+def wall_cloud(seed: int, *, faces: tuple[float, ...] = (0.0, 0.4), opening: bool = False, count: int = 20_000) -> np.ndarray:
+    """A wall of 4 m by 3 m and .4 m thickness that leans by 1 in 100 towards +y, with noise and one stray point in fifty."""
+    rng = np.random.default_rng(seed)
+    x, z = rng.uniform(0.0, 4.0, count), rng.uniform(0.0, 3.0, count)
+    y = rng.choice(np.array(faces), count) + 0.01 * z + rng.normal(0.0, NOISE, count)
+    stray = rng.random(count) < 0.02
+    y[stray] += rng.uniform(-1.0, 1.0, stray.sum())
+    points = np.column_stack([x, y, z])
+    return points[~((x > 1.0) & (x < 2.0) & (z > 1.0) & (z < 2.0))] if opening else points
+
+
+def barrel_cloud(seed: int, radii: tuple[float, ...] = (4.0, 4.5), count: int = 20_000) -> np.ndarray:
+    """A barrel about the axis y, of 120 degrees, 5 m long."""
+    rng = np.random.default_rng(seed)
+    angle, y = np.radians(rng.uniform(30.0, 150.0, count)), rng.uniform(0.0, 5.0, count)
+    r = rng.choice(np.array(radii), count) + rng.normal(0.0, NOISE, count)
+    return np.column_stack([r * np.cos(angle), y, r * np.sin(angle)])
+
+
+def push(solids: SolidAssembly, degrees: float) -> float:
+    found = SolidLimit(solids, 0.7).push(degrees)
+    assert isinstance(found, Programme)
+    return found.gamma
+
+
+@pytest.mark.parametrize(("seed", "degrees"), [(1, 0.0), (2, 37.0), (3, 151.0)])
+def test_a_wall_out_of_its_plane(seed: int, degrees: float) -> None:
+    """It overturns at (thickness / 2 -+ lean) over half the height: moments about an edge of the sole."""
+    points = turned(wall_cloud(seed), degrees, FAR)
+    fit = fit_wall(points)
+    thickness = float((fit.front - fit.back) @ [1.0, 0.0, 0.0])
+    assert thickness == pytest.approx(0.4, abs=1e-3) and max(f.rms for f in fit.fits) == pytest.approx(NOISE, rel=0.1)
+    assert sum(f.dropped for f in fit.fits) == pytest.approx(0.02 * len(points), rel=0.3)
+    solids = Scan(shape="wall", courses=6, block_length=1.0).solids(points, 2000.0, "wall.ply")
+    assert len(solids.mass) == 3 * 4 + 3 * 5
+    lean = 0.01 * 1.5
+    for way, arm in ((degrees + 90.0, 0.2 - lean), (degrees - 90.0, 0.2 + lean)):
+        assert push(solids, way) == pytest.approx(arm / 1.5, rel=0.01)
+    assert "points within" in solids.notes[0] and "mm (95 %" in solids.notes[0] and solids.remarks == ()
+
+
+def test_beds_are_where_they_are_given() -> None:
+    solids = Scan(shape="wall", beds=[0.5, 1.5]).solids(wall_cloud(4), 2000.0, "wall.ply")
+    assert len(solids.mass) == 3 and solids.mass[1] == pytest.approx(2000.0 * 4.0 * 0.4 * 1.0, rel=0.01)
+    with pytest.raises(ValueError, match="increasing"):
+        Scan(shape="wall", beds=[1.5, 0.5])
+
+
+def test_one_face_needs_a_thickness_and_openings_are_mentioned() -> None:
+    one = wall_cloud(5, faces=(0.0,))
+    with pytest.raises(BadGeometry, match="one face of the wall: give its thickness"):
+        Scan(shape="wall", courses=3).solids(one, 2000.0, "wall.ply")
+    made = Scan(shape="wall", courses=3, thickness=0.4).solids(one, 2000.0, "wall.ply")
+    assert made.measures["thickness_m"] == pytest.approx(0.4)
+    open_wall = Scan(shape="wall", courses=3).solids(wall_cloud(6, opening=True), 2000.0, "wall.ply")
+    assert "% of the wall have no points. Openings are not modelled" in open_wall.remarks[0]
+
+
+@pytest.mark.parametrize(("seed", "degrees", "length"), [(1, 0.0, None), (2, 63.0, 1.0)])
+def test_a_barrel_has_the_capacity_of_its_section(seed: int, degrees: float, length: float | None) -> None:
+    points = turned(barrel_cloud(seed), degrees, FAR)
+    fit = fit_barrel(points)
+    assert fit.inner[2] == pytest.approx(4.0, abs=2e-3) and fit.outer[2] == pytest.approx(4.5, abs=2e-3)
+    assert np.degrees(np.ptp(fit.angle)) == pytest.approx(120.0, abs=0.3)
+    solids = Scan(shape="barrel", courses=12, block_length=length).solids(points, 2000.0, "vault.las")
+    true = LimitAnalysis(make_arch(4.25, 0.5, 120.0, 12), 0.7).collapse()[0].gamma
+    assert push(solids, degrees) == pytest.approx(true, rel=0.01)
+
+
+def test_an_intrados_alone() -> None:
+    points = barrel_cloud(7, (4.0,))
+    with pytest.raises(BadGeometry, match="one face of the vault: give its thickness"):
+        fit_barrel(points)
+    made = Scan(shape="barrel", courses=12, thickness=0.5, axis=90.0).solids(points, 2000.0, "vault.las")
+    true = LimitAnalysis(make_arch(4.25, 0.5, 120.0, 12), 0.7).collapse()[0].gamma
+    assert push(made, 0.0) == pytest.approx(true, rel=0.01)
+
+
+@pytest.mark.parametrize("sort", ["ply", "xyz", "las"])
+def test_a_deck_of_a_point_cloud(tmp_path: Path, sort: str) -> None:
+    points = wall_cloud(8, count=4000)
+    path = tmp_path / f"wall.{sort}"
+    if sort == "las":
+        laspy = pytest.importorskip("laspy")
+        cloud = laspy.create()
+        cloud.header.scales = [1e-4] * 3
+        cloud.x, cloud.y, cloud.z = points.T
+        cloud.write(path)
+    else:
+        path.write_bytes(pytest.importorskip("trimesh").PointCloud(points).export(file_type=sort) if sort == "ply" else _xyz(points))
+    tables: dict[str, Any] = {
+        "structure": {"kind": "blocks", "file": path.name, "scan": {"shape": "wall", "courses": 3}},
+        "analysis": {"kind": "tilt", "direction": 90.0, "rose": 4, "face_law": False, "block_size": False},
+    }
+    found = run_analyses(Context(make_deck(tables, tmp_path), threads=1))[0]
+    assert found["collapse_acceleration_g"] == pytest.approx((0.2 - 0.015) / 1.5, rel=0.015)
+    assert any("back face: " in w and "points not used" in w for w in found.warnings)
+
+
+def _xyz(points: np.ndarray) -> bytes:
+    return "\n".join(f"{x:.5f} {y:.5f} {z:.5f}" for x, y, z in points.tolist()).encode()

@@ -1,0 +1,93 @@
+"""Thrust networks: closed forms, thrust lines of the plane, limit analysis of solids, equilibrium by a peer."""
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.limit.network import Diagram, ThrustNetworks
+
+BARREL = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 120.0, "voussoirs": 31, "depth": 0.2}
+DOME = {"kind": "dome", "radius": 5.0, "thickness": 0.5, "rings": 5, "lunes": 8}
+
+
+def _flat(branches: int, reach: float) -> Diagram:
+    """A flat arch: 10 m, .5 m deep, 2 kN/m, on beds that end `reach` inside and outside of its ends at the soffit."""
+    x = np.linspace(0.0, 10.0, branches + 1)
+    weight = np.full(branches + 1, 2e4 / branches)
+    weight[[0, -1]] *= 0.5
+    along = np.arange(branches)
+    high = np.full(2 * branches + 1, 0.5)
+    bed = np.array([[-reach, 0.0], [reach, 0.0]])
+    return Diagram(
+        np.column_stack([x, 0.0 * x]),
+        np.column_stack([along, along + 1]),
+        along,
+        0.0 * high,
+        high,
+        np.zeros(2 * branches + 1, dtype=bool),
+        weight,
+        np.array([0, branches]),
+        np.array([[-1.0, 0.0], [1.0, 0.0]]),
+        np.array([bed, bed]),
+    )
+
+
+@pytest.mark.parametrize("branches", [4, 10])
+def test_flat_arch_rises_through_its_depth(branches) -> None:
+    """Least thrust w L^2 / 8 d at either end."""
+    found = ThrustNetworks(_flat(branches, 5.0)).extreme("least")
+    exact = 2.0 * 2e3 * 100.0 / 8.0 / 0.5
+    assert found.value == pytest.approx(exact, rel=1e-6)
+    assert found.bound == pytest.approx(exact, rel=1e-6)
+    assert found.network is not None
+    assert found.network.residual < 1e-9
+
+
+def test_barrel_is_its_thrust_line() -> None:
+    """Slices with upright sides in place of voussoirs: 2 %; the network lies within the thickness."""
+    run = extrados.run({"structure": BARREL, "analysis": [{"kind": "thrust-network", "lines": 20}, {"kind": "thrust"}]})
+    network, line = (run.analyses[k]["results"] for k in range(2))
+    assert network["least_thrust_N"] == pytest.approx(2.0 * line["least"]["horizontal_N"], rel=0.02)
+    assert network["greatest_thrust_N"] == pytest.approx(2.0 * line["most"]["horizontal_N"], rel=0.01)
+    for end in ("least", "greatest"):
+        assert network[f"{end}_thrust_N"] == pytest.approx(network[f"{end}_thrust_bound_N"], rel=1e-6)
+    assert network["equilibrium_residual"] < 1e-9
+    assert network["outside_m"] < 0.01
+
+
+def test_dome_lies_between_its_bounds_and_turns_with_its_load() -> None:
+    """The bounds enclose what is found; networks lie between the surfaces; a dome of equal meridians has no direction."""
+    analysis = {"kind": "thrust-network", "lines": 4, "meridians": 8}
+    run = extrados.run({"structure": DOME, "analysis": [analysis, {**analysis, "direction": 90.0}]})
+    r = run.analyses[0]["results"]
+    assert r["least_thrust_bound_N"] <= r["least_thrust_N"] * (1.0 + 1e-6)
+    assert r["least_thrust_N"] < r["central_thrust_N"] < r["greatest_thrust_N"] <= r["greatest_thrust_bound_N"] * (1.0 + 1e-6)
+    assert r["least_part_bound"] <= r["least_part_of_depth"] < 1.0
+    assert 0.0 < r["horizontal_load_g"] <= r["horizontal_load_bound_g"] * (1.0 + 1e-6)
+    assert run.analyses[1]["results"]["horizontal_load_bound_g"] == pytest.approx(r["horizontal_load_bound_g"], rel=1e-6)
+    arrays = run.arrays["thrust-network"]
+    for which in ("least", "central", "greatest"):
+        z = arrays[f"{which}_height"].numbers
+        low, high = arrays["network_low"].numbers, arrays["network_high"].numbers
+        inner = np.setdiff1d(np.arange(len(z)), arrays["network_support"].numbers)
+        inner = inner[np.linalg.norm(arrays["network_point"].numbers[inner], axis=1) < 4.7]  # the others lie over the bed
+        assert (z[inner] >= low[inner] - 1e-5).all()
+        assert (z[inner] <= high[inner] + 1e-5).all()
+
+
+def test_thinner_dome_is_less_safe_until_no_network_fits() -> None:
+    """A hemisphere of 3 % of its radius holds no network: about 4 % are required (Heyman 1967)."""
+    runs = [
+        extrados.run({"structure": {**DOME, "thickness": t}, "analysis": {"kind": "thrust-network", "lines": 5, "meridians": 8}})
+        for t in (0.5, 0.3, 0.15)
+    ]
+    parts = [run.analyses[0]["results"].get("least_part_of_depth", np.inf) for run in runs]
+    assert parts[0] < parts[1] < 1.0 < parts[2]
+    assert runs[2].analyses[0]["results"].get("least_thrust_N") is None
+
+
+def test_barrel_refuses_a_radial_diagram() -> None:
+    """Its supports are not all around."""
+    run = extrados.run({"structure": BARREL, "analysis": {"kind": "thrust-network", "form": "radial"}})
+    assert run.analyses[0]["status"] == "refused"
+    assert "form" in run.analyses[0]["reason"]
