@@ -126,10 +126,11 @@ def examples(relation: Relation) -> None:
 def random_cases(relation: Relation, count: int) -> None:
     """As many random cases; the smallest that breaks it is shown."""
     last: list[Any] = []
+    simplest = iter([SHARE > 0.0])  # what hypothesis begins with, of which many faults change nothing: beside the count
 
     @seed(zlib.crc32(relation.name.encode()) + SEED)
     @settings(
-        max_examples=count,
+        max_examples=count + (SHARE > 0.0),
         database=None,
         deadline=None,
         suppress_health_check=list(HealthCheck),
@@ -140,7 +141,8 @@ def random_cases(relation: Relation, count: int) -> None:
     @given(relation.case)
     def one(case: Any) -> None:
         last[:] = [case]
-        checked(relation, case)
+        if not next(simplest, False):
+            checked(relation, case)
 
     try:
         one()
