@@ -20,7 +20,7 @@ class Tie(Table):
     name: str | None = key(None, "name in the results; default: tie 1, tie 2 and so on", max_length=80)
     start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block; for a hoop, any point at its height")
     end: Place | None = key(None, "anchorage in another block; or give `ground`")
-    ground: Place | None = key(None, "anchorage in the ground, which does not move with the supports")
+    ground: Place | None = key(None, "anchorage in the ground: a point that stays fixed when supports move")
     via: list[Place] = key([], "in space: points of blocks over which a chain runs from start to end, in order", max_length=1000)
     hoop: bool = key(
         False, "in space: closed hoop around the convex outline of the structure at the height z of `start`, as the chain of a dome"

@@ -83,7 +83,7 @@ def line_frequencies(lines: int | Sequence[float], spacing: str, band: tuple[flo
     """Frequencies [Hz]: the given ones, or so many over the band, equally spaced or in equal ratios."""
     if isinstance(lines, int):
         if lines < 2:
-            raise ValueError(f"lines is {lines}, expected at least 2")
+            raise ValueError(f"the key `lines` is {lines}; expected at least 2 sine lines")
         return np.linspace(*band, lines) if spacing == "uniform" else np.geomspace(*band, lines)
     given = np.array(lines, dtype=float)
     if given.ndim != 1 or len(given) < 2 or np.any(np.diff(given) <= 0.0) or given[0] <= 0.0:

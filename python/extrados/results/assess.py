@@ -146,8 +146,8 @@ class CollapseInMotion(ResultModel):
     collapsed: int = fact("runs that collapse")
     count: int = fact("runs with a result")
     probability: float = fact("share that collapses")
-    low: float = fact("lower end of the 95 % score interval of the share that collapses", source="Wilson 1927")
-    high: float = fact("upper end of the 95 % score interval of the share that collapses", source="Wilson 1927")
+    low: float = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
+    high: float = fact("upper end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
     violated: list[str] = fact("assumptions of the rocking analysis that are violated in these runs")
 
 
@@ -180,7 +180,7 @@ class Advice(ResultModel):
     mechanism: str = fact("governing collapse mechanism of the existing building")
     interventions: list[Intervention] = fact("alternative interventions; the cheapest that reaches the target comes first")
     by_rocking: Intervention = maybe(
-        "the first tie of the list, with the least force at which the building survives rocking under the hazard"
+        "the first tie of `interventions`, with its force changed to the least one at which the building survives rocking under the hazard"
     )
     rocking: dict[str, str] = fact("outcome of rocking under the hazard, for each intervention that reaches the target")
     statement: str = fact("recommendation in words")

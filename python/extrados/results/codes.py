@@ -65,7 +65,9 @@ class Checked(KindResults):
         "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. The outcome is "
         "open if this ratio is at least 1 and the check without dilatancy fails; null without a demand"
     )
-    violated: list[str] = maybe("unsafe assumptions that were checked and are violated; the outcome is then open if the check is satisfied")
+    violated: list[str] = maybe(
+        "assumptions on the unsafe side that are violated. If there are any, a code check that is satisfied does not decide: the outcome is open"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall verdict; the deck's motion is no demand of a code."""

@@ -168,8 +168,8 @@ class BlocksRun(KindResults):
             return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
         slip = (
             f"Blocks slide by up to {three_figures(1e3 * self.peak_slip_m)} mm. This is {100 * share:.3g} % of the joint length at "
-            f"{self.slipped_joint} (limit {100 * SLIP_LIMIT:g} %, at which half of the lever arm to the end of the joint is "
-            f"lost). The slip at the end is {three_figures(1e3 * self.residual_slip_m)} mm"
+            f"{self.slipped_joint} (limit {100 * SLIP_LIMIT:g} %, at which the distance from the middle of the joint to "
+            f"its end is halved). At the end of the run {three_figures(1e3 * self.residual_slip_m)} mm of slip remain"
         )
         if share > SLIP_LIMIT:
             text = f"{slip}. The analysis does not decide whether the remaining contact suffices.{unchecked}"

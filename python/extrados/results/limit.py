@@ -288,7 +288,7 @@ def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -
     """An upper bound by dilatant friction [g] against the peak of the motion; reason: why no lower state is known."""
     found = judge_acceleration(capacity, demand, "upper")
     why = f" No state without dilatancy is given: {reason}." if reason else ""
-    return found.model_copy(update={"statement": f"{found.statement} Joints slide: {DILATANT}.{why}"})
+    return found.model_copy(update={"statement": f"{found.statement} Joints slide, so the capacity is an {DILATANT}.{why}"})
 
 
 def judge_ductile(capacity: float, dry: float, demand: Demand) -> Verdict:
@@ -309,7 +309,7 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
         f"of the load paths; {lower}; {upper}"
     )
     if peak is None:
-        return judge(f"{text}. The deck gives no single motion for comparison.", None, design, "g")
+        return judge(f"{text}. There is no comparison with a demand, because the deck does not give exactly one motion.", None, design, "g")
     outcome: Outcome = "collapses" if peak >= most else "open" if peak >= design else "stands"
     place = {"collapses": "at or above the upper bound", "open": "between design value and upper bound", "stands": "below the design value"}
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place[outcome]}."
@@ -331,7 +331,7 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
         f"{least:.3g} g; {upper}"
     )
     if peak is None:
-        return judge(f"{text}. The deck gives no single motion for comparison.", None, least, "g")
+        return judge(f"{text}. There is no comparison with a demand, because the deck does not give exactly one motion.", None, least, "g")
     outcome: Outcome
     if peak >= most:
         outcome, place = "collapses", "at or above the upper bound"
@@ -460,7 +460,7 @@ class MovingLoad(KindResults):
         """The adequacy factor of the train against 1, or the load of the deck against the least collapse load [N]."""
         text = f"The collapse load is {three_figures(self.collapse_load_N / 1e3)} kN at the most dangerous position"
         bound: Bound | None = "upper" if self.dilating_joints else None
-        more = f" Joints slide: {DILATANT}." if self.dilating_joints else ""
+        more = f" Joints slide, so the capacity is an {DILATANT}." if self.dilating_joints else ""
         judged = f"{more} {CHARACTERISTIC}" if self.characteristic else more
         violated = list(self.violated or ())
         if self.permissible_factor is not None:
@@ -586,7 +586,7 @@ class Sweep(KindResults):
     unit: str = fact("its unit")
     mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
     changes: list[Change] = fact("values of the key at which the governing mechanism changes")
-    stable_limits: list[float] = fact("ends of the range of the key, in its unit, in which the structure stands")
+    stable_limits: list[float] = fact("values of the key, in its unit, at the ends of the range in which the structure stands")
     locked_limits: list[float] = fact("values of the key beyond which no load of this kind causes collapse")
     optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")
     optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
@@ -613,7 +613,7 @@ class Sweep(KindResults):
         text = f"Among the calculated values, {self.vary} = {self.optimum_value:.4g}{unit} gives the greatest capacity, {best:.3g} g."
         if not self.upper_bound_values:
             return judge(text, None, best, "g")
-        text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide: {DILATANT}."
+        text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide, so the capacity is an {DILATANT}."
         return judge(text, None, best, "g", bound="upper")
 
 
@@ -652,7 +652,9 @@ class Survey(KindResults):
         text += f"; the weakest, {self.weakest}, has a capacity of {least:.3g} g."
         if not self.upper_bounds:
             return judge(text, None, least, "g")
-        return judge(f"{text} In {self.upper_bounds} of them joints slide: {DILATANT}.", None, least, "g", bound="upper")
+        return judge(
+            f"{text} In {self.upper_bounds} sections joints slide, and the capacity is an {DILATANT}.", None, least, "g", bound="upper"
+        )
 
 
 class Imperfections(KindResults):

@@ -290,7 +290,7 @@ class FailureDomain(KindResults):
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     natural_time_s: float = fact("time by which the durations are scaled: sqrt(R/g) for an arch, 1/p for a block", "s")
-    safe_pockets: int = fact("durations at which an amplitude above the failure amplitude is safe")
+    safe_pockets: int = fact("number of durations at which some amplitude above the lowest one that causes collapse is safe again")
     at_amplitudes: AtAmplitudes = maybe(
         "shortest durations that cause collapse, at the amplitudes given in the deck, for fixed hinges without sliding"
     )

@@ -37,10 +37,10 @@ class JointMotion(ResultModel):
 
     joint: str = fact("its name")
     wall: str = fact("wall that contains the joint, or that abuts at the joint")
-    opening_m: float = fact("greatest opening of the joint at the greatest load, and its location", "m")
-    slip_m: float = fact("greatest sliding of the joint along its wall at the greatest load, and its location", "m")
-    last_opening_m: float = fact("greatest opening of the joint in the last equilibrium state, and its location", "m")
-    last_slip_m: float = fact("greatest sliding of the joint in the last equilibrium state, and its location", "m")
+    opening_m: float = fact("greatest opening along the joint at the greatest load", "m")
+    slip_m: float = fact("greatest sliding along the joint at the greatest load", "m")
+    last_opening_m: float = fact("greatest opening along the joint in the last equilibrium state", "m")
+    last_slip_m: float = fact("greatest sliding along the joint in the last equilibrium state", "m")
     first_base_shear_N: float | None = fact("base shear at which the bond of the joint first fails; null without failure", "N")
     broken_share: float = fact("share of the joint area that has lost some of its bond in the last equilibrium state")
 

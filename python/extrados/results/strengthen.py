@@ -97,10 +97,10 @@ class FragilityPair(ResultModel):
     levels: list[float] = fact("factors on the motions")
     motions: int = fact("number of motions")
     before: list[float | None] = fact("share of the motions that cause collapse of the existing building")
-    before_low: list[float] = fact("lower end of the 95 % score interval of the share that collapses", source="Wilson 1927")
+    before_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
     before_high: list[float] = fact("upper end", source="Wilson 1927")
     after: list[float | None] = fact("share of the motions that cause collapse of the strengthened building")
-    after_low: list[float] = fact("lower end of the 95 % score interval of the share that collapses", source="Wilson 1927")
+    after_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
     after_high: list[float] = fact("upper end", source="Wilson 1927")
 
 

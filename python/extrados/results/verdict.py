@@ -183,7 +183,15 @@ def judge_acceleration(capacity: float, demand: Demand, bound: Bound | None = No
     name = {"upper": "Upper bound of the collapse acceleration", "lower": "Lower bound of the collapse acceleration"}
     carried = f"{name.get(bound or '', 'Collapse acceleration')} {capacity:.3g} g (horizontal, constant)"
     if peak is None:
-        return judge(f"{carried}. The deck gives no single motion for comparison.", None, capacity, "g", None, bound, violated)
+        return judge(
+            f"{carried}. There is no comparison with a demand, because the deck does not give exactly one motion.",
+            None,
+            capacity,
+            "g",
+            None,
+            bound,
+            violated,
+        )
     word = "below" if peak < capacity else "at or above"
     text = f"{carried}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {word} this value."
     return judge(text, peak, capacity, "g", None, bound, violated)

@@ -72,7 +72,9 @@ class Verification(ResultModel):
     zeta_E: float | None = fact("zeta_E of NTC: least factor on the seismic action at SLV; null without a demand", source="NTC 2018 8.3")
     nbs_percent: float | None = maybe("NZSEE: %NBS, the least factor", "%")
     fragility: list[BuildingFragility] = maybe("fragility of the building for the motions of the deck")
-    violated: list[str] = fact("unsafe assumptions that were checked and are violated; the outcome is then open if the check is satisfied")
+    violated: list[str] = fact(
+        "assumptions on the unsafe side that are violated. If there are any, a code check that is satisfied does not decide: the outcome is open"
+    )
 
     def governing(self) -> DisplacementCheck | None:
         """The check of least factor; None without any."""

@@ -242,7 +242,7 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
         )
     if outcome == "collapses":
         sized = (
-            words("Size the intervention with an analysis of kind strengthen.")
+            words("To size the intervention, add an analysis of kind `strengthen` to the deck.")
             if "strengthen" in kinds.ANALYSES
             else (words("Add ties, thickness or a buttress to the deck, and run it again."))
         )

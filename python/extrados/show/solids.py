@@ -85,7 +85,8 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
             (
                 style.save(fig, folder, f"{name}-mechanism"),
                 f"Left: the stones. Right: the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, continued to a visible displacement; "
-                f"{r.moving_blocks} of {r.blocks} stones move." + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
+                f"{r.moving_blocks} of {r.blocks} stones move."
+                + (f" Contacts slide, so the capacity is an {DILATANT}." if r.dilating_contacts else ""),
             )
         ]
     found.append(_draw_forces(run, name, folder, r, stones))

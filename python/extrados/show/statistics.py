@@ -366,7 +366,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         for value, row in zip(run.array(name, "impulse_period_ratio"), run.array(name, "energy_by_period"), strict=True):
             left.plot(s, row, label=f"T_p = {value:g} T_n")
         for value, row in zip(run.array(name, "impulse_rotation"), run.array(name, "energy_by_rotation"), strict=True):
-            right.plot(s, row, label=f"from {value:g} of the critical rotation")
+            right.plot(s, row, label=f"initial rotation {value:g} of the critical rotation")
         left.set_ylabel("energy supplied / energy at the start")
         for ax in (left, right):
             ax.axhline(0.0, color=style.EDGE, linewidth=0.8)

@@ -185,7 +185,7 @@ def _places(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
                 label=f"{label}: no yield force meets the target" if (~good).any() else "_",
             )
         ax.set_xlabel("required yield force [kN]")
-        ax.set_ylabel("place, x of the middle [m]" if across else "height of the middle [m]")
+        ax.set_ylabel("x of the middle of the tie [m]" if across else "height of the middle of the tie [m]")
         ax.set_xlim(left=0.0)
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-places")

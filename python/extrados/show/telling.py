@@ -386,7 +386,7 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
                 f"{h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
             )
             if h.pulse_amplitude_g is not None and h.pulse_period_s is not None:
-                text += f" The primary impulse has {h.pulse_amplitude_g:.3g} g over {h.pulse_period_s:.3g} s."
+                text += f" The primary impulse is a sine with an amplitude of {h.pulse_amplitude_g:.3g} g and a period of {h.pulse_period_s:.3g} s."
             found.append(Words(text, lang=_foreign(words)))
     return [*found, _properties(rows, words)]
 

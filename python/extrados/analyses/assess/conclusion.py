@@ -103,8 +103,13 @@ def _hazard_told(work: Work, motion: Any) -> str:
 def _arrays(work: Work, facts: Facts, rows: list[out.StrategyVerdict], result: Result) -> None:
     low, high = np.array([facts.interval(r.strategy) for r in rows]).reshape(-1, 2).T
     result.arrays = {
-        "margin_low": Array(low, ("strategy",), "", "scale factors of the hazard between which each verdict changes"),
-        "margin_high": Array(np.where(np.isinf(high), np.nan, high), ("strategy",), "", "NaN: not known"),
+        "margin_low": Array(low, ("strategy",), "", "greatest scale factor of the hazard at which no collapse is known, for each strategy"),
+        "margin_high": Array(
+            np.where(np.isinf(high), np.nan, high),
+            ("strategy",),
+            "",
+            "least scale factor of the hazard at which collapse is known, for each strategy; NaN: not known",
+        ),
     }
     time_s, ground = facts.motion.series()
     thin = slice(None, None, max(1, len(time_s) // 4000))

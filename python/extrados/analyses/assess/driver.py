@@ -97,8 +97,8 @@ def _scaled(work: Work) -> None:
     words = f"{work.rows['rocking'].parameters}; its margin from {row.parameters}"
     if high is None and low != curve.levels[-1]:
         words += (
-            "; at the next scale factor blocks slide or hinges form at other joints, so rocking gives only a lower bound of "
-            "the critical factor"
+            "; at the next greater scale factor blocks slide or hinges form at joints outside the assumed mechanism, so rocking gives "
+            "only a lower bound of the scale factor that causes collapse"
         )
     work.rows["rocking"] = work.rows["rocking"].model_copy(update={"parameters": words})
     outcome = work.rows["rocking"].outcome  # the run under the hazard itself is a factor of 1, on contacts where blocks slide

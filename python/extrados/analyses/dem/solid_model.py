@@ -135,7 +135,11 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ("mass_damping", options.mass_damping > 0.0, ("analysis", "mass_damping")),
         ('merge = "three-bars"', options.merge != "none", ("analysis", "merge")),
         *((key, key in given, ("analysis", key)) for key in ("vary_damping", "vary_stiffness", "vary_friction")),
-        ("[[initial.movements]] of a tilt test or of a map", bool(building.initial.movements) and not moves, ("initial", "movements")),
+        (
+            "[[initial.movements]] in a tilt test or in a map of pulses (dem-domain)",
+            bool(building.initial.movements) and not moves,
+            ("initial", "movements"),
+        ),
         ("[[initial.movements]] with a floor", bool(building.initial.movements) and options.floor is not None, ("initial", "movements")),
         *(
             ("rotation of a support", bool(one.turn), ("initial", "movements", k, "turn"))

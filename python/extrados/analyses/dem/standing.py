@@ -84,7 +84,7 @@ def left_out(model: Model | SolidModel) -> str:
         count, most, what = model.count, MOST_SOLIDS, "solids"
     if count <= most:
         return ""
-    return f"no other method checked whether the structure stands: it has {count} {what}, and the check is limited to {most}"
+    return f"no second method checked whether the structure stands under self-weight: such a check accepts at most {most} {what}, and the structure has {count}"
 
 
 def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:

@@ -87,7 +87,7 @@ class FramePushover(FrameAnalysis):
     )
     eccentricities: list[Annotated[float, Field(ge=-0.5, le=0.5)]] = key(
         [0.0, 0.05, -0.05],
-        "ratios of the accidental eccentricities of the forces to the length of the building across the direction",
+        "accidental eccentricities of the horizontal forces, each divided by the length of the building perpendicular to the load",
         min_length=1,
         max_length=9,
         source="EN 1998-1, 4.3.2",

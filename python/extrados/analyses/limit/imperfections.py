@@ -143,7 +143,7 @@ def run(context: Context, options: Imperfections) -> Result:
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
-        result.answer += f" In {r.upper_bounds} geometries joints slide: {out.DILATANT}."
+        result.answer += f" In {r.upper_bounds} geometries joints slide, so the capacity is an {out.DILATANT}."
     if given < low:
         result.warnings.append(
             f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. Where "

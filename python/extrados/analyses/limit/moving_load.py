@@ -567,7 +567,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
             f"{r.permissible_stress_Pa / 1e6:.3g} MPa (permissible limit state)."
         )
     if r.dilating_joints:
-        text += f" Joints slide: {out.DILATANT}."
+        text += f" Joints slide, so the capacity is an {out.DILATANT}."
     if r.characteristic and (r.load_N is not None or r.adequacy_factor is not None):
         text += f" {out.CHARACTERISTIC}"
     return text + spoken_ties(r.ties)

@@ -438,7 +438,7 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
             f"{r.least_direction_deg % 360.0:g} degrees. "
         )
     if r.dilating_contacts:
-        text += f"Contacts slide: {DILATANT}. " + _told(r)
+        text += f"Contacts slide, so the capacity is an {DILATANT}. " + _told(r)
     if r.crushing_contacts is not None:
         text += f"Contacts crush at their compressive strength: {r.crushing_contacts} do in this mechanism. "
     if r.least_acceleration_dry_g is not None:

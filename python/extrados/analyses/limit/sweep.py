@@ -366,5 +366,5 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     if counts["no-answer"]:
         text += f" {counts['no-answer']} of {len(r.values)} values have no result."
     if r.upper_bound_values:
-        text += f" At {len(r.upper_bound_values)} of {len(r.values)} values joints slide: {out.DILATANT}."
+        text += f" At {len(r.upper_bound_values)} of {len(r.values)} values joints slide, so the capacity is an {out.DILATANT}."
     return text

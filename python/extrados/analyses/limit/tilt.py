@@ -354,7 +354,7 @@ def _told(found: out.Tilt) -> str:
         ),
     )
     bounds = [way for way, dilating, *_ in ends if dilating]
-    text = f"Under the load {' and '.join(bounds)} joints slide: {out.DILATANT}. " if bounds else ""
+    text = f"Under the load {' and '.join(bounds)} joints slide, so the capacity is an {out.DILATANT}. " if bounds else ""
     for way, _, r, least, design, paths in ends:
         if r is None or least is None:
             continue

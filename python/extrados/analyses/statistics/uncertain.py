@@ -133,8 +133,8 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
             raise Refused(f"this {structure.word} has no such value; its values are {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
-            "uncertain blocks make an arch unsymmetric, and the momentum balance of the thesis does not cover this: give "
-            "another joints.restitution",
+            "random differences between the blocks make the arch unsymmetric, and the impact rule of the thesis covers only "
+            'symmetric arches: give joints.restitution another value than "thesis"',
             ("analysis", "uncertain"),
         )
     if "friction" in names and (building.joints.coefficient is None or any(t.friction is not None for t in building.joints.types)):

@@ -77,8 +77,8 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
     else:
         raise text.error(
             rows[0][0],
-            f"the row has {width} columns, and the first is not a time with equal steps. If each column is a component, give "
-            f'channel = 1 to {width}. If the numbers of a row follow one another, give columns = "series"',
+            f"the row has {width} columns, and the first is not a time with equal steps. If each column is a component, give the "
+            f'number of one of them as `channel` (1 to {width}). If the numbers are one series, row after row, give columns = "series"',
         )
     if not timed or columns == "series":
         _refuse_header_numbers(text, rows, data)

@@ -97,7 +97,11 @@ def _draw_places(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         return (
             style.save(fig, folder, f"{name}-places"),
             f"Load that causes collapse, over the position of the {moving}."
-            + (f" At the most dangerous position joints slide: {DILATANT}." if run.results_of(name, MovingLoad).dilating_joints else ""),
+            + (
+                f" At the most dangerous position joints slide, so the capacity is an {DILATANT}."
+                if run.results_of(name, MovingLoad).dilating_joints
+                else ""
+            ),
         )
 
 

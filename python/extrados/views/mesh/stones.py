@@ -257,7 +257,7 @@ def _refuse(options: MeshOptions) -> None:
     if options.element not in ("Q4", "T3"):
         raise BadGeometry(f'blocks are meshed by "Q4" (triangles where these do not fit) or "T3", not by {options.element}')
     if options.pattern == "random":
-        raise BadGeometry("blocks take no random pattern, because their joints determine the cracks")
+        raise BadGeometry('pattern = "random" is not for blocks, because cracks follow the joints between the blocks')
     if options.refine or options.lines_x or options.lines_y:
         raise BadGeometry("blocks take no refine, lines_x or lines_y, because their joints determine the mesh")
 

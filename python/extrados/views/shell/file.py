@@ -46,7 +46,10 @@ def open_shells(structure: MeshFile, building: Description, options: ShellOption
     """Name and content of a file of shells; BadGeometry if it holds anything else, or too many."""
     for name in ("regions", "ties", "bars"):
         if getattr(structure, name):
-            raise BadGeometry(f"{name} are only for a wall in a plane; for shells in space give the key `groups`", ("structure", name))
+            raise BadGeometry(
+                f"the key `{name}` is only for a wall in a plane: remove it; `groups` gives the properties of parts of shells",
+                ("structure", name),
+            )
     file, mesh = open_mesh(structure, building)
     if options.size is not None:
         raise BadGeometry(f"{file}: the file determines the elements: remove mesh.size", ("analysis", "mesh", "size"))

@@ -21,7 +21,8 @@ def drawn_out(assembly: Assembly) -> SolidAssembly:
     in the plane and in space ask for the same forces. NoView where earth pushes back, which is known in the plane alone."""
     if assembly.earth is not None:
         raise NoView(
-            "the fill of a bridge spreads loads and gives pressure only in the plane section: remove `direction`", ("analysis", "direction")
+            "the fill of a bridge is modelled only in the plane section, and `direction` requires an analysis in space: remove `direction`",
+            ("analysis", "direction"),
         )
     half = 0.5 * assembly.depth
     parts, owner, inertia = [], [], []
