@@ -75,7 +75,7 @@ contains
       real(wp), intent(in) :: margin            !! [m]
       type(contact_pair), intent(inout) :: pair
       real(wp) :: place(3), turn(3, 3), held
-      logical :: later, presses, bound
+      logical :: later, bound
 
       later = pair%marks(1) >= 0              ! what overlaps as a run begins is pressed together
       associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
@@ -89,17 +89,16 @@ contains
       end associate
       pair%place = place
       pair%turn = turn
-      presses = .false.
       bound = .false.
-      if (pair%points > 0) then
-         presses = any(pair%point(:pair%points)%spring_n > 0.0_wp)
-         bound = any(pair%point(:pair%points)%bonded)
-      end if
+      if (pair%points > 0) bound = any(pair%point(:pair%points)%bonded)
       held = 0.0_wp
-      if (presses .and. .not. bound) held = energy_here(law, set, pair)
+      if (pair%points > 0 .and. .not. bound) held = energy_here(law, set, pair)
       call find_anew(set, margin, pair)
-      if (later .and. .not. (presses .or. bound)) call free_of_force(set, deep * far, pair)
-      if (held > 0.0_wp) call keep_energy(law, set, held, pair)
+      if (held > 0.0_wp) then
+         call keep_energy(law, set, held, pair)
+      else if (later .and. .not. bound) then
+         call free_of_force(set, deep * far, pair)
+      end if
    end subroutine find_points
 
    !> Energy that the springs of a pair hold at the present places of its bodies [J]
