@@ -164,7 +164,7 @@ contains
             cycle
          end if
          call commit(model, now, failed)
-         if (failed > 0 .and. step > event_step * most .and. .not. now%damped) then   ! closer to the displacement at which a limit is reached
+         if (failed > 0 .and. step > event_step * most .and. .not. now%damped) then   ! closer to where a limit is reached
             step = 0.25_wp * step
             cycle
          end if

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.compas import FARTHEST, mesh_of, nodes_of
@@ -182,6 +181,8 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
 def without_doubles(stones: Sequence[Stone], tolerance: float) -> tuple[list[Stone], tuple[str, ...]]:
     """The stones, of those drawn twice the first, and a remark on them. Two are one where each corner of either lies within the
     tolerance [m], or rounding, of a corner of the other."""
+    from scipy.spatial import KDTree  # takes a third of a second to load
+
     points = [np.concatenate([part.vertices for part in stone.parts]) for stone in stones]
     middle = np.array([0.5 * (p.min(axis=0) + p.max(axis=0)) for p in points])
     size = float(np.ptp(np.concatenate(points), axis=0).max())
