@@ -109,7 +109,7 @@ def code_spectrum(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None  # the other limit states of the other walls are not known
     same = next((c for c in moved.values() if (c.source, c.unit) == (check.source, check.unit)), None)
     by_motion = r.model_copy(update={"checks": {**others, **moved}, "margin_associated": probe.results.margin_associated})
-    if same is None or same.demand is None or same.capacity is None or not (rows := by_motion.governing()):
+    if same is None or not (rows := by_motion.governing()):
         return None
     other, at, governs = rows[0]
     row = facts.rows["code-checks"].model_copy(update={"outcome": by_motion.overall().outcome, "margin": other})
@@ -119,6 +119,8 @@ def code_spectrum(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     capacity = same.demand == check.demand  # of ASCE 41, whose limit of slenderness depends on the spectrum
     site, motion = (check.capacity, same.capacity) if capacity else (check.demand, same.demand)
+    if site is None or motion is None:
+        return None
     labels = list_labels([facts.rows[n].label for p in mine for n in p if n != "code-checks"])
     by = "" if governs.source == check.source else f" by {at}{'' if governs.limit_state in at else f' at {governs.limit_state}'}"
     return reason(
