@@ -186,7 +186,7 @@ def test_a_gable_rises_at_most_twice_the_length_of_its_wall():
 
 def all_warnings(made):
     """Remarks on roofs, which the frame and the shell also state."""
-    found = made.structure.roof_remarks
+    found = made.structure.floor_remarks
     assert set(found) <= set(made.frame(FrameOptions()).remarks)
     assert set(found) <= set(made.shell(ShellOptions(size=1.0)).warnings)
     return found

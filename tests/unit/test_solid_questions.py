@@ -276,7 +276,7 @@ def test_imperfections_of_a_bonded_corner(tmp_path: Path) -> None:
 def test_a_survey_of_files_of_solids(tmp_path: Path) -> None:
     for k, noise in enumerate((0.0, 3e-4)):
         (tmp_path / f"corner-{k}.obj").write_text(obj(corner(), noise, k))
-    (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
     rows = [
         ["name", "file", "contact_tolerance"],
         *([f"corner {k}", f"corner-{k}.obj", "2 mm"] for k in range(2)),

@@ -203,7 +203,7 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists and rods do "
         "not."
     )
-    context.warnings += plan.roof_remarks
+    context.warnings += plan.floor_remarks
     if plan.rods:
         context.warnings.append(
             "Rods are neglected, because the deck does not give the strength of their anchorage. Give the strength as `ties` "

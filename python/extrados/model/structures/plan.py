@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from extrados.model.errors import BadGeometry
-from extrados.model.geometry.polygons import signed_area
+from extrados.model.geometry.polygons import distance, inside, signed_area
 from extrados.model.places import Opening, Range
 from extrados.model.structure import Structure
 from extrados.schema.quantities import Angle, Area, Force, Length, Stiffness, Stress
@@ -591,10 +591,16 @@ class Plan(Structure):
         return [part for part in around if self.walls[part[0]].name in floor.bears_on] or around
 
     @property
-    def roof_remarks(self) -> list[str]:
-        """Roofs whose ridge [m] differs from that of a gable beside them, and rafters without thrust."""
+    def floor_remarks(self) -> list[str]:
+        """Walls within a floor that it does not join, roofs whose ridge [m] differs from that of a gable beside them, and rafters
+        without thrust."""
         found = []
         for floor in self.floors:
+            if crossed := self._crossed(floor):
+                found.append(
+                    f"Floor on storey {floor.storey}: walls {', '.join(map(repr, crossed))} pass below the floor, which neither rests on "
+                    "them nor joins them. Give one floor for each room, with the walls around it as `walls`."
+                )
             if floor.roof == "rafters" and floor.kind == "rigid":
                 found.append(f"Floor on storey {floor.storey}: the rigid floor ties the rafters at the eaves, so they have no thrust.")
             around = floor.walls or [wall.name for wall in self.walls]
@@ -610,6 +616,22 @@ class Plan(Structure):
                         f"above the eaves, but the gable of wall '{wall.name}' rises {rise:.3g} m. The load and the thrust are those of "
                         "the pitch, the masonry is that of the gable."
                     )
+        return found
+
+    def _crossed(self, floor: StoreyFloor) -> list[str]:
+        """Names of the walls of the storey that pass through the inside of a floor; none of a floor whose walls make no ring."""
+        try:
+            around = self.around(floor)
+        except BadGeometry:
+            return []
+        outline, ring = self.outline(around), {w for w, _, _ in around}
+        found = []
+        for w, wall in enumerate(self.walls):
+            first, last = self.reach(wall)
+            places = np.asarray(wall.start) + np.linspace(0.0, wall.length, 17)[1:-1, None] * wall.direction
+            within = inside(outline, places) & (distance(outline, places) > MEETS)
+            if w not in ring and first <= floor.storey <= last and within.any():
+                found.append(wall.name)
         return found
 
     def _roof_runs(self, floor: StoreyFloor, wall: PlanWall) -> list[float]:

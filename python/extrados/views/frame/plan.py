@@ -65,7 +65,7 @@ class _Maker(Division):
         for k, corner in enumerate(plan.corners):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
-        self.remarks += plan.roof_remarks
+        self.remarks += plan.floor_remarks
         if plan.beds:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
         if plan.ring_beams:

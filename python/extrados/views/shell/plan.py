@@ -38,7 +38,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
             f"the mesh would have about {area / size**2:.2g} elements of {size:g} m; at most {LARGEST_MESH:g} are allowed",
             ("analysis", "mesh", "size"),
         )
-    warnings = plan.roof_remarks
+    warnings = plan.floor_remarks
     junctions = _junctions(plan, warnings)
     _check_corners(plan, junctions)
     grids = make_grids(plan, junctions, size, warnings)
