@@ -426,13 +426,40 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
         lambda: facts(
             [row("rocking", "stands", margin=1.5), row("code-checks", "collapses", margin=0.5)],
             {"code-checks": checked(0.15)},
-            site=lambda state, period: 3.0 * PEAK if (state, period) == ("SLV", 0.0) else None,
+            probes={"codes-motion": checked(0.15, 0.1)},
         ),
         {
-            "the codes check the motion": lambda f: replace(f, site=lambda state, period: None),
-            "the motion is hardly weaker": lambda f: replace(f, site=lambda state, period: 1.5 * PEAK),
+            "the codes check the motion": lambda f: replace(f, probes={}),
+            "the motion is hardly weaker": lambda f: probed(f, codes_motion=checked(0.15, 0.2)),
+            "the motion gives this check no demand": lambda f: probed(f, codes_motion=checked(0.15, None)),
+            "another limit state fails": lambda f: having(
+                f, **{"code-checks": checked(0.15, other=check(0.12, 0.2).model_copy(update={"limit_state": "SLD"}))}
+            ),
             "both agree": lambda f: rated(f, row("code-checks", "stands", margin=1.2)),
-            "the period of the check is not known": lambda f: having(f, **{"code-checks": checked(2.0, nonlinear=check(0.15, 0.3, "m"))}),
+        },
+    ),
+    "the peak of the motion": (
+        "code-spectrum",
+        lambda: facts(
+            [row("sla", "stands", margin=1.25, demand=PEAK), row("code-checks", "collapses", margin=0.5)],
+            {"code-checks": checked(0.15)},
+            probes={"codes-motion": checked(0.15, 0.1)},
+        ),
+        {
+            "statics applies the site too": lambda f: rated(f, row("sla", "stands", margin=1.25, demand=2.0 * PEAK)),
+            "statics compares a displacement": lambda f: rated(f, row("sla", "stands", margin=1.25, demand=PEAK, unit="m")),
+        },
+    ),
+    "margins that the spectrum sets apart": (
+        "code-spectrum",
+        lambda: facts(
+            [row("rocking", "stands", margin=4.0), row("code-checks", "stands", margin=1.1)],
+            {"code-checks": checked(0.33)},
+            probes={"codes-motion": checked(0.33, 0.1)},
+        ),
+        {
+            "they remain apart": lambda f: probed(f, codes_motion=checked(0.33, 0.2)),
+            "they are apart the other way": lambda f: probed(f, codes_motion=checked(0.33, 0.01)),
         },
     ),
     "a wall that the codes tear off": (

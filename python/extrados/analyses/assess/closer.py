@@ -8,13 +8,20 @@ from extrados.analyses.assess.facts import SLID, Pair
 from extrados.analyses.assess.reasons_of_statics import static_peak
 from extrados.analyses.assess.strategies import Choice
 from extrados.analyses.assess.work import ONE_RUN, Work, merge_keys
+from extrados.analyses.codes.actions import fits
 from extrados.model.structures.masonry import Column
+from extrados.motions.tables import Compatible
+from extrados.results.codes import Checked
 from extrados.results.dem import DemRun
 from extrados.results.rocking import Assessment
 from extrados.results.statistics import OverLevels
+from extrados.schema.code import ACTION
 
 #: Factors on the hazard at which discrete elements are tried, from 1 up while they stand, down while they fall
 UP, DOWN = (1.25, 1.5, 2.0, 3.0, 4.0), (0.8, 0.65, 0.5, 0.35, 0.25)
+#: Keys of the demand that the motion replaces: of the codes' analysis, and of [code]
+OF_SITE = ("spectrum", "collapse_spectrum", "peak_acceleration", "peak_velocity")
+OF_CODE = {"return_periods", *(key for keys in ACTION.values() for key in keys)}
 #: Factors between two of the first ones, where the margin of rocking is thin
 FINE = 16
 
@@ -40,6 +47,24 @@ def refine(work: Work) -> None:
     work.context.progress(3.0, 3.0, "assess")
 
 
+def _codes_by_motion(work: Work) -> None:
+    """The codes with the motion in place of the site, at the limit state of their governing check; not if they check the motion already,
+    or a target spectrum that it matches."""
+    found, deck = work.results.get("code-checks"), work.context.deck
+    if found is None or not isinstance(r := found.results, Checked) or not (rows := r.governing()) or not (state := rows[0][2].limit_state):
+        return
+    keys, code = work.choices["code-checks"].keys, deck.code
+    of_site = set(keys) & set(OF_SITE) or (code is not None and any(code.spectrum(one) is not None for one in code.states))
+    if not of_site or (isinstance(deck.motion, Compatible) and fits(code, deck.motion)):
+        return
+    if deck.motion is not None and deck.motion.floor is not None and r.jurisdiction != "NTC":
+        return  # the coefficients of height of these codes belong to the ground
+    keys = {k: v for k, v in keys.items() if k not in OF_SITE} | {"motion_spectrum": True}
+    table = {k: v for k, v in deck.data.get("code", {"jurisdiction": "NTC"}).items() if k not in OF_CODE} | {"limit_states": [state]}
+    told = f"the spectrum of the motion in place of that of the site, at {state}"
+    work.keep("codes-motion", work.probe("code-checks", told, found.kind, keys, changes={"code": table}))
+
+
 def _finer(work: Work) -> None:
     """The margin of rocking closer, between the factors that enclose it."""
     row = work.rows["rocking"]
@@ -62,6 +87,8 @@ def _finer(work: Work) -> None:
 def _cheap_probes(work: Work, pairs: list[Pair]) -> None:
     names = {n for p in pairs for n in p}
     results = work.results
+    if any("code-checks" in p for p in pairs):
+        _codes_by_motion(work)
     if "assessment" in names and (impulse := results["assessment"].of(Assessment).primary_impulse) is not None:
         sine = {"kind": "sine-pulse", "amplitude": f"{impulse.amplitude_g!r} g", "period": impulse.period_s}
         work.keep("sine", work.probe("rocking", "the primary impulse alone, as a single sine", "rocking", {}, sine))

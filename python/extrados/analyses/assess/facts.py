@@ -48,8 +48,7 @@ class Facts:
     """All that the rules may look at.
 
     rows and results by strategy; probes: results of further runs by what was asked of them; needed_s: the shortest constant
-    push of an amplitude [g] that brings it down [s], None where none is known. bare: what of the deck a strategy left out. site: the
-    spectrum that the codes check at a limit state [g], of a period [s] and 5 % damping; None where they check the motion itself.
+    push of an amplitude [g] that brings it down [s], None where none is known. bare: what of the deck a strategy left out.
     """
 
     building: Building
@@ -61,7 +60,6 @@ class Facts:
     probes: dict[str, Result] = field(default_factory=dict)
     needed_s: Callable[[float], float | None] = lambda amplitude: None
     bare: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    site: Callable[[str, float], float | None] = lambda state, period: None
 
     def of(self, name: str) -> KindResults | None:
         """The typed results of a strategy that has any of its kind."""

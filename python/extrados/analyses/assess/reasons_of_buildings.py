@@ -1,15 +1,16 @@
 """Reasons by which codes, and pushes of a building on a plan, differ from others: their factors and checks, corners, axes, models."""
 
-from extrados.analyses.assess.facts import DYNAMIC, Facts, Pair, least_of_limit_analysis, reason
-from extrados.analyses.codes.actions import sampled, spectrum_of_motion
-from extrados.analyses.codes.ntc import SLV, displacement, equivalent_period
+from dataclasses import replace
+
+from extrados.analyses.assess.facts import DYNAMIC, STATIC, Facts, Pair, least_of_limit_analysis, reason
+from extrados.analyses.assess.words import list_labels
 from extrados.model.structures.plan import Plan
 from extrados.results.assess import Reason
 from extrados.results.codes import Check, Checked, LocalMechanism
 from extrados.results.frame import FramePushover
 from extrados.results.limit import Tilt
 from extrados.results.shell import Pushover
-from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import engineering
 
 #: Part by which the base shears of frame and shells may differ without a stated reason
 SHELLS_APART = 0.15
@@ -95,44 +96,41 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def code_spectrum(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """The codes check the spectrum of the site, other strategies the motion: with what the motion requires at the period of the governing
-    check the codes would say otherwise, or give a margin nearer to the other by the factor from which margins are apart."""
-    found = _governing(facts, [p for p in pairs if set(p) & set(DYNAMIC)])
-    if found is None:
+    """The codes check the spectrum of the site, other strategies the motion or its peak: with the motion in place of the site, at the limit
+    state of the governing check, the codes would agree with them."""
+    found = _governing(facts, [p for p in pairs if any(_follows_motion(facts, n) for n in p)])
+    probe = facts.probes.get("codes-motion")
+    if found is None or probe is None or not isinstance(probe.results, Checked):
         return None
     r, ((margin, name, check), *_), mine = found
-    period = 0.0 if check.unit == "g" else _period(r, name, check)
-    site = None if period is None else facts.site(check.limit_state, period)
-    if period is None or not site or check.capacity is None:
+    others = {n: c for n, c in r.checks.items() if c.limit_state != check.limit_state}
+    moved = {n: c for n, c in probe.results.checks.items() if c.limit_state == check.limit_state}
+    if isinstance(r, LocalMechanism) and r.walls and any(c.limit_state for c in others.values()):
+        return None  # the other limit states of the other walls are not known
+    same = next((c for c in moved.values() if (c.source, c.unit) == (check.source, check.unit)), None)
+    by_motion = r.model_copy(update={"checks": {**others, **moved}, "margin_associated": probe.results.margin_associated})
+    if same is None or not (rows := by_motion.governing()):
         return None
-    spectrum = spectrum_of_motion(*sampled(facts.motion), facts.motion.peak)
-    if period:
-        own, told = displacement(spectrum, period), f"period of {period:.3g} s"
-        site, unit = check.demand, "m"
-    else:
-        own, told, unit = spectrum(0.0, 0.05) / GRAVITY, "ground", "g"
-    if site is None or own <= 0.0:
+    other, at, governs = rows[0]
+    row = facts.rows["code-checks"].model_copy(update={"outcome": by_motion.overall().outcome, "margin": other})
+    then = replace(facts, rows=facts.rows | {"code-checks": row})
+    verdicts = {"disagree": ("agree", "apart"), "apart": ("agree",)}
+    if not (mine := [p for p in mine if then.relation(*p) in verdicts.get(facts.relation(*p), ())]):
         return None
-    other = margin * site / own
-
-    def shows(pair: Pair) -> bool:
-        if facts.relation(*pair) == "disagree":
-            return (other >= 1.0) != (margin >= 1.0)
-        low, high = sorted((other, margin))
-        nearer = (other > margin) == (facts.split(pair)[0] == "code-checks")
-        return facts.relation(*pair) == "apart" and nearer and high > facts.apart * low
-
-    if not (mine := [p for p in mine if shows(p)]):
+    capacity = same.demand == check.demand  # of ASCE 41, whose limit of slenderness depends on the spectrum
+    site, motion = (check.capacity, same.capacity) if capacity else (check.demand, same.demand)
+    if site is None or motion is None:
         return None
+    labels = list_labels([facts.rows[n].label for p in mine for n in p if n != "code-checks"])
+    by = "" if governs.source == check.source else f" by {at}{'' if governs.limit_state in at else f' at {governs.limit_state}'}"
     return reason(
         "code-spectrum",
         mine,
-        f"The codes check the spectrum of the site, not the motion. At {'a' if period else 'the'} {told} the site requires {site:.3g} {unit}, and "
-        f"the motion {own:.3g} {unit}. The governing check, {name}, has the safety factor {margin:.3g}. With the spectrum of the motion it "
-        f"would be about {other:.3g}.",
-        period_s=period,
+        f"The codes check the spectrum of the site, not the motion. In the governing check, {name}, the {'capacity' if capacity else 'demand'} "
+        f"is {engineering(site, check.unit)} with the spectrum of the site, and {engineering(motion, check.unit)} with that of the motion. "
+        f"With the motion the safety factor would be {other:.3g}{by} instead of {margin:.3g}, and the codes would agree with {labels}.",
         site=site,
-        motion=own,
+        motion=motion,
         governing_margin=margin,
         other_margin=other,
     )
@@ -221,17 +219,11 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     )
 
 
-def _period(r: Checked, name: str, check: Check) -> float | None:
-    """Period [s] at which the demand of the displacement check of NTC is taken; None of other checks."""
-    if not name.startswith("NTC nonlinear") or check.limit_state == "SLC" or not check.capacity:
-        return None
-    if isinstance(r, LocalMechanism):
-        return r.equivalent_period_s
-    start = next(((n, c) for n, c in r.checks.items() if n.startswith(BY_MULTIPLIER) and c.unit == "g" and c.capacity), None)
-    if start is None or start[1].capacity is None:
-        return None
-    q = (r.behaviour_factor or 1.0) if start[0].startswith("NTC linear") else 1.0
-    return equivalent_period(GRAVITY * start[1].capacity / q, check.capacity / SLV)
+def _follows_motion(facts: Facts, name: str) -> bool:
+    """Whether a strategy follows the motion, or applies its peak as a constant acceleration; not if it is verified by displacement."""
+    row = facts.rows[name]
+    peak = row.unit == "g" and row.demand is not None and abs(row.demand - facts.peak_g) <= 1e-6 * facts.peak_g
+    return name in DYNAMIC or (name in (*STATIC, "frame") and peak)
 
 
 def _reached(facts: Facts, name: str) -> float | None:

@@ -217,7 +217,7 @@ def _codes(asked: Asked) -> Choice:
     if spectrum is not None:
         return Choice({**keys, "spectrum": spectrum.model_dump(exclude_none=True)}, f"{words}the spectrum of the deck", 0.0, kind)
     code, motion = asked.context.deck.code, asked.context.deck.motion
-    if code is not None and code.spectrum(code.concluding) is not None:
+    if code is not None and any(code.spectrum(state) is not None for state in code.states):
         return Choice(keys, f"{words}the seismic action of [code], {code.name}", 0.0, kind)
     if isinstance(motion, Compatible) and fits(code, motion):
         return Choice(keys, f"{words}the target spectrum of the motions", 0.0, kind)

@@ -54,13 +54,13 @@ def conclusion(
     stands, collapses, left, proven = (groups.get(o, []) for o in ("stands", "collapses", "open", "cannot-stand"))
 
     def labels(names: list[str]) -> str:
-        return _list([facts.rows[n].label for n in names])
+        return list_labels([facts.rows[n].label for n in names])
 
     def verdict(names: list[str], outcome: Outcome, under: bool = False) -> str:
         """Of the building by strategies that analyse it, of the checks of codes as such."""
         checks = [n for n in names if facts.rows[n].axis == "check"]
         others = [facts.rows[n].label for n in names if n not in checks]
-        told = [f"{outcome} {f'under {_count(others)}' if under else f'by {_list(others)}'}"] if others else []
+        told = [f"{outcome} {f'under {_count(others)}' if under else f'by {list_labels(others)}'}"] if others else []
         if others:
             told[0] = f"the {word} {told[0]}"
         if checks:
@@ -98,7 +98,7 @@ def conclusion(
         said.append(f"The outcome by {labels(left)} is open.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]
     if decisive:
-        said.append(f"The difference comes from {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")
+        said.append(f"The difference comes from {list_labels(list(dict.fromkeys(one.headline for one in decisive)))}.")
     bare = [p for p in unexplained if facts.relation(*p) == "disagree"]
     if bare:
         told = "; ".join(f"{facts.rows[a].label} and {facts.rows[b].label}" for a, b in bare)
@@ -109,11 +109,11 @@ def conclusion(
         said.append(f"The least critical scale factor of the hazard is {row.margin_told()}, by {label}.")
     none = [row.label for row in rows if row.status != "ok"]
     if none:
-        said.append(f"No result from {_list(none)}.")
+        said.append(f"No result from {list_labels(none)}.")
     idle = [row for row in rows if row.status == "ok" and row.outcome == "not-applicable"]
     said += [f"No verdict from {row.label}: {row.statement}" for row in idle if row.capacity is None]
     if able := [f"{row.label} {_capacity(row)}" for row in idle if row.capacity is not None]:
-        said.append(f"Capacity without a verdict: {_list(able)}.")
+        said.append(f"Capacity without a verdict: {list_labels(able)}.")
     return overall, " ".join(s for s in said if s)
 
 
@@ -133,5 +133,6 @@ def _count(words: list[str]) -> str:
     return f"all {len(words)} strategies that have a verdict"
 
 
-def _list(words: list[str]) -> str:
+def list_labels(words: list[str]) -> str:
+    """Words with commas, and `and` before the last."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

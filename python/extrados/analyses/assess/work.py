@@ -13,7 +13,6 @@ from extrados.analyses.assess.facts import Facts
 from extrados.analyses.assess.sensitivity import Moved
 from extrados.analyses.assess.strategies import Asked, Choice, LeftOut, Strategy
 from extrados.analyses.assess.tables import Assess
-from extrados.analyses.codes.actions import code_of, spectrum_of
 from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context, Refused
 from extrados.model.errors import BadGeometry, NoView
@@ -23,7 +22,6 @@ from extrados.results.model import Result
 from extrados.results.rocking import FailureDomain
 from extrados.results.rocking import Rocking as RockingResults
 from extrados.results.verdict import SelfWeight
-from extrados.schema.constants import GRAVITY
 
 #: Keys of further runs of discrete elements: the first alone is held against a perturbed one
 ONE_RUN = {"perturbed": False}
@@ -168,20 +166,7 @@ class Work:
             self.found,
             self.needed,
             self.bare,
-            self.site,
         )
-
-    def site(self, state: str, period: float) -> float | None:
-        """The spectrum that the codes check at a limit state [g], of a period [s] and 5 % damping; None where they check the motion itself,
-        or a demand of their own options."""
-        own = self.options.options.get("code-checks", {})
-        if not state or {"spectrum", "collapse_spectrum", "peak_acceleration"} & set(own):
-            return None
-        code, model = code_of(self.context), self.options.spectrum
-        if model is None or state != code.concluding:
-            model = code.spectrum(state)
-        found = spectrum_of(self.context, model, "code")
-        return None if found is None else found(period, 0.05) / GRAVITY
 
     def probe(
         self,

@@ -52,7 +52,8 @@ def code_of(context: Context) -> Code:
 
 
 def actions(context: Context, options: CodeChecks | LocalMechanism | Verification) -> list[Action]:
-    """The action of each limit state; what the analysis gives by itself is that of the concluding one (SLV, SD, LS, ULS)."""
+    """The action of each limit state; what the analysis gives by itself is that of the concluding one (SLV, SD, LS, ULS). The motion is
+    that of the only limit state, if [code] lists one."""
     code, found = code_of(context), {}
 
     def years(state: str) -> float | None:
@@ -65,16 +66,17 @@ def actions(context: Context, options: CodeChecks | LocalMechanism | Verificatio
             continue
         spectrum = spectrum_of(context, code.spectrum(state), "code")
         found[state] = Action(state, spectrum, None if spectrum is None else spectrum(0.0, 0.05), years(state))
-    spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum and not _given(found, code))
+    spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum and all(a.spectrum is None for a in found.values()))
     peak = options.peak_acceleration
     if spectrum is not None or peak is not None:
         of_motion = spectrum is not None and spectrum_of(context, options.spectrum) is None
-        old = found.get(code.concluding)
+        state = next(iter(found)) if of_motion and len(found) == 1 else code.concluding
+        old = found.get(state)
         if spectrum is None and old is not None:
             spectrum = old.spectrum
         if peak is None and spectrum is not None:
             peak = spectrum(0.0, 0.05)
-        found[code.concluding] = Action(code.concluding, spectrum, peak, None if of_motion or old is None else old.years, of_motion)
+        found[state] = Action(state, spectrum, peak, None if of_motion or old is None else old.years, of_motion)
     if isinstance(options, LocalMechanism) and options.collapse_spectrum is not None:
         rare = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum")
         assert rare is not None
@@ -94,10 +96,6 @@ def apart(lines: list[Line]) -> list[Line]:
     """Rules by different names: a rule that is checked at several limit states has each in its name."""
     names = [x.rule for x in lines]
     return [replace(x, rule=f"{x.rule} at {x.state}") if names.count(x.rule) > 1 else x for x in lines]
-
-
-def _given(found: dict[str, Action], code: Code) -> bool:
-    return code.concluding in found and found[code.concluding].spectrum is not None
 
 
 def spectrum_of(context: Context, model: CodeSpectrum | None, key: str = "spectrum") -> Spectrum | None:
