@@ -24,7 +24,7 @@ module rocking_watch
    !> Room for the same in a bound
    real(wp), parameter :: slack = 1.0e-9_wp
    !> Cells of the bounds over h/w, over q'^2/w
-   integer, parameter :: drives = 16, rates = 8
+   integer, parameter :: drives = 12, rates = 4
 
    type :: joint_watch
       real(wp) :: tolerance = 0.0_wp       !! how far the resultant may leave a joint, over its length
@@ -42,12 +42,13 @@ module rocking_watch
       real(wp), allocatable :: value(:, :, :, :)
       !> (friction needed and how far outside, q'^2/w, h/w, panel, side) what no joint exceeds in a cell
       real(wp), allocatable :: bound(:, :, :, :, :)
-      real(wp) :: per_drive(2) = 0.0_wp    !! cells for one m/s^2 of h/w
+      real(wp) :: per_rotation(2) = 0.0_wp !! panels for one rad
+      real(wp) :: per_drive(2) = 0.0_wp    !! cells for one m/s^2 to +x, over w
       real(wp) :: per_rate(2) = 0.0_wp     !! cells for one rad^2/s^2 of q'^2/w
    contains
       procedure :: bound_demand
       procedure :: check_demand
-      procedure, private :: exceeds_nothing
+      procedure :: changes_nothing
    end type joint_watch
 
    !> What a run demanded of the joints, up to the critical rotation
@@ -111,40 +112,44 @@ contains
       type(joint_demand), intent(inout) :: demand
       real(wp) :: x, input(3)
 
+      if (watch%changes_nothing(i, q, v, horizontal, vertical, demand)) return
       x = max(q, 0.0_wp) / watch%critical(i)
       if (x > 1.0_wp) return
-      x = x * real(watch%panels, wp)
       input = [1.0_wp + vertical / gravity, real(3 - 2 * i, wp) * horizontal, v**2]
-      if (allocated(watch%bound)) then
-         if (watch%exceeds_nothing(i, x, input, demand)) return
-      end if
-      call enter_forces(watch, i, x, input, pull, time, demand)
+      call enter_forces(watch, i, x * real(watch%panels, wp), input, pull, time, demand)
    end subroutine check_demand
 
-   !> Do the bounds show that a state changes nothing in a demand?
-   pure function exceeds_nothing(watch, i, x, input, demand) result(answer)
+   !> Do the bounds show that a state changes nothing in a demand? See check_demand
+   pure function changes_nothing(watch, i, q, v, horizontal, vertical, demand) result(answer)
       class(joint_watch), intent(in) :: watch
       integer, intent(in) :: i               !! of the side
-      real(wp), intent(in) :: x              !! rotation in panels
-      real(wp), intent(in) :: input(3)       !! w, h, q'^2
+      real(wp), intent(in) :: q              !! [rad]
+      real(wp), intent(in) :: v              !! [rad/s]
+      real(wp), intent(in) :: horizontal     !! [m/s^2]
+      real(wp), intent(in) :: vertical       !! [m/s^2]
       type(joint_demand), intent(in) :: demand
       logical :: answer
-      real(wp) :: drive, rate, friction, outside
+      real(wp) :: weight, x, drive, rate, friction, outside
       answer = .false.
-      if (.not. input(1) > 0.0_wp) return
-      drive = input(2) / input(1) * watch%per_drive(i) + 0.5_wp * real(drives, wp)
-      rate = input(3) / input(1) * watch%per_rate(i)
-      if (.not. (drive >= 0.0_wp .and. drive < real(drives, wp) .and. rate < real(rates, wp))) return
+      if (.not. allocated(watch%bound)) return
+      weight = 1.0_wp + vertical / gravity
+      if (.not. weight > 0.0_wp) return
+      weight = 1.0_wp / weight
+      x = max(q, 0.0_wp) * watch%per_rotation(i)
+      drive = horizontal * weight * watch%per_drive(i) + 0.5_wp * real(drives, wp)
+      rate = v**2 * weight * watch%per_rate(i)
+      if (.not. (x < real(watch%panels, wp) .and. drive >= 0.0_wp .and. drive < real(drives, wp) &
+         .and. rate < real(rates, wp))) return
       friction = demand%friction
       if (demand%slips_at < 0.0_wp) friction = min(friction, watch%least_friction)
       outside = demand%outside
       if (demand%leaves_at < 0.0_wp) outside = min(outside, watch%tolerance)
-      associate (bound => watch%bound(:, int(rate) + 1, int(drive) + 1, min(int(x), watch%panels - 1) + 1, i))
+      associate (bound => watch%bound(:, int(rate) + 1, int(drive) + 1, int(x) + 1, i))
          answer = bound(1) <= friction .and. bound(2) <= outside
       end associate
-   end function exceeds_nothing
+   end function changes_nothing
 
-   !> Bounds of what the joints demand, for `exceeds_nothing`; none where restraints act.
+   !> Bounds of what the joints demand, for `changes_nothing`; none where restraints act.
    !>
    !> Over a panel the coefficients lie within the convex hull of the four control points of their cubic (Bernstein). That
    !> |T| <= m N, and that E >= -b N and E <= (1 + b) N, are linear in (w, h, q'^2)/w at each of them: they hold over a cell if
@@ -162,7 +167,8 @@ contains
       allocate (watch%bound(2, rates, drives, watch%panels, 2), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
-      watch%per_drive = 0.5_wp * real(drives, wp) / drive
+      watch%per_rotation = real(watch%panels, wp) / watch%critical
+      watch%per_drive = 0.5_wp * real(drives, wp) * [1.0_wp, -1.0_wp] / drive
       watch%per_rate = real(rates, wp) / rate
       do i = 1, 2
          call bound_corners(watch, i, 0, 1, here)
@@ -210,7 +216,7 @@ contains
       most(1, :, :) = 0.0_wp
       most(2, :, :) = -1.0_wp
       do n = 0, drives
-         drive = (real(n, wp) - 0.5_wp * real(drives, wp)) / watch%per_drive(i)
+         drive = (real(n, wp) - 0.5_wp * real(drives, wp)) / abs(watch%per_drive(i))
          do k = 0, rates
             rate = real(k, wp) / watch%per_rate(i)
             do j = 1, joints
