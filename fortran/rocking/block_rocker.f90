@@ -207,13 +207,12 @@ contains
             exit
          end if
          calm = .not. watched
-         if (watched) then
-            value = value + slope * spacing
-            calm = model%watch%changes_nothing(i, q_end, v_end, value(1), value(2), demand)
-         end if
+         if (watched) calm = model%watch%changes_nothing(i, q_end, v_end, value(1) + slope(1) * spacing, &
+            value(2) + slope(2) * spacing, demand)
          if (.not. calm) then
             found = demand
-            call model%watch%check_demand(i, q_end, v_end, value(1), value(2), [real(wp) ::], begin + h, found)
+            call model%watch%check_demand(i, q_end, v_end, value(1) + slope(1) * spacing, value(2) + slope(2) * spacing, &
+               [real(wp) ::], begin + h, found)
             ! Where a condition fails first, the general integrator finds the time
             stopped = (found%slips_at >= 0.0_wp .and. demand%slips_at < 0.0_wp) .or. (found%leaves_at >= 0.0_wp &
                .and. demand%leaves_at < 0.0_wp)
