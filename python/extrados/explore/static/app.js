@@ -259,6 +259,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     timer = setTimeout(() => { timer = null; ask({ do: "rest", lane: "rest" }); }, REST);
   }
   function settled(words) {
+    start ??= words.text; // a page that is only opened leaves the deck of the last page
     app.text = words.text; app.forms = words.forms; app.name = words.name;
     if (beside !== null) followed();
     if (timer === null && !unanswered.size) moved = false;
@@ -273,8 +274,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     redoButton.disabled = future.length === 0 && !board();
     title.textContent = app.deck?.title || app.name || "";
     title.title = app.name;
-    start ??= app.text;
-    if (app.text === start) return; // a page that is only opened leaves the deck of the last page
+    if (app.text === start) return;
     start = "";
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
   }
