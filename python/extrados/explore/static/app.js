@@ -204,6 +204,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     if (words.scene && app.draft) drafted(null);
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
+    if (words.text !== undefined) start ??= words.text; // a page that is only opened leaves the deck of the last page
     if (words.text !== undefined && words.to === "rest") settled(words);
     for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall", "frozen"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
     entry?.reply?.(words, arrays);
@@ -259,7 +260,6 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     timer = setTimeout(() => { timer = null; ask({ do: "rest", lane: "rest" }); }, REST);
   }
   function settled(words) {
-    start ??= words.text; // a page that is only opened leaves the deck of the last page
     app.text = words.text; app.forms = words.forms; app.name = words.name;
     if (beside !== null) followed();
     if (timer === null && !unanswered.size) moved = false;
