@@ -293,6 +293,32 @@ def test_a_notched_bar_snaps_back_on_its_closed_form() -> None:
     assert result.results["dissipated_energy_J"] == pytest.approx(5.0 * 0.25, rel=1e-3)  # Gf times the section
 
 
+def test_a_step_that_passes_over_a_snap_back_is_stated() -> None:
+    """A bar of one band, whose peak lies within a step of displacement control."""
+    deck = {
+        "structure": {
+            "kind": "panel",
+            "width": 2.0,
+            "height": 0.2,
+            "thickness": 0.5,
+            "regions": [{"x": [0.0, 0.9], "linear": True}, {"x": [1.1, 2.0], "linear": True}],
+        },
+        "material": {"young": 2e9, "poisson": 0.0, "tensile_strength": 2e5, "fracture_energy": 10.0},
+        "supports": {"held": [{"edge": "left", "fix": "x"}, {"edge": "bottom", "fix": "y"}]},
+        "analysis": {
+            "kind": "sla",
+            "continuation": "dissipation",
+            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "right"}]}],
+            "target_displacement": 4e-4,
+            "mesh": {"size": 0.2, "lines_x": [0.9, 1.1]},
+        },
+    }
+    result = run_deck(deck)
+    assert result.results["peak_load_N"] < 0.98 * 20e3
+    (stated,) = [text for text in result.warnings if "passes over a snap-back" in text]
+    assert "from 19.4 kN" in stated
+
+
 def test_an_arc_length_follows_the_curve_of_displacement_control() -> None:
     """A pier that does not snap back has the same curve."""
     curves = [run_deck(pier(0.1, 50.0, 0.25, target_displacement=3e-3, continuation=how)) for how in ("newton", "dissipation")]

@@ -337,7 +337,7 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
                     list(np.stack([place[wide] - half, place[wide] + half], axis=1)),
                     cmap=CRACKS,
                     norm=Normalize(0.0, 1e3 * most),
-                    linewidths=0.5 + 2.0 * np.minimum(width[wide] / most, 1.0),
+                    linewidths=0.5 + 2.0 * np.minimum(width[wide] / max(most, 1e-12), 1.0),
                 )
                 lines.set_array(1e3 * width[wide])
                 ax.add_collection(lines)

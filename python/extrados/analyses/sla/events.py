@@ -24,6 +24,7 @@ from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.sla import EVENT
 from extrados.model.errors import WHOLE
 from extrados.results.sla import DROP
+from extrados.schema.quantities import engineering
 
 BATCH_SECONDS = 0.7
 #: Events between two states that are kept; a new factor takes as long as some tens of events of a large wall.
@@ -42,6 +43,8 @@ PICTURES = 80
 DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
 #: Part of the work of the loads by which the energies of steps may differ without a warning
 UNBALANCED = 0.06
+#: Part of the greatest load that a step of the arc length may lose without a warning
+LARGE_DROP = 0.25
 #: How a run ends in which the load can grow for ever, and one that has reached a displacement
 UNBOUNDED, MECHANISM_REACHED, REACHED = (core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement"))
 SPENT = "budget of processor time"
@@ -554,6 +557,22 @@ class _Run:
         curve.seconds = self.spent_before + time.perf_counter() - self.begin
         return curve
 
+    def _warn_of_drops(self, curve: Curve) -> None:
+        """Warning of the largest drop of the load that displacement control passed in one step before the arc length took over."""
+        events = curve.events
+        states = np.flatnonzero(events.equilibrium)
+        if len(states) < 2:
+            return
+        load, moved = curve.force(self.model.unit)[states], events.monitors[states, 0]
+        drop = np.where(events.steps[states[1:]], np.abs(load[:-1]) - np.abs(load[1:]), 0.0)
+        k = int(drop.argmax())
+        if drop[k] > LARGE_DROP * float(np.abs(load).max()):
+            curve.warnings.append(
+                f"Between {1e3 * moved[k]:.3g} and {1e3 * moved[k + 1]:.3g} mm one step in displacement control passes over a snap-back: "
+                f"the load drops from {engineering(float(load[k]), 'N')} to {engineering(float(load[k + 1]), 'N')}. The peak may be "
+                "missed, and the energy of the drop counts as dissipated."
+            )
+
     def _warn(self, curve: Curve) -> None:
         """Warnings of a budget that is spent, of equilibrium that is lost, and of work that does not balance."""
         events = curve.events
@@ -569,6 +588,8 @@ class _Run:
                 "rotating cracks of isotropic masonry (no bed joints, lateral reduction, confinement, shear retention or bars). "
                 "The events after that are therefore those of load-unload."
             )
+        if self.options.continuation == "dissipation":
+            self._warn_of_drops(curve)
         steps = events.steps & events.equilibrium
         if steps.any():
             # Work that unloading takes back is no measure
