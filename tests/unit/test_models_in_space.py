@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from test_noisy_solids import CLEAN, corner, pushed
 
-from extrados.decks.reader import make_deck
+from extrados.decks.reader import DeckError, make_deck
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.geometry.solids.models import parse_model
 from extrados.views.building import Building
 
 
@@ -76,6 +77,26 @@ def test_an_ifc_of_blocks(tmp_path: Path) -> None:
     made = solids(tmp_path, ifc(tmp_path / "wall.ifc"))
     assert set(made.block_names) == {stone.name for stone in corner()}
     assert len(made.a) == 55 and pushed(made, 90.0, 270.0) == pytest.approx(CLEAN, rel=1e-5)
+
+
+def test_elements_of_one_name_remain_blocks_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whichever names come first: none is lost or overwritten."""
+    stones = [stone.parts[0].vertices[np.array(stone.parts[0].triangles)] for stone in corner()[:4]]
+    for names in (["Stone", "Stone", "Stone (2)", "Stone"], ["Stone (2)", "Stone", "Stone", "Stone (2)"]):
+        rows = list(zip(names, stones, strict=True))
+        monkeypatch.setattr("extrados.model.geometry.solids.models._elements", lambda _, rows=rows: iter(rows))
+        found = parse_model(b"", "wall.ifc", ".ifc")
+        assert len({mesh["stone"] for mesh in found}) == 4
+        for mesh, stone in zip(found, stones, strict=True):
+            assert np.ptp(mesh["points"], axis=0) == pytest.approx(np.ptp(stone.reshape(-1, 3), axis=0))
+            assert mesh["points"].min(axis=0) == pytest.approx(stone.reshape(-1, 3).min(axis=0), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["wall.glb", "WALL.GLTF", "wall.ifc"])
+def test_a_unit_is_refused_of_models_in_metres(tmp_path: Path, name: str) -> None:
+    for section in ({}, {"section": "xz"}):
+        with pytest.raises(DeckError, match=r"unit: .*Remove `unit`"):
+            solids(tmp_path, name, unit="mm", **section)
 
 
 @pytest.mark.parametrize(("name", "content"), [("a.glb", b"glTF\x02\x00\x00\x00"), ("a.gltf", b"{}"), ("a.ifc", b"ISO-10303-21;")])

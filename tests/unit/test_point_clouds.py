@@ -76,7 +76,7 @@ def test_beds_are_where_they_are_given() -> None:
 
 def test_one_face_needs_a_thickness_and_openings_are_mentioned() -> None:
     one = wall_cloud(5, faces=(0.0,))
-    with pytest.raises(BadGeometry, match="one face of the wall: give its thickness"):
+    with pytest.raises(BadGeometry, match="If they show one face only, give `thickness`"):
         Scan(shape="wall", courses=3).solids(one, 2000.0, "wall.ply")
     made = Scan(shape="wall", courses=3, thickness=0.4).solids(one, 2000.0, "wall.ply")
     assert made.measures["thickness_m"] == pytest.approx(0.4)
@@ -97,11 +97,51 @@ def test_a_barrel_has_the_capacity_of_its_section(seed: int, degrees: float, len
 
 def test_an_intrados_alone() -> None:
     points = barrel_cloud(7, (4.0,))
-    with pytest.raises(BadGeometry, match="one face of the vault: give its thickness"):
+    with pytest.raises(BadGeometry, match="If they show one face only, give `thickness`"):
         fit_barrel(points)
     made = Scan(shape="barrel", courses=12, thickness=0.5, axis=90.0).solids(points, 2000.0, "vault.las")
     true = LimitAnalysis(make_arch(4.25, 0.5, 120.0, 12), 0.7).collapse()[0].gamma
     assert push(made, 0.0) == pytest.approx(true, rel=0.01)
+
+
+def test_two_faces_with_a_thickness_are_told_apart() -> None:
+    """The words name the surplus key, not one that the deck already has."""
+    for shape, points in (("wall", wall_cloud(9, count=5000)), ("barrel", barrel_cloud(9, count=5000))):
+        with pytest.raises(BadGeometry, match="If they show both faces, remove `thickness`"):
+            Scan(shape=shape, courses=3, thickness=0.45).solids(points, 2000.0, "scan.ply")
+
+
+def test_points_of_another_shape_are_refused_or_doubted() -> None:
+    """Semi-ellipse and sloping barrel have no circle across a horizontal axis; a bulge is stated with its misfit."""
+    rng = np.random.default_rng(10)
+    angle, y, r = np.radians(rng.uniform(0.0, 180.0, 5000)), rng.uniform(0.0, 5.0, 5000), rng.choice([0.0, 0.5], 5000)
+    ellipse = np.column_stack([(4.0 + r) * np.cos(angle), y, (2.5 + r) * np.sin(angle)])
+    c, s = np.cos(np.radians(8.0)), np.sin(np.radians(8.0))
+    sloping = barrel_cloud(10, count=5000) @ np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
+    for points in (ellipse, sloping):
+        with pytest.raises(BadGeometry, match="otherwise they do not form a circular barrel with a horizontal axis"):
+            Scan(shape="barrel", courses=12).solids(points, 2000.0, "vault.las")
+    wall = wall_cloud(11, count=5000)
+    wall[:, 1] += 0.1 * np.sin(np.pi * wall[:, 2] / 3.0)
+    (remark,) = Scan(shape="wall", courses=3).solids(wall, 2000.0, "wall.ply").remarks
+    assert "mm (95 %) off the" in remark and "more than a tenth of the thickness of 4" in remark and "uncertain" in remark
+
+
+def test_stray_points_far_away_change_nothing() -> None:
+    far = np.array([[40.0, 0.0, 0.0], [0.0, 0.0, 30.0]])
+    wall, barrel = wall_cloud(12), barrel_cloud(12)
+    for shape, points in (("wall", wall), ("barrel", barrel)):
+        clean, strayed = (Scan(shape=shape, courses=3).solids(p, 2000.0, "scan.ply") for p in (points, np.vstack([points, far])))
+        assert strayed.remarks == clean.remarks == ()
+        assert strayed.measures == pytest.approx(clean.measures, rel=2e-3, abs=1e-2)
+
+
+@pytest.mark.parametrize(("shape", "length"), [("wall", 1e-3), ("barrel", 1e-9), ("wall", 1e-12)])
+def test_blocks_are_counted_before_they_are_made(shape: str, length: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("extrados.model.geometry.solids.scanned.hull", None)
+    with pytest.raises(BadGeometry, match=r"about .* blocks, and at most 20000 are allowed. Increase `block_length`"):
+        points = wall_cloud(13, count=2000) if shape == "wall" else barrel_cloud(13, count=2000)
+        Scan(shape=shape, courses=10, block_length=length).solids(points, 2000.0, "scan.ply")
 
 
 @pytest.mark.parametrize("sort", ["ply", "xyz", "las"])

@@ -1,5 +1,7 @@
 """Solids as files have them: blocks that share corners, blocks drawn twice, y upward."""
 
+import time
+
 import numpy as np
 import pytest
 from test_noisy_solids import corner, obj, pushed
@@ -8,6 +10,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
+from extrados.model.geometry.solids.flat import section_of_meshes
 from extrados.model.geometry.solids.meshes import read_obj, read_stl, stones_of
 from extrados.results.model import Result
 
@@ -95,3 +98,17 @@ def test_up_is_refused_of_plane_drawings() -> None:
     deck = make_deck({"structure": {"kind": "blocks", "up": "y", "block": [{"points": square}]}, "analysis": {"kind": "tilt"}})
     (found,) = run_analyses(Context(deck, threads=1))
     assert found.status == "refused" and "up` is only for" in found.reason
+
+
+def test_an_outline_of_many_faces_is_found_at_once() -> None:
+    """20,000 triangles of one plane, as a mesh of a survey has them: their outline is that of the square."""
+    n = 100
+    corners = [f"v {i} 0 {j}" for i in range(n + 1) for j in range(n + 1)]
+    at = [i * (n + 1) + j + 1 for i in range(n) for j in range(n)]
+    faces = [f"f {a} {a + n + 1} {a + n + 2}\nf {a} {a + n + 2} {a + 1}" for a in at]
+    meshes = read_obj("\n".join(["o wall", *corners, *faces]), "wall.obj")
+    began = time.process_time()
+    drawing, _ = section_of_meshes(meshes, "xz", None, "wall.obj")
+    assert time.process_time() - began < 1.0
+    (outline,) = drawing.blocks
+    assert len(outline.points) == 4 * n and np.ptp(outline.points, axis=0).tolist() == [n, n]

@@ -4,7 +4,7 @@ PLY and XYZ are read by trimesh, LAS and LAZ by laspy (the extra `scan`), in a p
 """
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +21,8 @@ TRIES = 3_000  # points by which the direction of a barrel is sought
 #: Points farther from a face than so many standard deviations (by the median), and than this [m], do not belong to it
 OUTLIER, LEAST_NOISE = 3.0, 1e-4
 ENDS = 0.1  # percent of the points of a face beyond either of its ends
-APART = 4.0  # standard deviations between two faces, at least
+#: Misfits (95 %) above these shares of the thickness: the capacity is uncertain; the points have another shape
+ROUGH, OTHER = 0.1, 0.25
 UPRIGHT = 0.3  # vertical part of the normal of a wall, at most
 
 
@@ -144,8 +145,7 @@ def fit_wall(points: np.ndarray, thickness: float | None = None) -> WallFit:
     back = faces[0]
     front = faces[1] if thickness is None else back + np.array([thickness, 0.0, 0.0])
     middle = np.array([1.0, float(np.median(s[kept])), float(np.median(z[kept]))])
-    if (front - back) @ middle < APART * max(fit.rms for fit in fits):
-        raise BadGeometry("the points show one face of the wall: give its thickness", ("structure", "scan", "thickness"))
+    _refuse_other_shapes(fits, float((front - back) @ middle), thickness, "a wall between two planes")
     return WallFit(origin, along, across, back, front, _ends(s[kept]), _ends(z[kept]), tuple(fits))
 
 
@@ -176,14 +176,39 @@ def fit_barrel(points: np.ndarray, thickness: float | None = None, axis: float |
     found = [_robust(name, side, circle, off) for name, side in zip(("intrados", "extrados"), sides, strict=False)]
     inner = found[0][0]
     outer = found[1][0] if thickness is None else inner + np.array([0.0, 0.0, thickness])
-    if outer[2] - inner[2] < APART * max(fit.rms for _, _, fit in found):
-        raise BadGeometry("the points show one face of the vault: give its thickness", ("structure", "scan", "thickness"))
+    fits = tuple(fit for _, _, fit in found)
+    _refuse_other_shapes(fits, float(outer[2] - inner[2]), thickness, "a circular barrel with a horizontal axis")
     kept = np.concatenate([one for _, one, _ in found])
     below = found[0][1]
     x, up = (flat[below] - inner[:2]).T
     low, high = _ends(np.arctan2(x, up))  # from the crown
     angle = (0.5 * np.pi - high, 0.5 * np.pi - low)
-    return BarrelFit(origin, along, way, inner, outer, angle, _ends(t[kept]), tuple(fit for _, _, fit in found))
+    return BarrelFit(origin, along, way, inner, outer, angle, _ends(t[kept]), fits)
+
+
+def uncertain(fits: Sequence[Fit], thickness: float) -> tuple[str, ...]:
+    """A remark where the greatest misfit is above a tenth of the thickness [m] of the body between the faces."""
+    worst = max(fits, key=lambda fit: fit.most)
+    if worst.most <= ROUGH * thickness:
+        return ()
+    return (
+        f"The points lie up to {1e3 * worst.most:.3g} mm (95 %) off the {worst.name}, which is more than a tenth of the thickness of "
+        f"{1e3 * thickness:.3g} mm. The capacity of the fitted body is uncertain. Divide the points into parts of the fitted shape, or give the "
+        "blocks as solids",
+    )
+
+
+def _refuse_other_shapes(fits: Sequence[Fit], thickness: float, given: float | None, shape: str) -> None:
+    """BadGeometry where the greatest misfit is above a quarter of the thickness [m] between the faces; given [m]: in the deck."""
+    worst = max(fits, key=lambda fit: fit.most)
+    if worst.most <= OTHER * thickness:
+        return
+    cure = "If they show one face only, give `thickness`" if given is None else "If they show both faces, remove `thickness`"
+    raise BadGeometry(
+        f"the points lie up to {1e3 * worst.most:.3g} mm (95 %) off the {worst.name}, which is more than a quarter of the thickness of "
+        f"{1e3 * thickness:.3g} mm. {cure}; otherwise they do not form {shape}: divide the points, or give the blocks as solids",
+        ("structure", "scan", "thickness"),
+    )
 
 
 def _local(arm: np.ndarray, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

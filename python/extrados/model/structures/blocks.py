@@ -146,7 +146,7 @@ class Blocks(Structure):
         max_length=500,
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
-        None, "unit of a file that gives none (DXF without $INSUNITS, COMPAS, OBJ, STL)"
+        None, "unit of a file that gives none (DXF without $INSUNITS, COMPAS, OBJ, STL, point clouds)"
     )
     up: Literal["y", "z"] | None = key(
         None,
@@ -212,6 +212,11 @@ class Blocks(Structure):
                 raise ValueError(f"block {i + 1}: a vertex does not have the form [x, y]")
         if (self.scan is None) == (self.file is not None and self.file.lower().endswith(CLOUDS)):
             raise ValueError(f"scan: the table [structure.scan] belongs to a file with a point cloud ({', '.join(CLOUDS)})")
+        if self.unit is not None and self.file is not None and self.file.lower().endswith(tuple(MODELS)):
+            raise ValueError(
+                f"unit: {self.file} gives its own unit (IFC), or is in metres by its standard (glTF). Remove `unit`; a file with the wrong size "
+                "must be scaled in the program that wrote it"
+            )
         refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         names = [layer.name.upper() for layer in self.layer]
         if len(set(names)) < len(names):

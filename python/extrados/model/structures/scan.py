@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
-from extrados.model.geometry.clouds import fit_barrel, fit_wall
+from extrados.model.geometry.clouds import fit_barrel, fit_wall, uncertain
 from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
 from extrados.model.geometry.solids.scanned import blocks_of_barrel, blocks_of_wall
 from extrados.schema.quantities import Angle, Length
@@ -60,7 +60,7 @@ class Scan(Table):
             measures = {"thickness_m": float((wall.front - wall.back) @ middle), "lean_deg": lean}
             measures |= {"length_m": wall.s[1] - wall.s[0], "height_m": wall.z[1] - wall.z[0]}
             made, fits = assemble(stones, what=name), wall.fits
-            remarks = _openings((points - wall.origin) @ wall.along, points[:, 2])
+            remarks = _openings((points - wall.origin) @ wall.along, points[:, 2] - wall.origin[2], wall.s, wall.z)
         else:
             barrel = fit_barrel(points, self.thickness, None if self.axis is None else float(np.radians(self.axis)))
             stones, seats = blocks_of_barrel(barrel, self.courses or 1, self.block_length, density)
@@ -68,13 +68,14 @@ class Scan(Table):
             measures |= {"embrace_deg": float(np.degrees(barrel.angle[1] - barrel.angle[0])), "length_m": barrel.t[1] - barrel.t[0]}
             made, fits, remarks = assemble(stones, what=name, seats=seats), barrel.fits, ()
         notes = tuple(f"{name}: {fit.told()}" for fit in fits)
+        remarks += uncertain(fits, measures["thickness_m"])
         return replace(made, measures=measures, notes=(*notes, *made.notes), remarks=(*remarks, *made.remarks))
 
 
-def _openings(s: np.ndarray, z: np.ndarray) -> tuple[str, ...]:
-    """A remark on the part of a wall that has no points, as openings have none."""
+def _openings(s: np.ndarray, z: np.ndarray, length: tuple[float, float], height: tuple[float, float]) -> tuple[str, ...]:
+    """A remark on the part of a wall between its ends [m] that has no points (n), as openings have none."""
     cells = max(1, int(np.sqrt(len(s) / POINTS_A_CELL)))
-    count = np.histogram2d(s, z, bins=cells)[0]
+    count = np.histogram2d(s, z, bins=cells, range=(length, height))[0]
     empty = float(np.mean(count == 0.0))
     if empty < EMPTY:
         return ()

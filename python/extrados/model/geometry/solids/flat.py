@@ -61,7 +61,8 @@ def section_of_meshes(meshes: Sequence[Mesh], plane: Plane, unit: str | None, na
 def _rim(faces: Sequence[Sequence[int]], where: str) -> list[int]:
     """The outline of faces of one plane, as numbers of points; BadGeometry where it is not one ring."""
     edges = [edge for face in faces for edge in zip(face, [*face[1:], face[0]], strict=True)]
-    inner = {frozenset(edge) for edge in edges if (edge[1], edge[0]) in set(edges)}
+    directed = set(edges)
+    inner = {frozenset(edge) for edge in edges if (edge[1], edge[0]) in directed}
     rim = {a: b for a, b in edges if frozenset((a, b)) not in inner}
     ring = [next(iter(rim), -1)]
     while (step := rim.get(ring[-1])) is not None and step != ring[0] and len(ring) <= len(rim):

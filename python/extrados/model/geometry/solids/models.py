@@ -24,8 +24,11 @@ def parse_model(content: bytes, name: str, sort: str) -> list[dict[str, Any]]:
     seen: Counter[str] = Counter()
     solids: dict[str, np.ndarray] = {}
     for title, triangles in rows:
-        seen[title] += 1
-        solids[title if seen[title] == 1 else f"{title} ({seen[title]})"] = triangles
+        own = title
+        while own in solids:
+            seen[title] += 1
+            own = f"{title} ({seen[title] + 1})"
+        solids[own] = triangles
     if not solids:
         raise Unreadable("the file has no bodies of triangles")
     if sum(map(len, solids.values())) > MOST_VERTICES // 3:

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from extrados.model.errors import BadGeometry
 from extrados.model.geometry.clouds import BarrelFit, WallFit
-from extrados.model.geometry.solids.assembly import Stone
+from extrados.model.geometry.solids.assembly import MOST_SOLIDS, Stone
 from extrados.model.geometry.solids.polyhedra import hull
 
 Seat = tuple[int, np.ndarray]
@@ -14,7 +15,8 @@ Seat = tuple[int, np.ndarray]
 
 def blocks_of_wall(fit: WallFit, beds: Sequence[float] | int, length: float | None, density: float) -> list[Stone]:
     """Blocks [kg/m^3] of a wall between bed joints: their heights above the foot [m], or the number of equal courses. length [m]: of a
-    block along the wall; None for whole courses."""
+    block along the wall; None for whole courses. BadGeometry above MOST_SOLIDS blocks."""
+    _refuse_many(fit.s, length, beds if isinstance(beds, int) else len(beds) + 1)
     low, high = fit.z
     levels = np.linspace(low, high, beds + 1) if isinstance(beds, int) else np.array([low, *(low + np.array(beds)), high])
     stones = []
@@ -30,7 +32,8 @@ def blocks_of_wall(fit: WallFit, beds: Sequence[float] | int, length: float | No
 
 def blocks_of_barrel(fit: BarrelFit, courses: int, length: float | None, density: float) -> tuple[list[Stone], list[Seat]]:
     """Voussoirs [kg/m^3] of a barrel in equal courses between radii of its intrados, and their faces on the springings. length [m]: of a
-    voussoir along the axis; None for whole courses."""
+    voussoir along the axis; None for whole courses. BadGeometry above MOST_SOLIDS blocks."""
+    _refuse_many(fit.t, length, courses)
     rays = np.linspace(*fit.angle, courses + 1)
     ways = np.column_stack([np.cos(rays), np.sin(rays)])
     inner = fit.inner[:2] + fit.inner[2] * ways
@@ -54,6 +57,17 @@ def blocks_of_barrel(fit: BarrelFit, courses: int, length: float | None, density
                 seats.append((len(stones), ring if into else ring[::-1]))
             stones.append(Stone(f"voussoir {k + 1} of course {course + 1}", [hull(np.concatenate(ends))], density))
     return stones, seats
+
+
+def _refuse_many(ends: tuple[float, float], length: float | None, courses: int) -> None:
+    """BadGeometry where courses between ends [m] of blocks of a length [m] are more than MOST_SOLIDS blocks; none is made for it."""
+    count = courses if length is None else courses * max(1.0, (ends[1] - ends[0]) / length)
+    if count > MOST_SOLIDS:
+        raise BadGeometry(
+            f"{courses} courses of {ends[1] - ends[0]:.3g} m would have about {count:.3g} blocks, and at most {MOST_SOLIDS} are allowed. "
+            "Increase `block_length`, or give fewer courses",
+            ("structure", "scan", "block_length"),
+        )
 
 
 def _heads(low: float, high: float, length: float | None, course: int) -> list[float]:
