@@ -84,6 +84,6 @@ def _draw_section(run: Stored, name: str, folder: Path, there: list[str]) -> tup
         ax.set_aspect("equal")
         ax.set_xlabel(f"distance from the middle of the plan, along {np.degrees(np.arctan2(way[1], way[0])):.0f} deg [m]")
         ax.set_ylabel("z [m]")
-        ax.set_title("Networks in the section through the middle and a support")
+        ax.set_title("Networks in section")
         style.legend_below(fig, ax)
         return style.save(fig, folder, f"{name}-section"), "Heights of the networks between intrados and extrados along one section."
