@@ -60,8 +60,11 @@ module dem3_law
    real(wp), parameter :: still_same = 0.1_wp
    !> Of how far bodies move between two looks: overlap at which a contact may come to be with its force
    real(wp), parameter :: deep = 0.1_wp
-   !> Times the energy before a look, or its inverse: the springs after it are others, as where edges that cross give way to faces
-   real(wp), parameter :: jump = 1.02_wp
+   !> Of the energy before a look: what is less after it is a loss
+   real(wp), parameter :: lost = 0.98_wp
+   !> Times the energy before a look: what is more comes from other springs, as where edges that cross give way to faces. An area that
+   !> grows with the overlap, as under a keystone that sits, stays below it: such a contact keeps its pressure.
+   real(wp), parameter :: other_springs = 1.2_wp
 
 contains
 
@@ -131,8 +134,8 @@ contains
       real(wp) :: normal(3), gap, at(3), now, part
       integer :: i
       now = energy_here(law, set, pair)
-      if (now * jump < held) pair%damping_loss = pair%damping_loss + held - now
-      if (now <= jump * held) return
+      if (now < lost * held) pair%damping_loss = pair%damping_loss + held - now
+      if (now <= other_springs * held) return
       part = sqrt(held / now)
       do i = 1, pair%points
          associate (point => pair%point(i))

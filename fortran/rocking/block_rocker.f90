@@ -179,7 +179,7 @@ contains
       type(power_series) :: series
       real(wp) :: value(2), slope(2), begin, h, q_end, v_end, sigma
       integer :: c, i, k
-      logical :: watched
+      logical :: watched, calm
 
       passed = 0
       stopped = .false.
@@ -206,7 +206,10 @@ contains
             call take_over(series, h, q_end, v_end, step)
             exit
          end if
-         if (watched) then
+         calm = .not. watched
+         if (watched) calm = model%watch%changes_nothing(i, q_end, v_end, value(1) + slope(1) * spacing, &
+            value(2) + slope(2) * spacing, demand)
+         if (.not. calm) then
             found = demand
             call model%watch%check_demand(i, q_end, v_end, value(1) + slope(1) * spacing, value(2) + slope(2) * spacing, &
                [real(wp) ::], begin + h, found)

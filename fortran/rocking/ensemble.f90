@@ -23,6 +23,9 @@ module rocking_ensemble
    private
    public :: body_data, body_list, list_body, run_ensemble
 
+   !> Runs of a structure that repay the bounds of its joints
+   integer, parameter :: many_runs = 16
+
    !> Room for one structure of any kind: of one coordinate, a block on a compliant base, or two blocks
    type :: any_body
       class(rocker), allocatable :: model
@@ -154,22 +157,29 @@ contains
       integer(c_int), intent(out) :: run_status(:)    !! per member; cancelled members were not run
       integer(c_int), intent(out) :: status
       type(any_body), allocatable :: built(:)
+      integer, allocatable :: runs(:)  ! of each structure
       type(signal) :: ground
       integer :: k, stat
 
       run_status = status_cancelled
       status = status_bad_index
       if (any(run_body < 1) .or. any(run_body > size(bodies%item))) return
-      allocate (built(size(bodies%item)), stat=stat)
+      allocate (built(size(bodies%item)), runs(size(bodies%item)), stat=stat)
       if (stat /= 0) then
          status = status_out_of_memory
          return
       end if
+      runs = 0
+      do k = 1, size(run_body)
+         runs(run_body(k)) = runs(run_body(k)) + 1
+      end do
       !$omp parallel default(none) num_threads(threads) private(k, ground) &
-      !$omp shared(bodies, set, run_body, run_motion, run_scale, options, answers, run_status, built)
+      !$omp shared(bodies, set, runs, run_body, run_motion, run_scale, options, answers, run_status, built)
       !$omp do schedule(dynamic)
       do k = 1, size(built)
          call build_body(bodies%item(k), built(k))
+         if (built(k)%status /= status_ok .or. runs(k) < many_runs) cycle
+         if (allocated(built(k)%model)) call built(k)%model%bound_joints(built(k)%status)
       end do
       !$omp end do
       !$omp do schedule(dynamic)

@@ -9,8 +9,10 @@
 module rocking_rocker
    use common_dense_step, only : dense_step
    use common_kinds, only : wp
+   use common_status, only : status_ok
    use rocking_restraint, only : restraint_set
    use rocking_watch, only : joint_demand, joint_watch
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: rocker, side_index, series_short
@@ -35,6 +37,7 @@ module rocking_rocker
       procedure(coefficients), deferred :: coefficients
       procedure(potential), deferred :: potential
       procedure :: set_rest_rate
+      procedure :: bound_joints
       procedure :: series_step
       procedure :: glide_samples
    end type rocker
@@ -130,5 +133,22 @@ contains
          model%rest_rate(i) = 1.0e-3_wp * sqrt(2.0_wp * max(model%potential(3 - 2 * i, model%critical(i)), 0.0_wp) / m)
       end do
    end subroutine set_rest_rate
+
+   !> Bounds of what the joints demand, for many runs: up to the rate that crosses the energy barrier from rest, and to twice the
+   !> ground acceleration that lifts the structure
+   pure subroutine bound_joints(model, status)
+      class(rocker), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      real(wp) :: m, half_dm, dv, dh, drive(2)
+      logical :: closed
+      integer :: i
+      status = status_ok
+      if (.not. allocated(model%watch)) return
+      do i = 1, 2
+         call model%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, dv, dh, closed)
+         drive(i) = 2.0_wp * dv / dh
+      end do
+      call model%watch%bound_demand(drive, (1.0e3_wp * model%rest_rate)**2, status)
+   end subroutine bound_joints
 
 end module rocking_rocker

@@ -9,8 +9,9 @@ from extrados.analyses.context import Context
 from extrados.analyses.motion_source import source_of
 from extrados.analyses.rocking.block import toe_forces
 from extrados.core import arch as core_arch
-from extrados.core.rocking import ensemble, history
+from extrados.core.rocking import Ground, ensemble, history
 from extrados.decks.reader import make_deck
+from extrados.limit.errors import CannotStand
 from extrados.model.structures.arch import make_arch
 from extrados.model.structures.block import make_block
 from extrados.model.structures.vault import VAULT_PRESETS, make_vault
@@ -106,6 +107,44 @@ def test_the_core_sees_what_the_history_shows() -> None:
         e = [ensemble([rocker.body], [motion.ground], [0, 0], [0, 0], 1.0, motion.end + 4.0, threads=k) for k in (1, 2)]
         assert np.array_equal(e[0].joints.friction, e[1].joints.friction)
         assert e[0].joints.friction[0] == pytest.approx(float(r.joints.friction), rel=0.02)
+
+
+TIED = BLOCK | {"height": 4.0}
+TIE = {"name": "rod", "start": [-0.5, 3.5], "start_stone": "block", "ground": [-4.0, 3.5], "stiffness": "2 MN/m", "yield_force": "20 kN"}
+COLUMN = {"kind": "column", "width": 0.8, "height": 4.0, "drums": 4}
+ARCH34 = {"kind": "arch", "radius": 1.0, "thickness": 0.144, "embrace": 170.0, "voussoirs": 34}
+
+
+@pytest.mark.parametrize("friction", [0.35, 0.7])
+@pytest.mark.parametrize(
+    "tables",
+    [{"structure": s} for s in (BLOCK, BLOCK | {"height": 5.0}, OPPENHEIM, ARCH34, VAULT, COLUMN)] + [{"structure": TIED, "ties": [TIE]}],
+    ids=["block", "slender", "arch", "voussoirs", "vault", "column", "tied"],
+)
+def test_bounds_of_the_joints_change_no_number(tables: dict, friction: float) -> None:
+    # an ensemble of many runs bounds what the joints demand before it looks at their forces; one run does not
+    arch = tables["structure"]["kind"] in ("arch", "vault")
+    tables = tables | {"joints": {"restitution": "energy-safe" if arch else 0.9, "friction": friction}, "motion": SINE}
+    try:
+        rocker = make_deck(tables | {"analysis": {"kind": "rocking"}}).buildings[0].rocker()
+    except CannotStand:
+        assert friction < 0.5
+        return
+    rng = np.random.default_rng(35)
+    grounds = []
+    for k in range(18):
+        samples = rng.normal(size=(1 + k % 2, 200))
+        samples = np.apply_along_axis(np.convolve, 1, samples, np.hanning(9), "same") * rocker.uplift * GRAVITY * (0.4 + 0.1 * k)
+        samples[1:] *= 0.4
+        grounds.append(Ground(samples=samples, step=(0.005, 0.01, 0.02)[k % 3]))
+    for tolerance in (1e-3, 1e-8):
+        one = [ensemble([rocker.body], [g], [0], [0], 1.0, 10.0, tolerance=tolerance) for g in grounds]
+        many = ensemble([rocker.body], grounds, [0] * len(grounds), range(len(grounds)), 1.0, 10.0, tolerance=tolerance)
+        assert (many.half_cycles > 1).sum() > 5
+        for name in ("outcome", "half_cycles", "impacts", "peak", "stop_time", "steps"):
+            assert np.array_equal(getattr(many, name), [getattr(r, name)[0] for r in one]), name
+        for name in ("friction", "outside", "slips_at", "leaves_at", "slips", "leaves"):
+            assert np.array_equal(getattr(many.joints, name), [getattr(r.joints, name)[0] for r in one]), name
 
 
 def test_a_block_on_little_friction_slides_at_rest() -> None:

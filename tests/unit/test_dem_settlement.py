@@ -129,7 +129,7 @@ def test_what_stands_by_its_weight_is_not_doubted(tmp_path, name, space) -> None
     deck.write_text(f'[structure]\n{STANDING[name]}\n[[analysis]]\nkind = "dem"\nsolver = "nonsmooth"\nend_time = 0.05\n{space}')
     found = extrados.run(deck).results[0]
     assert found.status == "ok" and "jammed" not in found.answer
-    assert not any("wedged" in text or "no other method" in text for text in found.warnings)
+    assert not any("wedged" in text or "no second method" in text for text in found.warnings)
 
 
 @pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])
@@ -142,7 +142,7 @@ def test_springs_that_come_to_no_end_accuse_nothing(tmp_path, monkeypatch, space
 
 @pytest.mark.parametrize(
     ("space", "told"),
-    [("", "it has 9 joints, and the check is limited to 8"), ("direction = 0.0\n", "it has 8 solids, and the check is limited to 7")],
+    [("", "such a check accepts at most 8 joints, and the structure has 9"), ("direction = 0.0\n", "such a check accepts at most 7 solids, and the structure has 8")],
     ids=["plane", "space"],
 )
 def test_what_is_too_large_for_other_methods_says_so(tmp_path, monkeypatch, space, told) -> None:

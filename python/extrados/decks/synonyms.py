@@ -191,7 +191,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "base sliding, sole, damp-proof course, flange, return wall, detached wall",
-        "joints in buildings modelled with shell elements: bed joints that can slide, and corners where one wall abuts on another",
+        "joints in buildings modelled with shell elements: bed joints that can slide, and corners at which a wall abuts on another",
         "building.beds building.corners joints results.pushover.joints",
         "buildings.md",
     ),

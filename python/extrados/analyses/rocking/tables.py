@@ -5,7 +5,6 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from extrados.analyses.table import Animated, BuildingAnalysis
-from extrados.model.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
 from extrados.schema.table import key
@@ -54,8 +53,6 @@ class RockingTable(BuildingAnalysis):
         """An energy ratio stands in place of the restitution; on a compliant base the impact follows from it; a wall
         throws back what falls against it."""
         found = super().rests_on(building)
-        if building.restraints or building.supports.abutting_wall is not None or building.supports.stiffness is not None:
-            found["joints.friction"] = NO_SLIDING  # what else acts on the joints is not followed
         if building.supports.abutting_wall is not None:
             found.pop("joints.restitution", None)
             found["supports.rebound"] = "three impacts" if building.supports.rebound is None else None

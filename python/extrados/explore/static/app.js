@@ -204,6 +204,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     if (words.scene && app.draft) drafted(null);
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
+    if (words.text !== undefined) start ??= words.text; // a page that is only opened leaves the deck of the last page
     if (words.text !== undefined && words.to === "rest") settled(words);
     for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall", "frozen"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
     entry?.reply?.(words, arrays);
@@ -273,8 +274,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     redoButton.disabled = future.length === 0 && !board();
     title.textContent = app.deck?.title || app.name || "";
     title.title = app.name;
-    start ??= app.text;
-    if (app.text === start) return; // a page that is only opened leaves the deck of the last page
+    if (app.text === start) return;
     start = "";
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
   }

@@ -599,7 +599,7 @@ class Plan(Structure):
             if crossed := self._crossed(floor):
                 found.append(
                     f"Floor on storey {floor.storey}: walls {', '.join(map(repr, crossed))} pass below the floor, which neither rests on "
-                    "them nor joins them. Give one floor for each room, with the walls around it as `walls`."
+                    "them nor joins them. Give a separate floor for each area between walls, with the walls around it as `walls`."
                 )
             if floor.roof == "rafters" and floor.kind == "rigid":
                 found.append(f"Floor on storey {floor.storey}: the rigid floor ties the rafters at the eaves, so they have no thrust.")
