@@ -142,7 +142,10 @@ def test_springs_that_come_to_no_end_accuse_nothing(tmp_path, monkeypatch, space
 
 @pytest.mark.parametrize(
     ("space", "told"),
-    [("", "such a check accepts at most 8 joints, and the structure has 9"), ("direction = 0.0\n", "such a check accepts at most 7 solids, and the structure has 8")],
+    [
+        ("", "such a check accepts at most 8 joints, and the structure has 9"),
+        ("direction = 0.0\n", "such a check accepts at most 7 solids, and the structure has 8"),
+    ],
     ids=["plane", "space"],
 )
 def test_what_is_too_large_for_other_methods_says_so(tmp_path, monkeypatch, space, told) -> None:

@@ -1,17 +1,16 @@
 """Thrust networks: closed forms, thrust lines of the plane, limit analysis of solids, equilibrium by a peer."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 import extrados
+from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.limit.thrust_network import words_of
 from extrados.limit.network import Diagram, ThrustNetworks
 from extrados.results.networks import ThrustNetwork
 
 BARREL = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 120.0, "voussoirs": 31, "depth": 0.2}
-STILL = SimpleNamespace(peak_g=None, pulse="", duration_s=None, amplitude_g=None)
+STILL = Demanded(None, "", 0.0, 0.0)
 DOME = {"kind": "dome", "radius": 5.0, "thickness": 0.5, "rings": 5, "lunes": 8}
 
 
