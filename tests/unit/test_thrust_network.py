@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 import extrados
+from extrados.analyses.assess.hazard import Demanded
+from extrados.analyses.limit.thrust_network import words_of
 from extrados.limit.network import Diagram, ThrustNetworks
+from extrados.results.networks import ThrustNetwork
 
 BARREL = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 120.0, "voussoirs": 31, "depth": 0.2}
+STILL = Demanded(None, "", 0.0, 0.0)
 DOME = {"kind": "dome", "radius": 5.0, "thickness": 0.5, "rings": 5, "lunes": 8}
 
 
@@ -52,7 +56,8 @@ def test_barrel_is_its_thrust_line() -> None:
     for end in ("least", "greatest"):
         assert network[f"{end}_thrust_N"] == pytest.approx(network[f"{end}_thrust_bound_N"], rel=1e-6)
     assert network["equilibrium_residual"] < 1e-9
-    assert network["outside_m"] < 0.01
+    assert max(network[f"{which}_outside_m"] for which in ("central", "least", "greatest", "horizontal")) < 0.008
+    assert not run.analyses[0]["warnings"]
 
 
 def test_dome_lies_between_its_bounds_and_turns_with_its_load() -> None:
@@ -91,3 +96,105 @@ def test_barrel_refuses_a_radial_diagram() -> None:
     run = extrados.run({"structure": BARREL, "analysis": {"kind": "thrust-network", "form": "radial"}})
     assert run.analyses[0]["status"] == "refused"
     assert "form" in run.analyses[0]["reason"]
+
+
+def test_joints_that_may_slide_leave_the_verdict_open() -> None:
+    """With friction .04 this arch cannot stand, by `tilt`: .094 is required."""
+    run = extrados.run(
+        {
+            "structure": BARREL,
+            "joints": {"friction": 0.04},
+            "analysis": [
+                {"kind": "thrust-network", "lines": 6},
+                {"kind": "tilt"},
+                {"kind": "thrust-network", "lines": 6, "joints": {"friction": "no-sliding"}},
+            ],
+        }
+    )
+    slides, tilt, held = (one["verdict"] for one in run.analyses)
+    assert [slides["outcome"], tilt["outcome"], held["outcome"]] == ["open", "cannot-stand", "stands"]
+    assert slides["violated"] == ["Sliding of the joints is not checked (coefficient of friction 0.04)."]
+    assert held["violated"] == []
+
+
+def _results(**keys) -> ThrustNetwork:
+    found = {
+        "form": "grid",
+        "nodes": 9,
+        "branches": 9,
+        "supports": 4,
+        "least_thrust_N": 1e3,
+        "least_thrust_bound_N": 1e3,
+        "greatest_thrust_N": 2e3,
+        "greatest_thrust_bound_N": 2e3,
+        "central_thrust_N": 1.5e3,
+        "least_part_of_depth": 0.5,
+        "least_part_bound": 0.5,
+        "geometric_safety_factor": 2.0,
+        "load_direction_deg": 0.0,
+        "horizontal_load_g": 0.2,
+        "horizontal_load_bound_g": 0.3,
+        "weight_N": 1e4,
+        "equilibrium_residual": 0.0,
+        "thickness_m": 0.5,
+        "central_outside_m": 0.0,
+        "least_outside_m": 0.0,
+        "greatest_outside_m": 0.0,
+        "horizontal_outside_m": 0.0,
+        "least_friction": None,
+    }
+    return ThrustNetwork(**{**found, **keys})
+
+
+@pytest.mark.parametrize(
+    ("load", "bound", "words"),
+    [
+        (None, 0.3, "found no network that carries a horizontal load. This proves no limit: the bound of the diagram is 0.3"),
+        (0.0, 0.3, "found no network that carries a horizontal load. This proves no limit: the bound of the diagram is 0.3"),
+        (None, None, "No limit of the horizontal load was found"),
+        (0.0, 1e-9, "the diagram carries no horizontal load"),
+        (None, 0.0, "the diagram carries no horizontal load"),
+        (0.2, 0.3, "0.2 (bound of the diagram: 0.3) times the weight, if it acts at the nodes"),
+    ],
+)
+def test_words_of_the_horizontal_load(load, bound, words) -> None:
+    """A bound of 0 proves that none is carried, a failed search does not; a value has the condition of its loads."""
+    assert words in words_of(_results(horizontal_load_g=load, horizontal_load_bound_g=bound))
+
+
+def test_horizontal_load_of_a_network_is_above_that_of_tilt() -> None:
+    """Its loads act at the nodes: the answer gives the condition and by how much such values were too high."""
+    run = extrados.run(
+        {"structure": BARREL, "joints": {"friction": "no-sliding"}, "analysis": [{"kind": "thrust-network", "lines": 20}, {"kind": "tilt"}]}
+    )
+    network, tilt = (run.analyses[k]["results"] for k in range(2))
+    assert 1.0 < network["horizontal_load_g"] / tilt["collapse_acceleration_g"] < 1.08
+    assert "exceeds that of `tilt` by 1 to 7 %" in run.analyses[0]["answer"]
+
+
+def test_networks_that_leave_the_blocks_are_named() -> None:
+    """Each network has its own distance; chords of eight meridians leave the blocks, those of the most central network do not."""
+    analysis = {"kind": "thrust-network", "lines": 4, "meridians": 8}
+    one = extrados.run({"structure": DOME, "joints": {"friction": "no-sliding"}, "analysis": analysis}).analyses[0]
+    r = one["results"]
+    about = {"central": "most central network", "greatest": "network of greatest thrust"}
+    for which, words in about.items():
+        assert any(words in text for text in one["warnings"]) == (r[f"{which}_outside_m"] > 0.01 * r["thickness_m"])
+    assert r["central_outside_m"] < 0.005 < 0.03 < r["greatest_outside_m"]
+    assert r["thickness_m"] == pytest.approx(0.5, rel=0.05)
+    assert one["verdict"]["outcome"] == "stands"
+
+
+def test_a_central_network_outside_the_blocks_leaves_the_verdict_open() -> None:
+    """One part in a hundred of the thickness counts."""
+    for outside, outcome in ((0.004, "stands"), (0.006, "open")):
+        verdict = _results(central_outside_m=outside).judged(STILL)
+        assert verdict.outcome == outcome
+        assert ("leaves the blocks by up to 6 mm" in verdict.statement) == (outcome == "open")
+
+
+@pytest.mark.parametrize(("lines", "leaves"), [(6, True), (20, False)])
+def test_branches_to_the_supports_are_compared_too(lines, leaves) -> None:
+    """Six branches of a barrel under its greatest horizontal load pass beside its haunch."""
+    run = extrados.run({"structure": BARREL, "analysis": {"kind": "thrust-network", "lines": lines}})
+    assert (run.analyses[0]["results"]["horizontal_outside_m"] > 0.05) == leaves

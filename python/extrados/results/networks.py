@@ -5,6 +5,8 @@ from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 #: Relative difference of a value and its bound that is rounding
 AGREE = 1e-4
+#: Part of the thickness by which branches may leave the blocks
+LEAVES = 0.01
 
 
 class ThrustNetwork(KindResults):
@@ -31,19 +33,40 @@ class ThrustNetwork(KindResults):
     )
     load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
     horizontal_load_g: float | None = fact(
-        "greatest horizontal load that a network found carries, divided by the weight; null if no network was found, or without a limit",
+        "greatest horizontal load, at the nodes, that a network found carries, divided by the weight; null if no network was found, or "
+        "without a limit. The collapse load can be less: at the centroids of the blocks the load has other moments",
         "g",
     )
     horizontal_load_bound_g: float | None = fact("upper bound of this load for all networks on the diagram; null without a limit", "g")
     weight_N: float = fact("weight of the structure", "N")
     equilibrium_residual: float = fact("ratio of the greatest unbalanced force at a node to the weight")
-    outside_m: float = fact("greatest distance by which a branch that carries force leaves the blocks between its nodes", "m")
+    thickness_m: float = fact("median thickness of the blocks across the branches of the most central network", "m")
+    central_outside_m: float = fact(
+        "greatest distance by which a branch that carries force leaves the blocks between its nodes, in the most central network", "m"
+    )
+    least_outside_m: float | None = fact("this distance in the network of least thrust; null without this network", "m")
+    greatest_outside_m: float | None = fact("this distance in the network of greatest thrust; null without this network", "m")
+    horizontal_outside_m: float | None = fact(
+        "this distance in the network of the greatest horizontal load; null without this network", "m"
+    )
+    least_friction: float | None = fact("least coefficient of friction of the joints, which is not compared; null if sliding is excluded")
+
+    def leaves(self, outside: float | None) -> bool:
+        """Whether branches leave the blocks by a distance [m] that counts; None: no network."""
+        return outside is not None and outside > LEAVES * self.thickness_m
 
     def judged(self, demand: Demand) -> Verdict:
-        """The part of the depth that the most central network needs against the whole."""
+        """The part of the depth that the most central network needs against the whole; open where joints may slide, and where
+        branches of this network leave the blocks."""
         part = self.least_part_of_depth
         if part > 1.0:
             return judge(
                 f"No network found on this diagram lies within the structure: it needs {part:.2f} times the depth.", outcome="open"
             )
-        return judge(f"A network on this diagram stays within the middle {100.0 * part:.3g} % of the depth.", part, 1.0)
+        violated = []
+        if self.least_friction is not None:
+            violated.append(f"Sliding of the joints is not checked (coefficient of friction {self.least_friction:.3g}).")
+        if self.leaves(self.central_outside_m):
+            violated.append(f"Between its nodes this network leaves the blocks by up to {1e3 * self.central_outside_m:.3g} mm.")
+        text = f"A network on this diagram stays within the middle {100.0 * part:.3g} % of the depth."
+        return judge(text, part, 1.0, violated=violated)

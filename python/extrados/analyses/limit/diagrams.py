@@ -33,8 +33,7 @@ def form_of(building: Building, options: ThrustNetwork) -> Form:
 
 def diagram_of(assembly: SolidAssembly, form: Form, lines: int, meridians: int) -> Diagram:
     """The form diagram of blocks; Refused where the blocks have no span or vertical lines cross voids."""
-    grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
-    beds = [assembly.polygon[j] for j in np.flatnonzero(grounded).tolist()]
+    beds = _beds(assembly)
     if not beds:
         raise Refused("a thrust network requires supports: no block touches the ground", ("structure",))
     points, branch, edge, held = (
@@ -59,21 +58,31 @@ def diagram_of(assembly: SolidAssembly, form: Form, lines: int, meridians: int) 
     return Diagram(points, branch, held, columns.low, columns.high, above, weight, support, outward, seat)
 
 
-def outside_of(diagram: Diagram, assembly: SolidAssembly, network: Network) -> float:
-    """How far branches that carry force leave the blocks at their quarter points and middles at most [m], across the branch."""
+def outside_of(diagram: Diagram, assembly: SolidAssembly, network: Network) -> tuple[float, float]:
+    """How far branches that carry force leave the blocks at their quarter points and middles at most, and the median thickness of
+    the blocks there; both across the branch [m]."""
     counts = network.density > CARRIES * network.density.max()
-    counts &= ~diagram.above[: len(diagram.point)][diagram.branch].any(axis=1)  # over a bed the line is that of the reaction
+    beds, height = _beds(assembly), network.height
     first, second = diagram.branch[counts].T
-    height = network.height
     run = np.linalg.norm(diagram.point[second] - diagram.point[first], axis=1)
     level = run / np.hypot(run, height[second] - height[first])
-    worst = 0.0
+    worst, thickness = 0.0, []
     for part in (0.25, 0.5, 0.75):
-        columns = columns_of(assembly, (1.0 - part) * diagram.point[first] + part * diagram.point[second])
+        places = (1.0 - part) * diagram.point[first] + part * diagram.point[second]
+        columns = columns_of(assembly, places)
+        # Over a bed the line is that of the reaction
+        there = ~np.isnan(columns.low) & ~np.array([_above(beds, place) for place in places])
         z = (1.0 - part) * height[first] + part * height[second]
         out = level * np.maximum(columns.low - z, z - columns.high)
-        worst = max(worst, float(out[~np.isnan(out)].max(initial=0.0)))
-    return worst
+        worst = max(worst, float(out[there].max(initial=0.0)))
+        thickness.append((level * (columns.high - columns.low))[there])
+    return worst, float(np.median(np.concatenate(thickness)))
+
+
+def _beds(assembly: SolidAssembly) -> list[np.ndarray]:
+    """Outlines (k, 3) [m] of the contacts with the ground."""
+    grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
+    return [assembly.polygon[j] for j in np.flatnonzero(grounded).tolist()]
 
 
 def _middles(beds: list[np.ndarray]) -> np.ndarray:

@@ -163,7 +163,7 @@ class ThrustNetwork(BuildingAnalysis):
     kind: Literal["thrust-network"]
     structures: ClassVar = ("arch", "pointed-arch", "elliptical-arch", "blocks", "dome", "cross-vault")
     solid: ClassVar = True
-    uses: ClassVar[tuple[str, ...]] = ("material.density",)
+    uses: ClassVar[tuple[str, ...]] = ("material.density", "joints.friction")
     starter_structure: ClassVar[str] = "dome"
     starter: ClassVar = {"lines": "5", "meridians": "8"}
     form: Literal["radial", "grid", "crossed"] | None = key(

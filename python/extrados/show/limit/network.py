@@ -76,11 +76,13 @@ def _draw_section(run: Stored, name: str, folder: Path, there: list[str]) -> tup
     order = on[along.argsort()]
     along = np.sort(along)
     low, high = run.array(name, "network_low")[order], run.array(name, "network_high")[order]
-    tall = float(np.clip((high.max() - low.min()) / np.ptp(along), 0.25, 0.8))
-    with style.figure(7.0, 6.0 * tall + 1.4) as (fig, (ax,)):
+    heights = [run.array(name, f"{aim}_height")[order] for aim in there]
+    bottom, top = min(low.min(), np.min(heights)), max(high.max(), np.max(heights))  # reactions end below the blocks
+    tall = float(np.clip((top - bottom) / np.ptp(along), 0.25, 1.0))
+    with style.figure(7.0, 6.0 * tall + 1.8) as (fig, (ax,)):
         ax.fill_between(along, low, high, color=style.STONE, linewidth=0.0, label="masonry")
-        for aim in there:
-            ax.plot(along, run.array(name, f"{aim}_height")[order], color=COLOURS[aim], marker=".", markersize=3, label=TITLES[aim])
+        for aim, height in zip(there, heights, strict=True):
+            ax.plot(along, height, color=COLOURS[aim], marker=".", markersize=3, label=TITLES[aim])
         ax.set_aspect("equal")
         ax.set_xlabel(f"distance from the middle of the plan, along {np.degrees(np.arctan2(way[1], way[0])):.0f} deg [m]")
         ax.set_ylabel("z [m]")
