@@ -124,3 +124,20 @@ def test_walls_of_a_plan_out_of_their_planes():
     assert all(row["rigid_acceleration_g"] is None and row["held_at_m"] == [3.0, 5.8] for row in held)
     rigid = 2.0 * 0.4 / 2.8  # a wall without load that is held on top: its hinge is there, W t = alpha W h/2
     assert 0.9 * rigid < held[0]["acceleration_g"] < 1.05 * rigid and 4.4 < held[0]["height_m"] < 5.8
+
+
+def test_a_rigid_floor_on_a_seat_restrains_no_wall():
+    """Friction alone holds such a floor: walls carry what they carry below a flexible floor, by both analyses."""
+    found = []
+    for kind, seat in (("rigid", True), ("flexible", False), ("rigid", False)):
+        data = deck(kind)
+        if seat:
+            for floor in data["structure"]["floors"]:
+                floor["seat"] = {"length": 0.12, "friction": 0.4}
+        data["analysis"].append({"kind": "local-mechanism", "mechanism": "building"})
+        frame, local = extrados.run(data, threads=1).analyses
+        rows = frame["results"]["walls_out_of_plane"]
+        found.append(({r["wall"]: (r["acceleration_g"], r["held_at_m"]) for r in rows}, local["results"].get("multiplier")))
+        assert not seat or "Out of their planes it restrains no wall" in "".join(frame["results"]["remarks"])
+        assert not seat or "floors with a seat do not" in local["answer"]
+    assert found[0] == found[1] and found[2][1] is None and all(held for _, held in found[2][0].values())

@@ -200,8 +200,8 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
     )
     result.answer += (
         f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls. Each part is considered separately "
-        "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists and rods do "
-        "not."
+        "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists, rods and "
+        "floors with a seat do not."
     )
     context.warnings += plan.floor_remarks
     if plan.rods:

@@ -50,8 +50,9 @@ class FloorActions:
 def wall_parts(building: Building) -> list[WallPart]:
     """Every wall above the foot of each storey above which nothing holds it.
 
-    Simple overturning: walls across, flexible floors, joists and rods hold no wall; rigid floors and props do. Floors load the
-    walls that carry them, by their length, on the middle plane; purlins load a gable at half its rise. Rafters push on their walls.
+    Simple overturning: walls across, flexible floors, joists, rods and floors with a seat hold no wall; other rigid floors and props do.
+    Floors load the walls that carry them, by their length, on the middle plane; purlins load a gable at half its rise. Rafters push
+    on their walls.
     Every gable is also a part of its own, unless a rigid roof restrains it. NoMechanism where every wall is held.
     """
     plan = building.structure
@@ -90,7 +91,7 @@ def floor_actions(plan: Plan) -> FloorActions:
                 found.on_gable[wall.name] += share
         for w, _, _, force in plan.thrusts(floor, ring):
             found.thrusts[plan.walls[w].name, floor.storey] += force
-        if floor.kind == "rigid":
+        if floor.kind == "rigid" and floor.seat is None:  # a seat holds by friction alone
             for w, _, _ in ring:
                 found.held[plan.walls[w].name].add(floor.storey)
                 if floor.roof is not None and floor.storey == plan.reach(plan.walls[w])[1]:
