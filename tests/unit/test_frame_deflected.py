@@ -1,7 +1,7 @@
 """Walls out of their planes as chains of macro-elements: critical loads, rigid mechanisms, and walls of a plan."""
 
 import itertools
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from scipy.optimize import minimize_scalar
 
 import extrados
 from extrados.analyses.frame.deflected import At, Chain, Piece
-from extrados.core.frame import section_forces
+from extrados.core.frame import Frame, section_forces
 from extrados.schema.constants import GRAVITY
 
 DENSITY, YOUNG = 1800.0, 1e9
@@ -141,3 +141,32 @@ def test_a_rigid_floor_on_a_seat_restrains_no_wall():
         assert not seat or "Out of their planes it restrains no wall" in "".join(frame["results"]["remarks"])
         assert not seat or "floors with a seat do not" in local["answer"]
     assert found[0] == found[1] and found[2][1] is None and all(held for _, held in found[2][0].values())
+
+
+def test_a_wall_without_a_rigid_mechanism_leaves_the_pushovers_as_they_are():
+    """The weight presses wall 'south' with more than 0.75 of its strength: the multiplier is null, with the reason."""
+    data = deck("flexible", compressive_strength=0.2e6)
+    rows, analysis = walls_of(data)
+    assert [row["wall"] for row in rows if row["rigid_acceleration_g"] is None] == ["south"]
+    assert any("Wall 'south'" in text and "0.75 of the compressive strength" in text for text in analysis["warnings"])
+    data["analysis"][0]["deflected_walls"] = False
+    (alone,) = extrados.run(data, threads=1).analyses
+    assert alone["results"]["runs"] == analysis["results"]["runs"]
+
+
+def test_a_curve_without_displacement_has_no_stiffness(monkeypatch):
+    """No step of the push is in equilibrium, as of piers that the weight crushes almost: 0/0 was NaN."""
+    push = Frame.push
+
+    def first(*args):
+        path = push(*args)
+        kept = {f.name: value[:1] for f in fields(path) if isinstance(value := getattr(path, f.name), np.ndarray)}
+        return replace(path, stop="no equilibrium at the least step", **kept)
+
+    monkeypatch.setattr(Frame, "push", first)
+    data = deck("flexible")
+    data["analysis"][0]["deflected_walls"] = False
+    (analysis,) = extrados.run(data, threads=1).analyses
+    runs = analysis["results"]["runs"]
+    assert analysis["status"] == "ok" and runs and all(row["stiffness_N_m"] is None for row in runs)
+    assert sum("no stiffness" in text for text in analysis["warnings"]) == len(runs)

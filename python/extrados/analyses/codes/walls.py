@@ -58,20 +58,26 @@ def wall_parts(building: Building) -> list[WallPart]:
     plan = building.structure
     assert isinstance(plan, Plan)
     actions = floor_actions(plan)
-    parts = []
-    for wall in plan.walls:
-        first, last = plan.reach(wall)
-        free = max((k + 1 for k in actions.held[wall.name] if first <= k <= last), default=first)
-        own = list(range(free, last + 1))
-        if wall.gable is not None and wall.name not in actions.held_gables:
-            own.append(last + 1)
-        parts += [_part(building, plan, wall, storey, actions) for storey in own]
+    parts = [part for wall in plan.walls for part in parts_of_wall(building, wall, actions)]
     if not parts:
         raise NoMechanism(
             "Rigid floors or props restrain the top of every wall, so no wall overturns out of its plane as one body. The "
             "bending of a wall between its floors is not checked"
         )
     return parts
+
+
+def parts_of_wall(building: Building, wall: PlanWall, actions: FloorActions) -> list[WallPart]:
+    """A wall above the foot of each storey above which nothing holds it, and its free gable; none of a wall that is held. Refused or
+    CannotStand where the masonry at a foot does not carry the weight."""
+    plan = building.structure
+    assert isinstance(plan, Plan)
+    first, last = plan.reach(wall)
+    free = max((k + 1 for k in actions.held[wall.name] if first <= k <= last), default=first)
+    own = list(range(free, last + 1))
+    if wall.gable is not None and wall.name not in actions.held_gables:
+        own.append(last + 1)
+    return [_part(building, plan, wall, storey, actions) for storey in own]
 
 
 def floor_actions(plan: Plan) -> FloorActions:
