@@ -118,7 +118,8 @@ class WallDeflection(ResultModel):
     height_m: float = fact("height of the greatest deflection above the ground", "m")
     reached: bool = fact("whether the acceleration decreases with further deflection; if not, it is a lower bound")
     rigid_acceleration_g: float | None = fact(
-        "collapse multiplier of its weakest rigid part above a storey, by local-mechanism; null if floors hold the wall, or with a warning",
+        "collapse multiplier of its weakest rigid part above a storey, by local-mechanism without confidence factor, with the same position of "
+        "the hinge; null if floors hold the wall, or with a warning",
         "g",
     )
     held_at_m: list[float] = fact("heights at which rigid floors and props hold the wall", "m")

@@ -1,7 +1,8 @@
 """Walls of a plan out of their planes: each wall as a chain of macro-elements whose sections lie across its thickness.
 
 The laws are those of piers in their planes: sections without tension that crush, in equilibrium with the end forces, and the
-second-order effect of the deflection (after Vanin, Penna and Beyer 2020). Rigid floors and props hold the chain on their levels.
+second-order effect of the deflection (after Vanin, Penna and Beyer 2020). Their block of stress gives a stiff wall the hinge of its
+rigid mechanism, so that a deflection only lowers the multiplier. Rigid floors and props hold the chain on their levels.
 """
 
 import itertools
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.analyses.codes.mechanisms import BLOCK
 from extrados.analyses.codes.walls import FloorActions, floor_actions, material_of, parts_of_wall
 from extrados.analyses.context import Refused
 from extrados.core.errors import Cancelled, CoreError
@@ -21,7 +23,6 @@ from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.plan import SHEAR_FACTOR
-from extrados.views.frame.spandrels import BLOCK
 
 #: Ends of the elements of a storey over its height, and elements of a gable. A wall without load that is held on top opens just
 #: below its top, so that the elements of a held storey are short at both ends.
