@@ -1,10 +1,13 @@
 """A structure on a floor: its motion, and every analysis under it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import extrados
+from extrados.analyses.codes.parts import Part, asce41, en1998, nzsee
 from extrados.analyses.conclude import MotionDemand
 from extrados.analyses.context import Context
 from extrados.core import motion as core_motion
@@ -40,6 +43,21 @@ def test_the_floor_moves_as_the_oscillator_below_it() -> None:
     by_hand = (1.0 - sway.part) * ground.sample(time) + sway.part * absolute
     assert np.abs(motion.series()[1] - by_hand).max() < 2e-3 * np.abs(by_hand).max()
     assert np.abs(motion.series()[1][-20:]).max() < 0.03 * motion.peak, "it swings out"
+
+
+@pytest.mark.parametrize(("jurisdiction", "rule"), [("EN1998", "EN 1998-1 part of a building"), ("NZSEE", "NZSEE C8 parapet")])
+def test_codes_take_the_response_to_the_motion_of_the_floor_as_it_is(jurisdiction: str, rule: str) -> None:
+    """The response at the period of the part, by hand; coefficients of height are for the motion of the ground."""
+    h, t = 1.2, 0.3
+    table = {"kind": "local-mechanism", "mechanism": "parapet", "height": h, "thickness": t, "period": 0.1, "motion_spectrum": True}
+    deck = make_deck({"code": {"jurisdiction": jurisdiction}, "motion": {**RECORD, "floor": BELOW}, "analysis": table})
+    check = extrados.run(deck)["local-mechanism"].checks[rule]
+    motion, slope = Context(deck).motion, 1.0 + (t / h) ** 2
+    time, acceleration = motion.series()
+    period = 0.1 if jurisdiction == "EN1998" else float(np.sqrt(0.65 * h * slope))
+    felt = float(core_motion.response_spectra(acceleration, time[1] - time[0], [period], [0.05]).psa[0, 0])
+    by_hand = felt / GRAVITY if jurisdiction == "EN1998" else 1.5 / slope * felt * (period / (2.0 * np.pi)) ** 2
+    assert check.demand == pytest.approx(by_hand) and "response to the motion of the floor" in check.note
 
 
 def test_a_stiff_building_moves_with_the_ground() -> None:
@@ -126,3 +144,17 @@ def test_an_assessment_takes_the_action_of_its_code() -> None:
     run = extrados.run({"structure": BLOCK, "motion": RECORD, "code": code, "analysis": asked})
     (row,) = run["assess"].verdicts
     assert "action of [code]" in row.parameters and run["code-checks"].peak_ground_acceleration_g == pytest.approx(0.12)
+
+
+def test_rules_that_the_motion_of_one_floor_does_not_answer_say_so() -> None:
+    """Without T_a no response of the part; a wall between two floors; S_X1 is of the ground."""
+    part = Part("parapet", 0.25, 1.2, 0.3, 8.0, 10.0, shaken=True)
+    wall = replace(part, element="vertical-bending", weight=1e4)
+    told = [
+        (en1998(part, 3.0, spectrum=lambda t, xi: 3.0)[0], "T_a is not known"),
+        (nzsee(wall, lambda t, xi: 3.0)[1], "floor above moves otherwise"),
+    ]
+    for line, words in told:
+        assert line.verdict == "not-applicable" and line.demand is None and words in line.barred
+    (_, parapet) = asce41(part, None, "top")
+    assert "motion of a floor, not of the ground" in parapet.note and parapet.verdict not in ("holds", "fails")

@@ -86,7 +86,9 @@ class FramePush(ResultModel):
         "are at their drift limit, and of the end of a curve without equilibrium beyond a drift limit; null if the curve reaches none",
         "m",
     )
-    stiffness_N_m: float = fact("secant stiffness at a tenth of the greatest base shear", "N/m")
+    stiffness_N_m: float | None = fact(
+        "secant stiffness at a tenth of the greatest base shear; null if the curve has no displacement up to there", "N/m"
+    )
     period_s: float = fact("period of the mode with the greatest participating mass in the direction", "s")
     equivalent_mass_kg: float = fact(
         "m*: sum of the products of the masses and the mode shape, which is 1 at the control displacement", "kg"
@@ -116,7 +118,9 @@ class WallDeflection(ResultModel):
     height_m: float = fact("height of the greatest deflection above the ground", "m")
     reached: bool = fact("whether the acceleration decreases with further deflection; if not, it is a lower bound")
     rigid_acceleration_g: float | None = fact(
-        "collapse multiplier of its weakest rigid part above a storey, by local-mechanism; null if floors hold the wall", "g"
+        "collapse multiplier of its weakest rigid part above a storey, by local-mechanism without confidence factor, with the same position of "
+        "the hinge; null if floors hold the wall, or with a warning",
+        "g",
     )
     held_at_m: list[float] = fact("heights at which rigid floors and props hold the wall", "m")
 

@@ -137,6 +137,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     part = Part("block", alpha0, height, width, *place)
     lines: list[Line] = []
     for action in asked or [main]:
+        felt = replace(part, shaken=action.of_motion and below is not None)
         match code.jurisdiction:
             case "NTC":
                 found = ntc.Capacities(
@@ -144,11 +145,12 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
                 )
                 rows = ntc.checks(found, q, action.state, action.peak, action.spectrum, _placed(action, below))
             case "EN1998":
-                rows = en1998(part, action.peak, action.state)
+                rows = en1998(felt, action.peak, action.state, action.spectrum)
             case "ASCE41":
-                rows = asce41(part, None if action.spectrum is None else action.spectrum(1.0, 0.05), "one-story", None, action.state)
+                one_second = None if action.spectrum is None or felt.shaken else action.spectrum(1.0, 0.05)
+                rows = asce41(felt, one_second, "one-story", None, action.state)
             case "NZSEE":
-                rows = nzsee(part, action.spectrum, action.state)
+                rows = nzsee(felt, action.spectrum, action.state)
             case _:
                 rows = []
         lines += dated(rows, action)

@@ -200,8 +200,8 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
     )
     result.answer += (
         f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls. Each part is considered separately "
-        "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists and rods do "
-        "not."
+        "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists, rods and "
+        "floors with a seat do not."
     )
     context.warnings += plan.floor_remarks
     if plan.rods:
@@ -516,16 +516,17 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
 def _checks(context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float) -> tuple[list[Line], Keys]:
     """The rules of the code at each of its limit states, and results that stand beside them."""
     code, asked = code_of(context), actions(context, options)
-    part = _part(context, options, turning)
+    own = _part(context, options, turning)
     lines: list[Line] = []
     more: dict[str, float] = {}
     for action in asked or [Action(code.concluding, None, None)]:
+        part = replace(own, shaken=action.of_motion and floor_below(context) is not None)
         match code.jurisdiction:
             case "NTC":
                 found, beside = _ntc(context, options, turning, storeys, fc, action)
                 more |= beside if action.state == code.concluding else {}
             case "EN1998":
-                found = en1998(part, action.peak, action.state)
+                found = en1998(part, action.peak, action.state, action.spectrum)
             case "ASCE41":
                 found = _asce(options, part, action)
             case "NZSEE":
@@ -538,7 +539,7 @@ def _checks(context: Context, options: LocalMechanism, turning: _Turning, storey
 
 def _asce(options: LocalMechanism, part: Part, action: Action) -> list[Line]:
     one_second, short = options.one_second_acceleration, None
-    if one_second is None and action.spectrum is not None:
+    if one_second is None and action.spectrum is not None and not part.shaken:
         one_second, short = action.spectrum(1.0, 0.05), action.spectrum(0.2, 0.05)
     return asce41(part, one_second, options.storey, short, action.state)
 

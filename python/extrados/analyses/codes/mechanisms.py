@@ -12,6 +12,8 @@ from extrados.analyses.context import Refused
 from extrados.limit.errors import CannotStand
 from extrados.schema.constants import GRAVITY
 
+#: Stress of a rectangular block, over the strength, whose resultant lies as far from the edge as that of the triangle up to the strength
+BLOCK = 0.75
 #: What each mechanism needs beyond density and height
 NEEDS = {
     "facade": ("height", "thickness"),
@@ -174,7 +176,7 @@ def _of_floor(floor: Floor, middle: float, level: float) -> list[Weight]:
 
 
 def set_back(weights: list[Weight], strength: float, width: float, thickness: float) -> list[Weight]:
-    """Weights about a hinge that lies within the wall by 2 P/(3 f_d w), for a strength f_d [Pa] and a width w [m]; Refused where
+    """Weights about a hinge that lies within the wall by 2 P/(3 f_d w), the centre of a triangle of stress up to f_d, for a strength f_d [Pa] and a width w [m]; Refused where
     that is the middle of the thickness [m], CannotStand where no stress within the strength carries the weight."""
     weight, most = sum(w.weight for w in weights if w.rests), strength * width * thickness
     if weight > most:
@@ -183,11 +185,11 @@ def set_back(weights: list[Weight], strength: float, width: float, thickness: fl
             f"carries at most {most / 1e3:.3g} kN",
             neglects=(),
         )
-    setback = 2.0 * weight / (3.0 * strength * width)
+    setback = 0.5 * weight / (BLOCK * strength * width)
     if setback >= thickness / 2.0:
         raise Refused(
             "the triangle of compressive stress under the weight is wider than the wall at the hinge: the stress exceeds "
-            "0.75 of the compressive strength",
+            f"{BLOCK:g} of the compressive strength",
             ("material", "compressive_strength"),
         )
     return [replace(w, arm=w.arm - setback) for w in weights]

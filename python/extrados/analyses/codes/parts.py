@@ -27,7 +27,8 @@ USABLE, USABLE_WALL = 0.3, 0.6
 class Part:
     """What turns: its element (a mechanism of the table), alpha_0, height and thickness [m] above the hinge, None of a chain of blocks;
     z [m] and H [m], of a part of a building, else 0 and None; loaded: floors rest on it; anchored: ties or floors hold its top; load [N]
-    on its top, `arm` [m] behind its outer face; weight [N]; period T_a of the part, and T_1 of the building [s], None: not known."""
+    on its top, `arm` [m] behind its outer face; weight [N]; period T_a of the part, and T_1 of the building [s], None: not known; shaken: whether the action
+    is the motion of the floor below it, to which no coefficient of height applies."""
 
     element: str
     multiplier: float
@@ -42,6 +43,7 @@ class Part:
     weight: float = 0.0
     period: float | None = None
     first: float | None = None
+    shaken: bool = False
 
     @property
     def elevated(self) -> bool:
@@ -49,8 +51,9 @@ class Part:
         return self.place > 0.0 and self.building is not None
 
 
-def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
-    """Action on a non-structural element, F_a = S_a W_a/q_a, against the weight that holds it; peak: a_g S [m/s^2]."""
+def en1998(part: Part, peak: float | None, state: str = "SD", spectrum: Callable[[float, float], float] | None = None) -> list[Line]:
+    """Action on a non-structural element, F_a = S_a W_a/q_a, against the weight that holds it; peak: a_g S [m/s^2]. spectrum [m/s^2] over
+    period and damping ratio: of a part shaken by its floor, whose S_a is the response at T_a."""
     q_a, barred, asked = PART_FACTOR.get(part.element), "", None
     # the least favourable ratio, resonance, where a period is not known
     known = part.period is not None and part.first is not None
@@ -61,6 +64,14 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
         barred = "a wall that carries floors is a structural element"
     elif not part.elevated:
         barred = "the part is assumed to be supported by the ground: for a part of a building, give base_height and building_height"
+    elif part.shaken:
+        if part.period is None:
+            barred = (
+                "T_a is not known. The action is the motion of the floor, so S_a is its response at T_a: give period, or [material] young of "
+                "a part that vibrates freely"
+            )
+        elif spectrum is not None:
+            asked = spectrum(part.period, 0.05) / GRAVITY
     elif peak is not None:
         assert part.building is not None
         shape = 3.0 * (1.0 + part.place / part.building) / (1.0 + (1.0 - tuned) ** 2) - 0.5
@@ -74,7 +85,13 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
             "g",
             "EN 1998-1:2004 4.3.5.2 Eqs (4.24), (4.25): F_a = S_a W_a gamma_a/q_a, S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5) "
             ">= a_g S, gamma_a 1; Table 4.4 (verify clause)",
-            (f"T_a/T_1 {tuned:.3g}" if known else "T_a or T_1 is not known, so resonance is assumed (T_a/T_1 = 1)")
+            (
+                "S_a is the response to the motion of the floor at T_a"
+                if part.shaken
+                else f"T_a/T_1 {tuned:.3g}"
+                if known
+                else "T_a or T_1 is not known, so resonance is assumed (T_a/T_1 = 1)"
+            )
             + ("" if q_a is None else f", q_a {q_a:g}"),
             "EN 1998-1",
             state=state,
@@ -109,7 +126,8 @@ def asce41(part: Part, s_x1: float | None, storey: str, s_xs: float | None = Non
     elif state == "IO":
         barred = "Table 11-5 limits stability at LS and CP. At IO no cracking is permitted, and this program does not check cracking"
     limit = None if s_x1 is None else SLENDER[storey][0 if s_x1 <= 0.24 * GRAVITY else 1 if s_x1 <= 0.37 * GRAVITY else 2]
-    told = "S_X1 is not known" if s_x1 is None else f"S_X1 {s_x1 / GRAVITY:.3g} g"
+    unknown = "S_X1 is not known" + (": the action is the motion of a floor, not of the ground" if part.shaken else "")
+    told = unknown if s_x1 is None else f"S_X1 {s_x1 / GRAVITY:.3g} g"
     free = "" if part.element == "parapet" else f"the limit covers parapets only; this element is a {part.element}"
     high = s_x1 is not None and (s_x1 >= HIGH[1] * GRAVITY or (s_xs or 0.0) >= HIGH[0] * GRAVITY)
     most = None if s_x1 is None else PARAPET[1 if high or state == "CP" else 0]
@@ -175,7 +193,7 @@ def _nz_parapet(part: Part, spectrum: Callable[[float, float], float] | None, st
         if not part.elevated:
             barred = "the height of the parapet above the ground (base_height, building_height) is not given, so its demand is not known"
         else:
-            felt, told = _part_coefficient(part.place, float(part.building or 0.0), period, spectrum)
+            felt, told = _part_coefficient(part, part.place, period, spectrum)
             note += told
             demand = None if felt is None else 1.5 / slope * felt * (period / (2.0 * np.pi)) ** 2
     return Line(
@@ -202,10 +220,12 @@ def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state
         barred = f"the rule applies only to walls that span one way between floors; this wall does not ({part.element})"
     elif part.load < 0.0 or part.height is None or part.thickness is None:
         barred = "the dimensions of the wall are not known"
+    elif part.shaken:
+        barred = "the action is the motion of the floor below. The floor above moves otherwise, so the demand is not known: give a spectrum"
     else:
         found = one_way(part.height, part.thickness, part.weight, part.load)
         capacity = USABLE_WALL * found.instability
-        felt, told = _part_coefficient(part.place + 0.5 * part.height, part.building or part.place + part.height, found.period, spectrum)
+        felt, told = _part_coefficient(part, part.place + 0.5 * part.height, found.period, spectrum)
         note = f"T_p {found.period:.3f} s, gamma {found.participation:.3g}, D_i {found.instability:.3g} m{told}"
         demand = None if felt is None else found.participation * felt * (found.period / (2.0 * np.pi)) ** 2
     return Line(
@@ -252,8 +272,12 @@ def one_way(height: float, thickness: float, weight: float, load: float) -> OneW
 
 
 def _part_coefficient(
-    height: float, building: float, period: float, spectrum: Callable[[float, float], float] | None
+    part: Part, height: float, period: float, spectrum: Callable[[float, float], float] | None
 ) -> tuple[float | None, str]:
-    """C_p(T_p) [m/s^2] of a part at a height [m], None without a spectrum, and its factors in words."""
+    """C_p(T_p) [m/s^2] of a part at a height [m], None without a spectrum, and its factors in words; of a part shaken by its floor the
+    response at T_p."""
+    if part.shaken:
+        return None if spectrum is None else spectrum(period, 0.05), ", C_p is the response to the motion of the floor at T_p"
+    building = part.building or part.place + (part.height or 0.0)
     at, by = height_coefficient(height, building), shape_coefficient(period)
     return (None if spectrum is None else spectrum(0.0, 0.05) * at * by), f", C_Hi {at:.3g}, C_i {by:.3g}"

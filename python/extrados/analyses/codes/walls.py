@@ -50,27 +50,34 @@ class FloorActions:
 def wall_parts(building: Building) -> list[WallPart]:
     """Every wall above the foot of each storey above which nothing holds it.
 
-    Simple overturning: walls across, flexible floors, joists and rods hold no wall; rigid floors and props do. Floors load the
-    walls that carry them, by their length, on the middle plane; purlins load a gable at half its rise. Rafters push on their walls.
+    Simple overturning: walls across, flexible floors, joists, rods and floors with a seat hold no wall; other rigid floors and props do.
+    Floors load the walls that carry them, by their length, on the middle plane; purlins load a gable at half its rise. Rafters push
+    on their walls.
     Every gable is also a part of its own, unless a rigid roof restrains it. NoMechanism where every wall is held.
     """
     plan = building.structure
     assert isinstance(plan, Plan)
     actions = floor_actions(plan)
-    parts = []
-    for wall in plan.walls:
-        first, last = plan.reach(wall)
-        free = max((k + 1 for k in actions.held[wall.name] if first <= k <= last), default=first)
-        own = list(range(free, last + 1))
-        if wall.gable is not None and wall.name not in actions.held_gables:
-            own.append(last + 1)
-        parts += [_part(building, plan, wall, storey, actions) for storey in own]
+    parts = [part for wall in plan.walls for part in parts_of_wall(building, wall, actions)]
     if not parts:
         raise NoMechanism(
             "Rigid floors or props restrain the top of every wall, so no wall overturns out of its plane as one body. The "
             "bending of a wall between its floors is not checked"
         )
     return parts
+
+
+def parts_of_wall(building: Building, wall: PlanWall, actions: FloorActions) -> list[WallPart]:
+    """A wall above the foot of each storey above which nothing holds it, and its free gable; none of a wall that is held. Refused or
+    CannotStand where the masonry at a foot does not carry the weight."""
+    plan = building.structure
+    assert isinstance(plan, Plan)
+    first, last = plan.reach(wall)
+    free = max((k + 1 for k in actions.held[wall.name] if first <= k <= last), default=first)
+    own = list(range(free, last + 1))
+    if wall.gable is not None and wall.name not in actions.held_gables:
+        own.append(last + 1)
+    return [_part(building, plan, wall, storey, actions) for storey in own]
 
 
 def floor_actions(plan: Plan) -> FloorActions:
@@ -90,7 +97,7 @@ def floor_actions(plan: Plan) -> FloorActions:
                 found.on_gable[wall.name] += share
         for w, _, _, force in plan.thrusts(floor, ring):
             found.thrusts[plan.walls[w].name, floor.storey] += force
-        if floor.kind == "rigid":
+        if floor.kind == "rigid" and floor.seat is None:  # a seat holds by friction alone
             for w, _, _ in ring:
                 found.held[plan.walls[w].name].add(floor.storey)
                 if floor.roof is not None and floor.storey == plan.reach(plan.walls[w])[1]:

@@ -1,7 +1,8 @@
 """Walls of a plan out of their planes: each wall as a chain of macro-elements whose sections lie across its thickness.
 
 The laws are those of piers in their planes: sections without tension that crush, in equilibrium with the end forces, and the
-second-order effect of the deflection (after Vanin, Penna and Beyer 2020). Rigid floors and props hold the chain on their levels.
+second-order effect of the deflection (after Vanin, Penna and Beyer 2020). Their block of stress gives a stiff wall the hinge of its
+rigid mechanism, so that a deflection only lowers the multiplier. Rigid floors and props hold the chain on their levels.
 """
 
 import itertools
@@ -10,15 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.analyses.codes.walls import FloorActions, WallPart, floor_actions, material_of
+from extrados.analyses.codes.mechanisms import BLOCK
+from extrados.analyses.codes.walls import FloorActions, floor_actions, material_of, parts_of_wall
+from extrados.analyses.context import Refused
+from extrados.core.errors import Cancelled, CoreError
 from extrados.core.frame import UNLIMITED, Frame, MacroElement
+from extrados.limit.errors import CannotStand
 from extrados.model.structures.plan import MEETS, Plan, PlanWall
 from extrados.results.frame import WallDeflection
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.plan import SHEAR_FACTOR
-from extrados.views.frame.spandrels import BLOCK
 
 #: Ends of the elements of a storey over its height, and elements of a gable. A wall without load that is held on top opens just
 #: below its top, so that the elements of a held storey are short at both ends.
@@ -187,15 +191,26 @@ def chain_of(building: Building, wall: PlanWall, actions: FloorActions, options:
     return Chain(pieces, loads, options.sections, options.second_order)
 
 
-def deflected_walls(building: Building, options: FrameOptions, parts: Sequence[WallPart]) -> list[WallDeflection]:
-    """Every wall out of its plane, the weakest first; parts: its rigid bodies, with which it is compared."""
+def deflected_walls(building: Building, options: FrameOptions) -> tuple[list[WallDeflection], list[str]]:
+    """Every wall out of its plane, the weakest first, beside its rigid bodies; and which of these numbers are not given, with the
+    reasons."""
     plan = building.structure
     assert isinstance(plan, Plan)
     actions = floor_actions(plan)
-    rows = []
+    rows, missing = [], []
     for wall in plan.walls:
-        rigid = [part.body.multiplier() for part in parts if part.wall == wall.name]
-        limit, moved, height, falls = chain_of(building, wall, actions, options).limit()
+        rigid: list[float] = []
+        try:
+            rigid = [part.body.multiplier() for part in parts_of_wall(building, wall, actions)]
+        except (Refused, CannotStand) as error:
+            missing.append(f"Wall '{wall.name}' out of its plane: the rigid mechanism is not calculated: {error}.")
+        try:
+            limit, moved, height, falls = chain_of(building, wall, actions, options).limit()
+        except Cancelled:
+            raise
+        except (Refused, CoreError) as error:
+            missing.append(f"Wall '{wall.name}' out of its plane: the acceleration with deflection is not calculated: {error}.")
+            continue
         rows.append(
             WallDeflection(
                 wall=wall.name,
@@ -207,4 +222,4 @@ def deflected_walls(building: Building, options: FrameOptions, parts: Sequence[W
                 held_at_m=sorted(float(plan.levels[k]) for k in actions.held[wall.name] if k <= plan.reach(wall)[1]),
             )
         )
-    return sorted(rows, key=lambda row: row.acceleration_g)
+    return sorted(rows, key=lambda row: row.acceleration_g), missing

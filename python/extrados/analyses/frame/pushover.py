@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.codes.kinematics import NoMechanism
 from extrados.analyses.codes.verification import confidence_factor
-from extrados.analyses.codes.walls import wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.frame.deflected import deflected_walls
 from extrados.analyses.frame.drawn import drawn_arrays
@@ -109,6 +107,11 @@ def run(context: Context, options: FramePushover) -> Result:
     runs = [row_of(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
+    context.warnings += [
+        f"Run {row['name']}: no stiffness, because the curve has no displacement up to its greatest base shear ({row['stop']})."
+        for row in runs
+        if row["stiffness_N_m"] is None
+    ]
     result.results = out.FramePushover(
         runs=[out.FramePush(**row) for row in runs],
         weight_N=frame.total_weight,
@@ -195,6 +198,7 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
     own, square = float(shape @ mass @ unit), float(shape @ mass @ shape)
     levels = sorted({one.level for one in frame.masses})
     elastic = 0.1 * shear[peak]
+    there = float(np.interp(elastic, shear[: peak + 1], moved[: peak + 1]))
     ultimate = min(ends) if ends else None
     return {
         "name": push.name,
@@ -210,7 +214,7 @@ def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
         "displacement_at_peak_m": float(moved[peak]),
         "drop_displacement_m": drop,
         "ultimate_displacement_m": ultimate,
-        "stiffness_N_m": float(elastic / np.interp(elastic, shear[: peak + 1], moved[: peak + 1])),
+        "stiffness_N_m": float(elastic) / there if there > 0.0 else None,
         "period_s": 1.0 / push.mode.frequency,
         "equivalent_mass_kg": own,
         "participation_factor": own / square,
@@ -279,11 +283,9 @@ def _deflected(context: Context, options: FramePushover) -> dict[str, Any]:
     """Every wall out of its plane, with its deflection, if the deck does not exclude it."""
     if not options.deflected_walls:
         return {}
-    try:
-        parts = wall_parts(context.building)
-    except NoMechanism:  # floors hold every wall
-        parts = []
-    return {"walls_out_of_plane": deflected_walls(context.building, options.frame, parts)}
+    rows, missing = deflected_walls(context.building, options.frame)
+    context.warnings += missing
+    return {"walls_out_of_plane": rows}
 
 
 def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> None:

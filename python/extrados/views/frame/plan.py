@@ -292,7 +292,8 @@ class _Maker(Division):
         plan, level = self.plan, floor.storey
         if floor.seat is not None:
             self.remarks.append(
-                f"Floor on storey {level} is connected to its walls in the frame: its seat cannot slide. `pushover` with shells follows seats."
+                f"Floor on storey {level} is connected to its walls in the frame: its seat cannot slide. Out of their planes it restrains no "
+                "wall. `pushover` with shells follows seats."
             )
         around = plan.around(floor)
         rows = []
