@@ -130,7 +130,7 @@ def _results(**keys) -> ThrustNetwork:
         "central_thrust_N": 1.5e3,
         "least_part_of_depth": 0.5,
         "least_part_bound": 0.5,
-        "geometric_safety_factor": 2.0,
+        "vertical_safety_factor": 2.0,
         "load_direction_deg": 0.0,
         "horizontal_load_g": 0.2,
         "horizontal_load_bound_g": 0.3,

@@ -28,8 +28,9 @@ class ThrustNetwork(KindResults):
     central_thrust_N: float = fact("sum of the outward thrusts of all supports in the most central network", "N")
     least_part_of_depth: float = fact("part of the vertical depth, about its middle, that holds the most central network found")
     least_part_bound: float | None = fact("part of the depth that holds no network on the diagram; null without one")
-    geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the part of the depth that the most central network needs; null without a demand"
+    vertical_safety_factor: float | None = fact(
+        "1 divided by the part of the vertical depth that the most central network needs; null without a demand. Where the surfaces are "
+        "steep, as near the springing of a dome, it exceeds the geometric safety factor, which refers to the thickness"
     )
     load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
     horizontal_load_g: float | None = fact(
@@ -68,5 +69,8 @@ class ThrustNetwork(KindResults):
             violated.append(f"Sliding of the joints is not checked (coefficient of friction {self.least_friction:.3g}).")
         if self.leaves(self.central_outside_m):
             violated.append(f"Between its nodes this network leaves the blocks by up to {1e3 * self.central_outside_m:.3g} mm.")
-        text = f"A network on this diagram stays within the middle {100.0 * part:.3g} % of the depth."
+        text = (
+            f"A network on this diagram stays within the middle {100.0 * part:.3g} % of the vertical depth. Where the "
+            "surfaces are steep, this is less than the part of the thickness."
+        )
         return judge(text, part, 1.0, violated=violated)

@@ -23,7 +23,7 @@ ABOUT = {
 
 
 def run(context: Context, options: ThrustNetwork) -> Result:
-    """The networks of the form diagram: thrusts, geometric safety factor and horizontal load, each with its bound."""
+    """The networks of the form diagram: thrusts, vertical safety factor and horizontal load, each with its bound."""
     assembly = context.building.solids()
     form = form_of(context.building, options)
     diagram = diagram_of(assembly, form, options.lines, options.meridians)
@@ -59,7 +59,7 @@ def run(context: Context, options: ThrustNetwork) -> Result:
         central_thrust_N=states["central"].thrust,
         least_part_of_depth=part,
         least_part_bound=values["central"].bound,
-        geometric_safety_factor=1.0 / part if part > 0.0 else None,
+        vertical_safety_factor=1.0 / part if part > 0.0 else None,
         load_direction_deg=options.direction,
         horizontal_load_g=values["horizontal"].value,
         horizontal_load_bound_g=values["horizontal"].bound,
@@ -139,7 +139,7 @@ def words_of(r: out.ThrustNetwork) -> str:
     text += (
         f"the sum of the outward thrusts of the {r.supports} supports lies between {_between(r.least_thrust_N, r.least_thrust_bound_N, 1e3)} "
         f"and {_between(r.greatest_thrust_N, r.greatest_thrust_bound_N, 1e3)} kN. The most central network found stays within the middle "
-        f"{100.0 * r.least_part_of_depth:.1f} % of the depth (geometric safety factor {1.0 / r.least_part_of_depth:.2f}). "
+        f"{100.0 * r.least_part_of_depth:.1f} % of the vertical depth (factor {1.0 / r.least_part_of_depth:.2f}, which exceeds the geometric safety factor where surfaces are steep). "
     )
     return text + _load_words(r)
 
