@@ -99,6 +99,7 @@ def rigid(name, floors=None, **more):
         ("frame/joined", "effective", 0.97),  # its ring beam remains elastic
         ("frame/farmhouse", "effective", 0.993),
         ("frame/gabled", "effective", 0.993),
+        ("frame/nine-walls", "effective", 0.993),
     ],
 )
 def test_a_pushover_reaches_the_load_of_limit_analysis(name, flanges, least):
