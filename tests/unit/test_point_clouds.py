@@ -12,10 +12,11 @@ from extrados.decks.reader import make_deck
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import Programme, SolidLimit
 from extrados.model.errors import BadGeometry
-from extrados.model.geometry.clouds import fit_barrel, fit_wall
+from extrados.model.geometry.clouds import fit_barrel, fit_wall, parse_cloud
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.structures.arch import make_arch
 from extrados.model.structures.scan import Scan
+from extrados.schema.contained import Unreadable
 
 FAR = np.array([431250.0, 5062480.0, 310.0])
 NOISE = 5e-3
@@ -167,3 +168,23 @@ def test_a_deck_of_a_point_cloud(tmp_path: Path, sort: str) -> None:
 
 def _xyz(points: np.ndarray) -> bytes:
     return "\n".join(f"{x:.5f} {y:.5f} {z:.5f}" for x, y, z in points.tolist()).encode()
+
+
+@pytest.mark.parametrize(
+    "text", ["X Y Z R\n1.5 2.5 3.5 9\n4 5 6 9\n", "1.5;2.5;3.5\n4;5;6\n", "1.5,2.5,3.5\n4,5,6\n", "//pts\n2\n1.5 2.5 3.5\n4 5 6\n"]
+)
+def test_lines_of_usual_exports_are_read(text: str) -> None:
+    assert parse_cloud(text.encode(), ".xyz")["points"].tolist() == [[1.5, 2.5, 3.5], [4.0, 5.0, 6.0]]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("1,5 2,5 3,5\n", "no three numbers x, y and z with a decimal point"),
+        ("X Y Z\n1 2 3\n4 5\n", "three numbers x, y and z in each line below line 2"),
+        ("1 2 3\n4 nan 6\n", "no points of three finite coordinates"),
+    ],
+)
+def test_other_lines_are_refused_in_words(text: str, said: str) -> None:
+    with pytest.raises(Unreadable, match=said):
+        parse_cloud(text.encode(), ".xyz")

@@ -1,6 +1,6 @@
 """Point clouds of walls and barrel vaults: planes and circles fitted to their faces, with the misfit.
 
-PLY and XYZ are read by trimesh, LAS and LAZ by laspy (the extra `scan`), in a process of its own.
+PLY is read by trimesh, LAS and LAZ by laspy (the extra `scan`), and XYZ by numpy, in a process of its own.
 """
 
 import io
@@ -15,6 +15,7 @@ from extrados.schema.contained import Unreadable, read_contained
 from extrados.schema.files import File
 
 CLOUDS = (".ply", ".xyz", ".las", ".laz")
+HEADER = 50  # lines of an XYZ file in which its first point is looked for
 MOST_POINTS, FEWEST_POINTS = 20_000_000, 100
 CONSIDERED = 200_000  # points of a fit: of more, so many at even spacing in the file
 TRIES = 3_000  # points by which the direction of a barrel is sought
@@ -96,6 +97,8 @@ def parse_cloud(content: bytes, sort: str) -> dict[str, np.ndarray]:
 
             cloud = laspy.read(io.BytesIO(content))
             points = np.column_stack([cloud.x, cloud.y, cloud.z])
+        elif sort == ".xyz":
+            points = _parse_lines(content)
         else:
             import trimesh
 
@@ -108,6 +111,27 @@ def parse_cloud(content: bytes, sort: str) -> dict[str, np.ndarray]:
     if len(points) > MOST_POINTS:
         raise Unreadable(f"the file has more than {MOST_POINTS} points")
     return {"points": points}
+
+
+def _parse_lines(content: bytes) -> np.ndarray:
+    """Points (n, 3) of lines x y z ..., parted by blanks, semicolons, tabs or commas, below lines that begin with other words."""
+    lines = content.decode("utf-8", "replace").replace(";", " ").splitlines()
+    if any("," in line and "." in line for line in lines[:HEADER]):  # commas part numbers whose decimal sign is a point
+        lines = [line.replace(",", " ") for line in lines]
+    first = next((k for k, line in enumerate(lines[:HEADER]) if _starts_with_numbers(line)), None)
+    if first is None:
+        raise Unreadable(f"the first {HEADER} lines contain no three numbers x, y and z with a decimal point")
+    try:
+        return np.loadtxt(lines[first:], usecols=(0, 1, 2), comments=None, ndmin=2)
+    except (ValueError, IndexError) as error:
+        raise Unreadable(f"expected three numbers x, y and z in each line below line {first + 1}: {error}") from None
+
+
+def _starts_with_numbers(line: str) -> bool:
+    try:
+        return len([float(word) for word in line.split()[:3]]) == 3
+    except ValueError:
+        return False
 
 
 def fit_wall(points: np.ndarray, thickness: float | None = None) -> WallFit:
