@@ -211,7 +211,7 @@ def test_the_verdict_goes_by_the_criterion_that_is_nearer_to_its_limit() -> None
     share = found["slip_ratio"] / found["slip_limit_ratio"]
     assert found["slip_limit_ratio"] == 0.25 and share > found["peak_displacement_m"] / 1.0
     assert found.verdict.ratio == pytest.approx(1.0 / share) and found.verdict.unit == "of the joint"
-    assert "lever arm" in found.verdict.statement and "at the end" in found.verdict.statement
+    assert "is halved" in found.verdict.statement and "At the end of the run" in found.verdict.statement
 
 
 def test_units_of_the_table_are_of_its_columns() -> None:

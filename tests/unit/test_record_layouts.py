@@ -201,7 +201,7 @@ COLUMN = "".join(f"{v:.2f}\n" for v in N)
 THREE = "".join(f"{v:.2f} {0.5 * v:.2f} {0.2 * v:.2f}\n" for v in N)
 TIMED = "".join(f"{0.01 * k:.2f} {v:.2f} {0.5 * v:.2f}\n" for k, v in enumerate(N))
 REFUSED = {
-    "three columns": (THREE, {}, ':1: the row has 3 columns.*channel = 1 to 3.*columns = "series"'),
+    "three columns": (THREE, {}, ':1: the row has 3 columns.*number of one of them as `channel` (.1 to 3.).*columns = "series"'),
     "three and time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {}, "time step is"),
     "channel of a time that jumps": (TIMED.replace("2.00 ", "2.03 ", 1), {"channel": 1}, "time step is"),
     "whole numbers": ("300\n12\n" + COLUMN, {}, ":1: '300' contains whole numbers.*put #"),
