@@ -60,10 +60,10 @@ module dem3_law
    real(wp), parameter :: still_same = 0.1_wp
    !> Of how far bodies move between two looks: overlap at which a contact may come to be with its force
    real(wp), parameter :: deep = 0.1_wp
-   !> Of the energy before a look: what is less after it is a loss
+   !> Ratio of the energies of the springs after and before a search for contacts, below which the difference is a loss
    real(wp), parameter :: lost = 0.98_wp
-   !> Times the energy before a look: what is more comes from other springs, as where edges that cross give way to faces. An area that
-   !> grows with the overlap, as under a keystone that sits, stays below it: such a contact keeps its pressure.
+   !> The same ratio, above which the springs belong to other features, for instance to faces in place of crossing edges. An area
+   !> that grows with the overlap, as under a keystone that settles, stays below this ratio: the contact keeps its pressure.
    real(wp), parameter :: other_springs = 1.2_wp
 
 contains
@@ -124,8 +124,8 @@ contains
       end do
    end function energy_here
 
-   !> Where other features carry a pair from here on, with other areas, they begin with the energy that was held at most; what is
-   !> less is lost, and recorded with the losses along the normal
+   !> Limits the energy of the springs of a pair to the energy before the search. If new features with other areas hold more, their
+   !> springs are reduced; if they hold less, the difference is recorded as a loss along the normal
    pure subroutine keep_energy(law, set, held, pair)
       type(joint_law), intent(in) :: law
       type(body_set), intent(in) :: set

@@ -55,7 +55,7 @@ def page(browser: Any, request: pytest.FixtureRequest) -> Iterator[Any]:
     opened.on("pageerror", lambda error: troubles.append(str(error)))
     opened.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
     own = served.address.split("/")[2]
-    opened.on("request", lambda request: troubles.append(f"asks for {request.url}") if is_foreign(request.url, own) else None)
+    opened.on("request", lambda request: troubles.append(f"the page requested {request.url}") if is_foreign(request.url, own) else None)
     opened.set_default_timeout(60_000)
     opened.goto(served.address)
     opened.wait_for_selector("[data-handle=thickness]")

@@ -17,7 +17,7 @@ from hands import until
 
 @dataclass
 class Newcomer:
-    """A user who presses what has a name, and reads what is written."""
+    """A user who finds buttons and fields by their labels, and reads the texts of the page."""
 
     page: Any
     clicks: int = 0

@@ -43,7 +43,7 @@ class View:
         return np.maximum(size, (LETTER * max(map(len, self.label(scale).split("\n"))), 0.0))
 
     def label(self, scale: int) -> str:
-        """The name; in two lines, as short as its words allow, if it is wider than what is shown."""
+        """The name, divided into two lines of similar length if it is wider than the view."""
         wide = 1e3 / scale * float(self.high[0] - self.low[0]) < LETTER * len(self.name)
         if not wide or " " not in self.name:
             return self.name

@@ -46,7 +46,8 @@ def probe_chaos(
     name: str = "dem-perturbed",
 ) -> dict[str, Any]:
     """Results on chaos of a run of `count` bodies. job_of: the run under the motion times a factor, None where it is not wanted;
-    idle: nothing moves the building; look: what is read off a run; name: of what is kept of it. An interruption is told in `result`."""
+    idle: no motion or movement acts on the building; look: the reader of a run; name: name under which runs are saved. `result` states an
+    interruption."""
 
     def outcome_of(run: Any) -> str:
         return look(run).fate(collapse).outcome

@@ -4,6 +4,7 @@ The mechanism is right up to the moment at which a condition fails. There the pl
 contacts without springs (Moreau 1988), which open and slide wherever the state requires it, under the rest of the motion.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -180,7 +181,7 @@ class Leaving:
 
 
 @dataclass(frozen=True)
-class PairLeaving:
+class PairLeaving(ABC):
     """A structure of two coordinates until a condition fails; see Leaving."""
 
     body: Body
@@ -216,9 +217,9 @@ class PairLeaving:
         """See Leaving: nothing holds it."""
         return np.zeros(0)
 
+    @abstractmethod
     def rocked(self, ground: Ground, time: float, scale: float) -> bool:
         """Whether it rocks up to a time [s] above zero."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)

@@ -81,7 +81,7 @@ class JointForces:
         total = (weight * by**2).sum(axis=(1, 2))
         parts = [GRAVITY * (mass * by[..., 1]).sum(axis=1), one.side * (mass * by[..., 0]).sum(axis=1)]
         parts.append((weight * by * twice).sum(axis=(1, 2)))
-        # a restraint of force 1 turns by the work of its wrenches
+        # generalised force of a restraint with force 1: the work of its wrenches in a unit rotation
         held = self._wrenches(place, at)
         parts += [-(wrench * by).sum(axis=(1, 2)) for wrench in held]
         acceleration = -np.stack(parts, axis=1) / total[:, None]

@@ -37,7 +37,7 @@ class Rocker:
     of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
     arch [m]; start_rotation [rad], > 0 to +x. restraints: what holds it besides its weight, None where nothing does.
     restitution: None on a compliant base, from which what impacts lose follows; rest: rotation at which it stands [rad].
-    watch: what is known of its joints while it rocks; None on a compliant base, and of two stacked blocks.
+    watch: tables of the forces at its joints; None on a compliant base, and for two stacked blocks.
     """
 
     what: str

@@ -8,7 +8,7 @@ import numpy as np
 from extrados.model.errors import BadGeometry
 from extrados.model.structures.plan import MEETS, Plan, PlanWall, RingBeam
 
-#: Breaks of the grid nearer to each other than this part of the size are told
+#: A warning is given if two mesh lines are closer than this fraction of the element size
 SLIVER = 0.2
 
 

@@ -43,7 +43,7 @@ class Mesh:
 
 
 def read_meshes(file: File) -> list[Mesh]:
-    """Meshes of an OBJ, STL, glTF or IFC file, read by a process of its own; BadGeometry says what is wrong."""
+    """Meshes of an OBJ, STL, glTF or IFC file, read in a contained process; BadGeometry gives the reason if the file cannot be read."""
     name, sort = file.path.name, file.path.suffix.lower()
     reader = "extrados.model.geometry.solids." + ("models:parse_model" if sort in MODELS else "meshes:parse_meshes")
     try:
