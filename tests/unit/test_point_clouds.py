@@ -180,6 +180,7 @@ def test_lines_of_usual_exports_are_read(text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
+        ("Scan, v. 2\n1,234;5,678;9,012\n", "no three numbers x, y and z with a decimal point"),
         ("1,5 2,5 3,5\n", "no three numbers x, y and z with a decimal point"),
         ("X Y Z\n1 2 3\n4 5\n", "three numbers x, y and z in each line below line 2"),
         ("1 2 3\n4 nan 6\n", "no points of three finite coordinates"),

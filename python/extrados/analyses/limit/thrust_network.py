@@ -139,7 +139,7 @@ def words_of(r: out.ThrustNetwork) -> str:
     text += (
         f"the sum of the outward thrusts of the {r.supports} supports lies between {_between(r.least_thrust_N, r.least_thrust_bound_N, 1e3)} "
         f"and {_between(r.greatest_thrust_N, r.greatest_thrust_bound_N, 1e3)} kN. The most central network found stays within the middle "
-        f"{100.0 * r.least_part_of_depth:.1f} % of the vertical depth (factor {1.0 / r.least_part_of_depth:.2f}, which exceeds the geometric safety factor where surfaces are steep). "
+        f"{100.0 * r.least_part_of_depth:.1f} % of the vertical depth (factor {1.0 / max(r.least_part_of_depth, 1e-3):.2f}, which exceeds the geometric safety factor where surfaces are steep). "
     )
     return text + _load_words(r)
 

@@ -116,9 +116,10 @@ def parse_cloud(content: bytes, sort: str) -> dict[str, np.ndarray]:
 def _parse_lines(content: bytes) -> np.ndarray:
     """Points (n, 3) of lines x y z ..., parted by blanks, semicolons, tabs or commas, below lines that begin with other words."""
     lines = content.decode("utf-8", "replace").replace(";", " ").splitlines()
-    if any("," in line and "." in line for line in lines[:HEADER]):  # commas part numbers whose decimal sign is a point
-        lines = [line.replace(",", " ") for line in lines]
     first = next((k for k, line in enumerate(lines[:HEADER]) if _starts_with_numbers(line)), None)
+    if first is None:  # commas part numbers if the decimal sign of the first point is a point
+        lines = [line.replace(",", " ") for line in lines]
+        first = next((k for k, line in enumerate(lines[:HEADER]) if "." in line and _starts_with_numbers(line)), None)
     if first is None:
         raise Unreadable(f"the first {HEADER} lines contain no three numbers x, y and z with a decimal point")
     try:
