@@ -306,7 +306,7 @@ def test_a_report_has_the_spectrum_of_its_own_code() -> None:
     (row,) = extrados.run({"analysis": {**WALL, "one_second_acceleration": "0.2 g"}}).analyses
     assert row["status"] == "refused" and "a key of the checks by ASCE 41" in row["reason"]
     run = extrados.run({"analysis": {**WALL, "spectrum": site}})
-    assert run["local-mechanism"].by_default and "The deck names no code" in run.analyses[0]["verdict"]["statement"]
+    assert run["local-mechanism"].by_default and "The deck has no table [code]" in run.analyses[0]["verdict"]["statement"]
     (row,) = extrados.run(
         {"structure": {"kind": "block", "width": 1.0, "height": 3.0}, "code": {"jurisdiction": "NTC"}, "analysis": {"kind": "tilt"}}
     ).analyses

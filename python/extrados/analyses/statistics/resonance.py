@@ -227,7 +227,10 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
         "aspect": Array(ASPECTS, ("aspect",), "", "B/H"),
         "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "ratio of the initial rotation to the critical rotation"),
         "least_cap_ratio": Array(
-            table, ("aspect", "initial_ratio"), "", "ratio of the least limit on the acceleration to the uplift acceleration"
+            table,
+            ("aspect", "initial_ratio"),
+            "",
+            ("lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration"),
         ),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
         "impulse_rotation": Array(

@@ -82,7 +82,7 @@ def _per_metre(r: Tilt, force: float) -> str:
 def _caption(r: Tilt) -> str:
     letters = "; ".join(f"{chr(65 + i)} {h.told()}" for i, h in enumerate(r.hinges[: section.MOST_LETTERED]))
     free = " The mechanism does not fix the line everywhere: elsewhere the most central line is drawn." if len(r.thrusts or {}) > 1 else ""
-    slides = f" Joints slide, so the capacity is an {DILATANT}." if r.dilating_joints else ""
+    slides = f" Joints slide, so the collapse acceleration is an {DILATANT}." if r.dilating_joints else ""
     least = r.collapse_acceleration_non_associated_g if r.dilating_joints else None
     if least is not None:
         slides += f" Without dilatancy, collapse is possible from {least:.4f} g (not drawn)."
