@@ -70,7 +70,11 @@ def test_a_sliding_wall_has_an_interval() -> None:
         verdict = r.judged(asked(peak))
         assert (verdict.outcome, verdict.capacity) == (outcome, design) and DILATANT in verdict.statement
         assert verdict.ratio == pytest.approx(design / peak)
-        place = {"stands": "below the design value", "open": "between the design value and the upper bound", "collapses": "above the upper bound"}
+        place = {
+            "stands": "below the design value",
+            "open": "between the design value and the upper bound",
+            "collapses": "above the upper bound",
+        }
         assert place[outcome] in verdict.statement
 
 
@@ -142,7 +146,9 @@ def test_solids_are_labelled() -> None:
     """In space a wall that slides has an upper bound, a design value by load paths and a least state (test_load_path)."""
     sliding, turning = (run(s, f, kind="tilt", direction=0.0, rose=4) for s, f in ((WALL, 0.65), (ARCH, 0.7)))
     assert sliding.results.dilating_contacts and DILATANT in sliding.answer
-    assert sliding.results.non_dilatant is None and "To calculate this state" in sliding.results.non_associated_reason, "contacts are many"
+    assert sliding.results.non_dilatant is None and "so this state is calculated only with" in sliding.results.non_associated_reason, (
+        "contacts are many"
+    )
     assert sliding.results.judged(asked(0.1)).outcome == "open", "an upper bound alone"
     sliding = run(WALL, 0.65, kind="tilt", direction=0.0, rose=4, friction_rule="non-associated")
     design = min(row.load_path_g for row in sliding.results.non_dilatant)

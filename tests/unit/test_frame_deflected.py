@@ -161,7 +161,7 @@ def test_a_curve_without_displacement_has_no_stiffness(monkeypatch):
     def first(*args):
         path = push(*args)
         kept = {f.name: value[:1] for f in fields(path) if isinstance(value := getattr(path, f.name), np.ndarray)}
-        return replace(path, stop="no equilibrium at the least step", **kept)
+        return replace(path, stop="no equilibrium even with the smallest step", **kept)
 
     monkeypatch.setattr(Frame, "push", first)
     data = deck("flexible")

@@ -367,7 +367,7 @@ def _told(found: out.Tilt) -> str:
             f"bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
         )
     if found.non_associated_reason:
-        text += f"No state without dilatancy is given: {found.non_associated_reason}. "
+        text += f"Collapse without dilatancy is not given: {found.non_associated_reason}. "
     return text
 
 

@@ -78,7 +78,10 @@ class Fragility(RockingTable):
     starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole set", ge=1, le=10_000_000)
     seed: int | None = key(
-        None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
+        None,
+        ("seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions"),
+        ge=0,
+        le=2**62,
     )
     durations: list[Time] | None = key(
         None, "repeat the analysis for these durations t_d of a generated set", source="thesis Fig. 6-8", min_length=1, max_length=100
