@@ -85,7 +85,10 @@ WRONG = {
         BLOCK + GENERATED + FRAGILITY + '[analysis.hazard]\nintensities = ["0.1 m", "0.2 m"] # here\nannual_rates = [0.1, 0.01]\n',
     ),
     "unit of levels": ("'m' is not a unit", BLOCK + GENERATED + FRAGILITY.replace('"0.1 g"]', '"0.1 m"] # here')),
-    "uncertain value of another structure": ("has no such value", BLOCK + GENERATED + FRAGILITY + "uncertain = { radius = 0.1 } # here\n"),
+    "uncertain value of another structure": (
+        "has no value of this name",
+        BLOCK + GENERATED + FRAGILITY + "uncertain = { radius = 0.1 } # here\n",
+    ),
     "movement of an unknown joint, rocking": (
         "joint 'none'",
         BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + ROCKING,

@@ -72,7 +72,7 @@ def test_an_interrupted_moving_load_resumes_its_further_positions(tmp_path: Path
 
 
 def test_a_gap_belongs_to_special_vehicles() -> None:
-    with pytest.raises(DeckError, match="gap is used only with"):
+    with pytest.raises(DeckError, match="`gap` is used only with"):
         make_deck({"structure": BRIDGE, "analysis": {"kind": "moving-load", "train": "LM71", "gap": 5.0}})
 
 

@@ -196,6 +196,6 @@ class Pushover(PushCurve, KindResults):
             ]
             return capacity_alone(text, value, unit, "upper", violated)
         if least.peak_load_N is None:
-            text = f"The base shear has reached {told} and still grows. The capacity is therefore not known."
+            text = f"The base shear has reached {told}, and the run ended before it decreased. The capacity is therefore not known."
             return capacity_alone(text, value, unit, "lower")
         return capacity_alone(f"The building can carry a base shear of {told}.{fallen}", value, unit)

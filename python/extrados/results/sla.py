@@ -237,7 +237,7 @@ class Sla(SlaCurve, KindResults):
             text = f"The wall {('can carry' if peaks else 'has carried, without a peak,')} {load} ({abs(reached):.3g} g times its masses)."
             return capacity_alone(text, abs(reached), "g", None if peaks else "lower")
         if any(c.peak_load_N is None for c in curves):
-            text = f"The load has reached {load} and still grows, so the capacity of the building is not known"
+            text = f"The load has reached {load}, and the run ended before it decreased, so the capacity of the building is not known"
             if reached is None or demand.peak_g is None:
                 return judge(f"{text}.", None, None, "N" if reached is None else "g")
             if demand.peak_g < reached:

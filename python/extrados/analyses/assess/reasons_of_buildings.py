@@ -201,7 +201,7 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
         axis = name.removeprefix("push-")
         text = f"Along {axis} the frame carries {one / 1e3:.3g} kN, and the shells carry {other / 1e3:.3g} kN"
         if any(c.peak_load_N is None for c in (shells, shells.minus) if c is not None):
-            text += " (the load on the shells still grew at the end)"
+            text += " (the run of the shells ended before the load decreased)"
         if shells.flanges is not None and shells.walls:
             text += f"; transverse walls carry {100 * shells.flanges.share:.2g} % of the shells' base shear"
             numbers[f"across_share_{axis}"] = shells.flanges.share

@@ -123,7 +123,7 @@ class FramePushover(FrameAnalysis):
     steps: int = key(200, "number of steps up to the target; a step is divided if necessary", ge=10, le=10_000)
     drop: float = key(
         0.5,
-        ("the run ends when the base shear falls below this share of its greatest value; 0.8 means the 20 % decrease of codes"),
+        ("the run ends when the base shear drops below this share of its greatest value; 0.8 means the 20 % decrease of codes"),
         ge=0,
         le=0.95,
     )
