@@ -493,7 +493,7 @@ def test_refusals(path, value, says) -> None:
         ("material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
         ("supports.held", [{"fix": "x"}], "the place is missing"),
         ("supports.held", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
-        ("supports.held", [{"x": [2, 1], "y": 0}], "the range decreases"),
+        ("supports.held", [{"x": [2, 1], "y": 0}], "the range goes from"),
         ("analysis.0.directions", ["+", "+"], "each sense may occur only once"),
         ("analysis.0.control", [{"edge": "top", "weight": 0}], "a term with weight 0 has no effect"),
         ("analysis.0.seeds", [3, 3], "a seed occurs twice"),
