@@ -55,7 +55,7 @@ WRONG = {
         ARCH + '[[ties]]\nstart = [0.0, 1.0]\nstart_stone = "none" # here\nground = [0.0, 0.0]\n' + TILT,
     ),
     "rigid tie of what rocks": (
-        "requires its stiffness",
+        "requires a stiffness",
         BLOCK + PULSE + "[[ties]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\n" + ROCKING,
     ),
     "hinge at an unknown joint": (
@@ -130,7 +130,7 @@ WRONG = {
     "curve that is not there": ("none.csv", PANEL + SLA + 'measured = "none.csv" # here\n'),
     "seeds that change nothing": ("seeds require", PANEL + SLA + "seeds = [1, 2] # here\n"),
     "run that is not there": ("results", PANEL + SLA + 'resume_from = "results" # here\n'),
-    "load beside the wall": ("no node lies", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n'),
+    "load beside the wall": ("no node is at", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n'),
     "hold beside the wall": (
         "no node near",
         PANEL + SLA + '[[analysis.stages]]\n[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n'
@@ -264,7 +264,7 @@ WRONG = {
     "speed of no film": ("requires animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
     "wall without a load": ("give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n'),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
-    "energy ratio of an arch": ("energy_ratio is only for a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
+    "energy ratio of an arch": ("`energy_ratio` is only for a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
     "energy ratio of spectra": ("square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n'),
     "spectra on a soft base": (
         "rigid ground",

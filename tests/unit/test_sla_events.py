@@ -483,7 +483,7 @@ def test_refusals(path, value, says) -> None:
     ("path", "value", "says"),
     [
         ("structure.regions", [{"x": [0, 1], "material": "steel"}], "material 'steel' does not exist"),
-        ("analysis.0.mesh.pattern", "random", 'expected "T3" or "T6"'),
+        ("analysis.0.mesh.pattern", "random", 'give "T3" or "T6"'),
         ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "is outside the wall"),
         ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "requires a width and a height"),
         ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),

@@ -241,7 +241,7 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         for part in moved.parts:
             common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in common):
-            raise BadGeometry("displacement: every ratio is 0, so nothing moves")
+            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves")
         if len({n for n, _, _ in common}) < len(common):
             raise BadGeometry("two parts of the displacement have a node in common")
         ties.append(common)
