@@ -130,7 +130,7 @@ WRONG = {
     "curve that is not there": ("none.csv", PANEL + SLA + 'measured = "none.csv" # here\n'),
     "seeds that change nothing": ("seeds require", PANEL + SLA + "seeds = [1, 2] # here\n"),
     "run that is not there": ("results", PANEL + SLA + 'resume_from = "results" # here\n'),
-    "load beside the wall": ("no node is at", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n'),
+    "load beside the wall": ("no node lies", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n'),
     "hold beside the wall": (
         "no node near",
         PANEL + SLA + '[[analysis.stages]]\n[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n'
