@@ -218,7 +218,7 @@ def span_of(tree: ast.Module, line: int) -> range:
 
 def relations_of(place: Path, fault: Fault) -> list[Row]:
     """The tests of the property suite that run through the changed statement, the quickest first; beside a changed kernel, first those
-    that ask kernels themselves."""
+    of the chapters that call kernels themselves."""
     rows = touched(place)
     if not fault.in_python:
         core = tuple(f"core/{name}" for name in KERNELS[fault.file].split())
@@ -248,7 +248,7 @@ def suite(place: Path) -> subprocess.Popen[str]:
 
 @dataclass(frozen=True)
 class Planted:
-    """What a fork of the suite is changed by: a line of a file of Python, or another build of the core; neither."""
+    """The change in a fork of the suite: a line of a file of Python, or another build of the core, or none."""
 
     file: str = ""
     line: int = 0
