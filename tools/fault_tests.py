@@ -110,12 +110,15 @@ BROKE = 2
 SLOWER = 5.0
 #: Chapters of the property suite that ask kernels themselves
 KERNEL_CHAPTERS = ("kernels.py", "crowds.py")
-#: Seconds of a processor that a quick test may take: it is asked more than its share
-QUICK = 0.5
+#: Share of the cases of those of less than so many seconds
+OF_KERNELS, QUICK = 0.5, 0.3
 #: Share of the cases with which relations whose results change are repeated
 MORE = 0.3
 #: Fates of a fault that no relation finds: a result changes, none does, no relation runs through it, the time is up
 MISSED, UNCHANGED, NOWHERE, UNDECIDED = "", "no result of the suite changes", "no relation runs through it", "undecided"
+#: Fate of one with which a test takes much longer
+ENDLESS = "a test that does not end"
+#: Those of them that no test caught
 NOT_CAUGHT = (MISSED, UNCHANGED, NOWHERE, UNDECIDED)
 
 
@@ -269,7 +272,7 @@ def asked_of(place: Path, planted: Planted, shares: dict[Row, float], patience: 
     code = next((int(text.split()[1]) for text in process.stdout if text.startswith("ended: ")), None)
     if code is None or code == BROKE:
         raise RuntimeError(f"the property suite did not run with {planted}")
-    by = {0: MISSED, -signal.SIGPROF: "a test that does not end", -signal.SIGXCPU: UNDECIDED, -signal.SIGKILL: UNDECIDED}
+    by = {0: MISSED, -signal.SIGPROF: ENDLESS, -signal.SIGXCPU: UNDECIDED, -signal.SIGKILL: UNDECIDED}
     if code == 1:
         return failed.read_text(encoding="utf-8"), rows_of(kept)
     return by.get(code, f"exit {code}"), rows_of(kept)
@@ -278,7 +281,7 @@ def asked_of(place: Path, planted: Planted, shares: dict[Row, float], patience: 
 @cache
 def passes(place: Path, row: Row, share: float, patience: int) -> bool:
     """Whether a test passes without a fault, with a share of the cases."""
-    return asked_of(place, Planted(), {row: share}, 10 * patience)[0] == MISSED
+    return asked_of(place, Planted(), {row: share}, patience)[0] == MISSED
 
 
 def finding(place: Path, planted: Planted, shares: dict[Row, float], patience: int) -> tuple[str, list[Row]]:
@@ -286,11 +289,13 @@ def finding(place: Path, planted: Planted, shares: dict[Row, float], patience: i
     spare = dict(shares)
     while True:
         by, seen = asked_of(place, planted, spare, patience)
-        false = next((row for row in spare if row.test == by and not passes(place, row, spare[row], patience)), None)
-        if false is None:
+        at = next((row for row in spare if row.test == by), None)
+        if by == ENDLESS:  # the tests before it are noted
+            at = next(row for row in spare if row.test not in {one.test for one in seen})
+        if at is None or passes(place, at, spare[at], patience):
             return by, seen
-        print(f"skipped, since it fails without a fault: {by}", flush=True)
-        del spare[false]
+        print(f"skipped, since it fails without a fault: {at.test}", flush=True)
+        del spare[at]
 
 
 def failing_relation(place: Path, fault: Fault, planted: Planted, patience: int) -> str:
@@ -299,7 +304,7 @@ def failing_relation(place: Path, fault: Fault, planted: Planted, patience: int)
     chosen = relations_of(place, fault)
     if not chosen:
         return NOWHERE
-    shares = {row: min(1.0, float(SHARE) * max(1.0, QUICK / max(row.seconds, 1e-3))) for row in chosen}
+    shares = {row: OF_KERNELS if row.chapter in KERNEL_CHAPTERS and row.seconds < QUICK else float(SHARE) for row in chosen}
     by, seen = finding(place, planted, shares, patience)
     before = {row.test: row.results for row in chosen}
     turned = {row.test for row in seen if row.results != before[row.test]}
