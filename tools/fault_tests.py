@@ -286,14 +286,14 @@ def passes(place: Path, row: Row, share: float, patience: int) -> bool:
 
 def finding(place: Path, planted: Planted, shares: dict[Row, float], patience: int) -> tuple[str, list[Row]]:
     """`asked_of`, without tests that fail without a fault too."""
-    spare = dict(shares)
+    spare, passed = dict(shares), []
     while True:
         by, seen = asked_of(place, planted, spare, patience)
-        at = next((row for row in spare if row.test == by), None)
-        if by == ENDLESS:  # the tests before it are noted
-            at = next(row for row in spare if row.test not in {one.test for one in seen})
+        passed += seen
+        spare = {row: share for row, share in spare.items() if row.test not in {one.test for one in seen}}
+        at = next((row for row in spare if by in (row.test, ENDLESS)), None)
         if at is None or passes(place, at, spare[at], patience):
-            return by, seen
+            return by, passed
         print(f"skipped, since it fails without a fault: {at.test}", flush=True)
         del spare[at]
 

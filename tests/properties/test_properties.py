@@ -87,6 +87,8 @@ SLOW = {
 }
 #: Those whose examples take as long
 SLOW_EXAMPLES = {"noise-of-solids", "solids-through-compas"}
+#: With a fault planted the smallest case is not looked for
+PHASES = (Phase.generate,) if "EXTRADOS_FAULTS" in os.environ else (Phase.generate, Phase.shrink)
 SEED = int(os.environ.get("EXTRADOS_SEED", "1"))
 #: What each relation was asked: name -> cases; and those that broke
 ASKED: dict[str, int] = {}
@@ -137,7 +139,7 @@ def random_cases(relation: Relation, count: int) -> None:
         deadline=None,
         suppress_health_check=list(HealthCheck),
         report_multiple_bugs=False,
-        phases=(Phase.generate, Phase.shrink),
+        phases=PHASES,
         print_blob=False,
     )
     @given(relation.case)
