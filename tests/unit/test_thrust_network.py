@@ -158,12 +158,12 @@ def _results(**keys) -> ThrustNetwork:
 @pytest.mark.parametrize(
     ("load", "bound", "words"),
     [
-        (None, 0.3, "found no network that carries a horizontal load. This proves no limit: the bound of the diagram is 0.3"),
-        (0.0, 0.3, "found no network that carries a horizontal load. This proves no limit: the bound of the diagram is 0.3"),
-        (None, None, "No limit of the horizontal load was found"),
-        (0.0, 1e-9, "the diagram carries no horizontal load"),
-        (None, 0.0, "the diagram carries no horizontal load"),
-        (0.2, 0.3, "0.2 (bound of the diagram: 0.3) times the weight, if it acts at the nodes"),
+        (None, 0.3, "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3"),
+        (0.0, 0.3, "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3"),
+        (None, None, "No upper limit of the horizontal load was found"),
+        (0.0, 1e-9, "networks on this form diagram carry no horizontal load"),
+        (None, 0.0, "networks on this form diagram carry no horizontal load"),
+        (0.2, 0.3, "0.2 (bound of the diagram: 0.3) times the weight, if the load acts at the nodes"),
     ],
 )
 def test_words_of_the_horizontal_load(load, bound, words) -> None:
