@@ -285,7 +285,6 @@ WRONG = {
     ),
     "mortar of a section": ("only for blocks in space", ARCH + "[joints]\ncohesion = 1e4\n" + TILT + 'mortar = "ductile" # here\n'),
     "floors of an arch": ("has no floors", ARCH + PUSH + '[[analysis.variants]]\nname = "stiff"\nfloors = 2.0 # here\n'),
-    "mortar of rigid contacts": ("have no mortar", ARCH + PULSE + "[joints]\ncohesion = 1e5 # here\n" + DEM + 'solver = "nonsmooth"\n'),
     "springs under rigid contacts": (
         "have no springs",
         ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',

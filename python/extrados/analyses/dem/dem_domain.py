@@ -145,8 +145,8 @@ def run(context: Context, options: DemDomain) -> Result:
         varied = _varied(options, model.values)
     else:
         model, varied = make_solid_model(context.building, options), []
-        if not options.rigid or options.cross_check:
-            context.warnings += dem_model.doubts_of_springs(model.values)
+        springs = not options.rigid or options.cross_check
+        context.warnings += (dem_model.doubts_of_springs if springs else dem_model.doubts_of_rigid_mortar)(model.values)
     return compared(context, options.rigid, model, lambda: _found(context, options, model, varied))
 
 

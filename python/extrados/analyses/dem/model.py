@@ -137,7 +137,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     not as drawn."""
     found = [*passive_left_out(model.assembly.earth), *adjusted(model)]
     if options.rigid:
-        return found
+        return found + doubts_of_rigid_mortar(model.values)
     found += doubts_of_springs(values or model.values)
     if options.mass_damping > 0.0:
         found.append(
@@ -163,18 +163,33 @@ def adjusted(model: Model) -> list[str]:
 
 def doubts_of_springs(values: ContactValues) -> list[str]:
     """Warnings that impacts are damped too little, and that mortar bears more in bending than an elastic joint."""
-    ratio, found = values.ratios(), []
-    if np.nanmax(values.tension, initial=0.0) > 0.0:
-        found.append(
-            "the tensile strength of mortar acts at the ends or corners of a joint, so the joint carries up "
-            "to three times the bending moment of an elastic joint"
-        )
+    ratio, found = values.ratios(), _doubts_of_tension(values)
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
             f"the damping is low: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} "
             "% at edge impact. At least 10 % and 25 % are advised; with less, blocks may bounce and walk"
         )
     return found
+
+
+def doubts_of_rigid_mortar(values: ContactValues) -> list[str]:
+    """The warning that rigid contacts find mortar at its strongest."""
+    if not max(np.nanmax(values.tension, initial=0.0), np.nanmax(values.cohesion, initial=0.0)) > 0.0:
+        return []
+    return [
+        *_doubts_of_tension(values),
+        "with rigid contacts mortar holds as long as any forces in equilibrium within its strength exist, as in limit analysis. Where "
+        "several joints, or both ends of a joint, share a force, brittle mortar may fail earlier: compare with springs",
+    ]
+
+
+def _doubts_of_tension(values: ContactValues) -> list[str]:
+    if not np.nanmax(values.tension, initial=0.0) > 0.0:
+        return []
+    return [
+        "the tensile strength of mortar acts at the ends or corners of a joint, so the joint carries up to three times the bending "
+        "moment of an elastic joint"
+    ]
 
 
 def unconverged(effort: dem_run.Effort) -> list[str]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from extrados.views.building import Building
 
 #: Properties of a building that rigid contacts do not look at
-SPRINGS = ("material.young", "joints.cohesion", "joints.tension", "joints.normal_stiffness", "joints.damping")
+SPRINGS = ("material.young", "joints.normal_stiffness", "joints.damping")
 #: What says how stiff and damped springs are
 OF_SPRINGS = {"material.young"} | {
     f"joints.{name}"
@@ -122,7 +122,7 @@ class DemTable(BuildingAnalysis):
         return {key: fixed for key, fixed in told.items() if not (self.rigid and key in SPRINGS)}
 
     def reckons_with(self, building: "Building") -> set[str]:
-        """Rigid contacts refuse mortar and a compliant base, and look at nothing else that springs have."""
+        """Rigid contacts refuse a compliant base, and look at nothing else that springs have."""
         found = {*self.uses, *self.beside} - OF_SPRINGS
         return found if self.rigid else found | of_springs(building)
 
