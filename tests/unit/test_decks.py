@@ -91,11 +91,11 @@ def test_complaint(old: str, new: str, line: int, words: list[str]) -> None:
 
 #: A tie of `strengthen` and a span of a bridge whose keys contradict one another: rules of tables in lists
 NESTED = {
-    "debonding_force requires its source": (
+    "`debonding_force` requires its source": (
         '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\n'
         'debonding_force = "10 kN" # here\n'
     ),
-    "places` requires start_to or far_to": (
+    "places` requires `start_to` or `far_to`": (
         '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\nplaces = 5 # here\n'
     ),
     "intrados belongs to shape": (

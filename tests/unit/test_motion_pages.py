@@ -74,7 +74,7 @@ def test_times_rounded_at_128_hz(tmp_path: Path) -> None:
     assert any("are rounded to 1 ms; the program uses their mean step" in w for w in study(path).warnings)
     given = study(path, time_step=1 / 128)
     assert given["time_step_s"] == 1 / 128
-    assert any("time_step of the deck is used" in w for w in given.warnings)
+    assert any("`time_step` of the deck is used" in w for w in given.warnings)
     assert not any("mean step" in w for w in given.warnings)
     wrong = study(path, time_step=0.0079)
     assert wrong.status == "refused" and "the deck 0.0079 s" in wrong.reason

@@ -84,7 +84,7 @@ def test_a_probability_is_met_under_the_same_motions():
         ({}, "give exactly one target"),
         ({"acceleration": "0.3 g", "safety_factor": 1.0}, "give exactly one target"),
         ({"probability": 0.1}, "requires by"),
-        ({"acceleration": "0.3 g", "by": "rocking"}, "give a safety_factor"),
+        ({"acceleration": "0.3 g", "by": "rocking"}, "give a `safety_factor`"),
         ({"safety_factor": 1.0}, "refers to the peak of one motion"),
         ({"acceleration": "0.3 g", "assess": True}, "the deck has no [motion]"),
         ({"acceleration": "0.3 g", "changes": [{"vary": "structure.heigth", "stop": 2.0}]}, "no value above 0"),

@@ -97,10 +97,8 @@ class BlocksRun(KindResults):
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
     collapse_displacement_m: float = fact("displacement of a block that counts as collapse; not applied to a block that only slides", "m")
     peak_displacement_m: float = fact(
-        (
-            "greatest displacement of any block from its position at rest under self-weight, relative to the "
-            "common displacement of the supports"
-        ),
+        "greatest displacement of any block from its position at rest under self-weight, relative to the "
+        "common displacement of the supports",
         "m",
     )
     peak_slip_m: float = fact("greatest slip at a joint that is still in contact", "m")
@@ -129,11 +127,9 @@ class BlocksRun(KindResults):
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
     peak_base_shear_N: float = fact(
-        (
-            "greatest horizontal force of the ground on the blocks over the output times, at the initial "
-            "contacts and at the anchors of ties and dampers. Contacts formed later are not included; a "
-            "warning says if there are any"
-        ),
+        "greatest horizontal force of the ground on the blocks over the output times, at the initial "
+        "contacts and at the anchors of ties and dampers. Contacts formed later are not included; a "
+        "warning says if there are any",
         "N",
     )
     peak_base_shear_over_weight: float = fact("greatest horizontal force of the ground, divided by the weight of the structure")
@@ -310,7 +306,7 @@ class DemCurve(ResultModel):
     damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact; least value of all joints")
     damping_ratio_edge: float | None = fact("damping ratio (fraction of critical damping) at edge impact; least value of all joints")
     shortest_durations_s: list[float | None] = fact(
-        ("shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse"), "s"
+        "shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse", "s"
     )
 
 
@@ -338,23 +334,23 @@ class DemDomain(KindResults):
     direction_deg: float | None = maybe("for solids: direction of the motion in plan, as an angle from +x towards +y", "deg")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact(
-        ("shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse"), "s"
+        "shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse", "s"
     )
     curves: list[DemCurve] = fact(
         "failure curves with other values of damping, stiffness or friction; the first curve has the values of the deck"
     )
     mode_II_durations_s: list[float | None] | None = maybe(
-        ("shortest duration that causes collapse in the first half cycle, at each amplitude; null if no tried duration does"), "s"
+        "shortest duration that causes collapse in the first half cycle, at each amplitude; null if no tried duration does", "s"
     )
     convergence: Convergence | None = maybe("accuracy of the contact solver over all runs (rigid contacts only)")
     cross_check: CrossCheck | None = maybe("by both solvers")
     energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged; greatest value of all runs")
     steps: int = fact("time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(
-        ("for an arch: shortest duration at which the four-hinge mechanism collapses (with or without an impact), at each amplitude"), "s"
+        "for an arch: shortest duration at which the four-hinge mechanism collapses (with or without an impact), at each amplitude", "s"
     )
     four_hinge_mode_II_durations_s: list[float | None] = maybe(
-        ("for an arch: shortest duration at which the four-hinge mechanism collapses without an impact, at each amplitude"), "s"
+        "for an arch: shortest duration at which the four-hinge mechanism collapses without an impact, at each amplitude", "s"
     )
 
     def judged(self, demand: Demand) -> Verdict:

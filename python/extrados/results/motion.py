@@ -32,7 +32,7 @@ class DirectedPulse(ResultModel):
     indicator: float = fact("pulse indicator: above 0, the motion is pulse-like", source="Shahi and Baker 2014")
     period_s: float = fact("period of the pulse", "s")
     angle_deg: float = fact(
-        ("angle from the first component to the direction of the pulse (measured like the key `angle` of a record)"), "deg"
+        "angle from the first component to the direction of the pulse (measured like the key `angle` of a record)", "deg"
     )
     pgv_m_s: float = fact("peak velocity of the motion in the direction of the pulse", "m/s")
     pgv_ratio: float = fact("peak velocity of the motion without the pulse, divided by that of the whole motion")

@@ -54,11 +54,9 @@ class Conditions(ResultModel):
     hinges_elsewhere: int = maybe("for many runs: number of runs in which hinges form outside the rocking mechanism")
     hinges_elsewhere_share: float = maybe("for many runs: share of the runs in which hinges form outside the rocking mechanism")
     energy_astray: float = maybe(
-        (
-            "after a plastic impact at all joints: share of the kinetic energy that does not belong to the "
-            "mechanism in which rocking continues. If this share exceeds 0.2, impacts cause hinges outside "
-            "the mechanism"
-        ),
+        "after a plastic impact at all joints: share of the kinetic energy that does not belong to the "
+        "mechanism in which rocking continues. If this share exceeds 0.2, impacts cause hinges outside "
+        "the mechanism",
         source="Moreau 1988",
     )
     not_checked: str = fact("conditions that are not checked, with the reason; empty if all are checked")
@@ -87,7 +85,7 @@ class RestraintForces(ResultModel):
         "least moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint", "N*m"
     )
     greatest_moment_Nm: float = maybe(
-        ("greatest moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint"), "N*m"
+        "greatest moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint", "N*m"
     )
     permanent_turn_rad: float = maybe("permanent rotation of an added hinge at the end of the run, by yield", "rad")
 
@@ -136,10 +134,8 @@ class HandOver(ResultModel):
     """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
 
     time_s: float = fact(
-        (
-            "time at which the run with rigid contacts takes over, just before a condition is violated; it "
-            "starts from the positions and velocities of the blocks at this time"
-        ),
+        "time at which the run with rigid contacts takes over, just before a condition is violated; it "
+        "starts from the positions and velocities of the blocks at this time",
         "s",
     )
     reason: str = fact("condition that fails, and where")
@@ -280,10 +276,8 @@ class FailureDomain(KindResults):
         "lowest amplitude of the map at which blocks slide, at each duration; null if they slide at no amplitude", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        (
-            "lowest amplitude of the map at which hinges form outside the rocking mechanism, at each "
-            "duration; null if this occurs at no amplitude"
-        ),
+        "lowest amplitude of the map at which hinges form outside the rocking mechanism, at each "
+        "duration; null if this occurs at no amplitude",
         "g",
     )
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all pulses of the map")
@@ -349,10 +343,8 @@ class FailureDomain(KindResults):
             if capacity is not None:
                 word = "stays below" if amplitude < capacity else "reaches"
                 return judge(
-                    (
-                        f"The motion ({amplitude:.3g} g for {duration:.3g} s) {word} the failure curve, which gives {capacity:.3g} g "
-                        "at this duration."
-                    ),
+                    f"The motion ({amplitude:.3g} g for {duration:.3g} s) {word} the failure curve, which gives {capacity:.3g} g "
+                    "at this duration.",
                     amplitude,
                     capacity,
                     "g",
@@ -411,13 +403,11 @@ class FailureCurve(ResultModel):
     )
     run_outcomes: list[RockingOutcome | None] = fact("for each motion: outcome of the whole motion; null without a result")
     sliding_from_g: list[float | None] = fact(
-        ("lowest tried amplitude (up to the failure curve) at which blocks slide, at each duration; null if they slide at none"), "g"
+        "lowest tried amplitude (up to the failure curve) at which blocks slide, at each duration; null if they slide at none", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        (
-            "lowest tried amplitude (up to the failure curve) at which hinges form outside the rocking "
-            "mechanism, at each duration; null if this occurs at none"
-        ),
+        "lowest tried amplitude (up to the failure curve) at which hinges form outside the rocking "
+        "mechanism, at each duration; null if this occurs at none",
         "g",
     )
     conditions: Conditions = fact("number of points of the curve below which blocks slide, or hinges form outside the rocking mechanism")
@@ -444,11 +434,9 @@ class FailureCurves(KindResults):
         "share of the verdicts by the curves that agree with the run under the whole motion; null without a comparison"
     )
     scaling_misfit: float | None = fact(
-        (
-            "greatest relative difference of amplitude between two curves, with durations divided by the "
-            "natural time and amplitudes by the uplift acceleration; null with one curve, or with curves "
-            "for different trains"
-        ),
+        "greatest relative difference of amplitude between two curves, with durations divided by the "
+        "natural time and amplitudes by the uplift acceleration; null with one curve, or with curves "
+        "for different trains",
         source="thesis Eq. 5.7",
     )
 

@@ -151,10 +151,8 @@ def _probability(asked: Asked) -> Choice:
     told = ", ".join(f"{name} {100 * v:g} %" for name, v in uncertain.items())
     return Choice(
         {"count": count, "seed": 1, "uncertain": uncertain},
-        (
-            f"{count} samples of the building with uncertain {told} (coefficients of variation); this "
-            f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits their number"
-        ),
+        f"{count} samples of the building with uncertain {told} (coefficients of variation); this "
+        f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits their number",
     )
 
 
@@ -200,10 +198,8 @@ def _frame(asked: Asked) -> Choice:
     # walls out of their planes are a strategy of their own
     return Choice(
         {"out_of_plane": False, **_action(asked)},
-        (
-            "both directions, in both senses; forces in proportion to the masses, and to the masses times "
-            "their height; accidental eccentricity 0 and 5 %"
-        ),
+        "both directions, in both senses; forces in proportion to the masses, and to the masses times "
+        "their height; accidental eccentricity 0 and 5 %",
     )
 
 
@@ -308,11 +304,9 @@ def _dem(asked: Asked) -> Choice:
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
         keys,
-        (
-            f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the "
-            f"run fits into {100 * SHARES['dem']:g} % of the time budget (E divided by the block length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; "
-            f"{engineering(least, 'Pa/m')} is sufficient)"
-        ),
+        f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the "
+        f"run fits into {100 * SHARES['dem']:g} % of the time budget (E divided by the block length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; "
+        f"{engineering(least, 'Pa/m')} is sufficient)",
         taken,
     )
 

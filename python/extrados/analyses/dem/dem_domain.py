@@ -204,7 +204,7 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
                 checked,
                 ("solver", "amplitude", "duration"),
                 "",
-                ("1 if the pulse causes collapse, for each cell of the map. Solver 0: solver of the deck; solver 1: the other solver"),
+                "1 if the pulse causes collapse, for each cell of the map. Solver 0: solver of the deck; solver 1: the other solver",
             ),
         }
         if numbers["cross_check"].agreement_ratio < AGREE:

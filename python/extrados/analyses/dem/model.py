@@ -153,7 +153,7 @@ def adjusted(model: Model) -> list[str]:
     if rigid.moved > 1e-6 * model.size:
         found.append(
             f"the program moved faces of blocks by up to {1000.0 * rigid.moved:.2g} mm, so that they meet at "
-            f"their joints (contact_tolerance {1000.0 * tolerance:g} mm)"
+            f"their joints (`contact_tolerance` {1000.0 * tolerance:g} mm)"
         )
     if rigid.cut > 0.0:
         why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"

@@ -128,7 +128,7 @@ def run(context: Context, options: Imperfections) -> Result:
             gamma,
             ("survey", "sense"),
             "g",
-            ("capacity in both senses (towards +x or along the direction; then opposite); NaN if a geometry cannot stand"),
+            "capacity in both senses (towards +x or along the direction; then opposite); NaN if a geometry cannot stand",
         ),
     }
     senses = ("along", "opposite") if in_space(building, options) else ("to_right", "to_left")

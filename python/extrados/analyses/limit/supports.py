@@ -93,7 +93,7 @@ def run(context: Context, options: MovingSupports) -> Result:
     result.answer = (
         f"The right support {way}: the arch follows on three hinges "
         f"({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) and collapses at {movement[-1]:.3g} "
-        f"m({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
+        f"m ({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
         f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} "
         f"to {three_figures(force[-1, 0] / 1e3)} kN."
     )
@@ -145,10 +145,8 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            (
-                "the structure has only one support, so its movement moves the whole structure. Give "
-                "[[initial.movements]] for the joints on the ground that move"
-            ),
+            "the structure has only one support, so its movement moves the whole structure. Give "
+            "[[initial.movements]] for the joints on the ground that move",
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -209,7 +207,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
             motion,
             ("joint", "component"),
             "m",
-            ("opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip"),
+            "opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip",
         ),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }

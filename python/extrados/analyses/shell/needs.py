@@ -53,5 +53,5 @@ def pier_strength(building: Building, options: Pushover) -> float:
         raise Refused("`frame`: with `drives`, the distribution of the load over the storeys is not known", key)
     strength = (options.frame and options.frame.compressive_strength) or building.material.compressive_strength
     if strength is None:
-        raise Refused(("`frame`: the formulas of piers require `compressive_strength` (f_m), in this table or in [material]"), key)
+        raise Refused("`frame`: the formulas of piers require `compressive_strength` (f_m), in this table or in [material]", key)
     return strength
