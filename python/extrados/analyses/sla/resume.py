@@ -167,7 +167,7 @@ def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) ->
     if traceless is not None:
         raise Refused(
             f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, "
-            f"because of {traceless}. Saved events: {', '.join((str(e) for e in kept))}. To save other "
+            f"because of {traceless}. Saved events: {', '.join(str(e) for e in kept)}. To save other "
             "events, name them in `states` of the earlier run",
             ("analysis", "resume_event"),
         )
