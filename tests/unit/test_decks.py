@@ -110,7 +110,7 @@ def test_a_rule_of_a_table_in_a_list_has_the_line_of_the_key_that_it_names(words
     rows = NESTED[words].splitlines()
     line = 1 + next(k for k, row in enumerate(rows) if "# here" in row)
     found = complaints(NESTED[words])
-    key = words.split()[0].rstrip("`")
+    key = words.split()[0].strip("`")
     assert any(c.startswith(f"deck.toml:{line}:") and f".{key}: " in c for c in found), found
 
 

@@ -71,9 +71,8 @@ class Material(Table):
     crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
     lateral_reduction: bool = key(
         False,
-        "whether lateral compression reduces the tensile strength ft: s1/ft - s2/fc <= 1 (s1, s2: "
-        "principal stresses, tension positive; fc: compressive strength); requires "
-        "`compressive_strength`",
+        "whether lateral compression reduces the tensile strength ft: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension positive; "
+        "fc: compressive strength); requires `compressive_strength`",
     )
     confinement: float = key(
         0.0,
@@ -155,9 +154,8 @@ class Joints(Table):
     )
     shear_energy: Energy | None = key(
         None,
-        "fracture energy of the cohesion per area (mode II). Sequentially linear analysis requires this "
-        "value if `cohesion` is given; the cohesion then decreases gradually and is not lost at the "
-        "first failure",
+        "fracture energy of the cohesion per area (mode II). Sequentially linear analysis requires this value if `cohesion` is given; "
+        "the cohesion then decreases gradually and is not lost at the first failure",
         gt=0,
     )
     compressive_strength: Stress | None = key(
@@ -182,9 +180,8 @@ class Joints(Table):
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
         "edge",
-        "impact frequency for which the damping is given: edge, corner or rotation. restitution, for a "
-        "single block: the damping that gives the coefficient of restitution of the block (found by "
-        "trial runs)",
+        "impact frequency for which the damping is given: edge, corner or rotation. restitution, for a single block: the damping that "
+        "gives the coefficient of restitution of the block (found by trial runs)",
         source="thesis Eqs 7.13, 7.17-7.20",
     )
     damping_ratio: float = key(
@@ -195,10 +192,9 @@ class Joints(Table):
     )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
-        "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic "
-        "impact with impulses at all joints, and all the energy that remains; thesis: momentum balance "
-        "of the thesis for arches (energy-safe for other sections); energy-safe: projection on the "
-        "mechanism after the impact only. A number is c_v: angular velocity after / before an impact (0 "
+        "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic impact with impulses at all "
+        "joints, and all the energy that remains; thesis: momentum balance of the thesis for arches (energy-safe for other sections); "
+        "energy-safe: projection on the mechanism after the impact only. A number is c_v: angular velocity after / before an impact (0 "
         "to 1)",
         source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
@@ -239,9 +235,8 @@ class Supports(Table):
     )
     foundation: Literal["winkler", "two-spring"] = key(
         "winkler",
-        "for `rocking`: place of the springs of the ground. winkler: springs along the whole base; "
-        "two-spring: one spring under each edge, with half of the stiffness. The springs carry no "
-        "tension",
+        "for `rocking`: place of the springs of the ground. winkler: springs along the whole base; two-spring: one spring under each "
+        "edge, with half of the stiffness. The springs carry no tension",
         source="Psycharis and Jennings 1983",
     )
     damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(

@@ -157,9 +157,8 @@ class CollapseProbability(ResultModel):
 
     in_motion: CollapseInMotion = maybe("probability of collapse by rocking under the motion itself")
     probability: float | None = fact(
-        "probability of collapse if the peak acceleration acts as a constant horizontal acceleration: "
-        "weighted mean over the strategies; 1 if a certificate proves collapse; null if no strategy "
-        "contributes"
+        "probability of collapse if the peak acceleration acts as a constant horizontal acceleration: weighted mean over the "
+        "strategies; 1 if a certificate proves collapse; null if no strategy contributes"
     )
     low: float | None = fact(
         "lowest lower end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"

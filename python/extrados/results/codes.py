@@ -61,9 +61,8 @@ class Checked(KindResults):
     behaviour_factor: float = maybe("behaviour factor q of the linear check of NTC, and of the demand on a pier")
     bound: Bound = maybe("type of the capacity by the checks: exact, lower bound or upper bound")
     margin_associated: float | None = maybe(
-        "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. "
-        "If this ratio is at least 1 but the check without dilatancy fails, the outcome is open. Null "
-        "without a demand"
+        "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. If this ratio is at least 1 but "
+        "the check without dilatancy fails, the outcome is open. Null without a demand"
     )
     violated: list[str] = maybe(
         "violated assumptions on the unsafe side. If there are any, a satisfied code check gives no verdict: the outcome is open"
@@ -120,9 +119,8 @@ class Checked(KindResults):
                     f"without dilatancy it is not. The outcome is open.{remarks}"
                 )
             return judge(
-                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand "
-                f"{worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
-                f"{remarks}",
+                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, "
+                f"capacity {worst.capacity:.3g}{unit}.{remarks}",
                 worst.demand,
                 worst.capacity,
                 worst.unit,

@@ -111,15 +111,13 @@ class BlocksRun(KindResults):
     slipped_joint: str | None = fact("joint with the greatest ratio of slip to length; null if no joint slides by 1 % of its length")
     off_footing: list[str] = fact("blocks that slid off their footings; only recorded if the deck gives no floor")
     decided_by_last_digits: bool = fact(
-        "whether the response is chaotic. The motion is scaled by 1 + 1e-6: the response is chaotic if "
-        "displacements change by more than 1/100 of the displacement that counts as collapse, or if "
-        "only one of the two runs collapses. If they change by more than 1/1000, scale factors up to 1 "
-        "+ 1e-4 are tried too. False if this was not checked"
+        "whether the response is chaotic. The motion is scaled by 1 + 1e-6: the response is chaotic if displacements change by more "
+        "than 1/100 of the displacement that counts as collapse, or if only one of the two runs collapses. If they change by more than "
+        "1/1000, scale factors up to 1 + 1e-4 are tried too. False if this was not checked"
     )
     perturbation_growth: float | None = fact(
-        "growth of a perturbation, if the motion is scaled by 1 + 1e-6: greatest change of a "
-        "displacement before collapse, divided by 1e-6 and by the displacement that counts as collapse; "
-        "null if this was not checked"
+        "growth of a perturbation, if the motion is scaled by 1 + 1e-6: greatest change of a displacement before collapse, divided by "
+        "1e-6 and by the displacement that counts as collapse; null if this was not checked"
     )
     perturbed_outcome: str | None = fact("outcome under the motion scaled by 1 + 1e-6; null if this was not checked")
     violated: list[str] = fact("violated assumptions of the analysis, one sentence each, for instance a chaotic response")
@@ -127,9 +125,8 @@ class BlocksRun(KindResults):
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
     peak_base_shear_N: float = fact(
-        "greatest horizontal force of the ground on the blocks over the output times, at the initial "
-        "contacts and at the anchors of ties and dampers. Contacts formed later are not included; a "
-        "warning says if there are any",
+        "greatest horizontal force of the ground on the blocks over the output times, at the initial contacts and at the anchors of "
+        "ties and dampers. Contacts formed later are not included; a warning says if there are any",
         "N",
     )
     peak_base_shear_over_weight: float = fact("greatest horizontal force of the ground, divided by the weight of the structure")
@@ -186,9 +183,8 @@ class BlocksRun(KindResults):
             )
         else:
             text = (
-                f"A block moves by {three_figures(1000.0 * most)} mm. This exceeds the displacement that counts "
-                f"as collapse ({three_figures(1000.0 * limit)} mm), but the block neither rotates nor settles as "
-                "in a collapse."
+                f"A block moves by {three_figures(1000.0 * most)} mm. This exceeds the displacement that counts as collapse "
+                f"({three_figures(1000.0 * limit)} mm), but the block neither rotates nor settles as in a collapse."
             )
         if self.slipped_joint is not None:
             text += f" {slip}."

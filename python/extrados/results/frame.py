@@ -84,9 +84,8 @@ class FramePush(ResultModel):
         "control displacement at which the base shear has decreased by 20 %; null if it does not decrease so far", "m"
     )
     ultimate_displacement_m: float | None = fact(
-        "ultimate displacement, the least of three: 20 % decrease of the base shear; all piers of one "
-        "storey of a wall at their drift limit; end of the curve without equilibrium beyond a drift "
-        "limit. Null if none is reached",
+        "ultimate displacement, the least of three: 20 % decrease of the base shear; all piers of one storey of a wall at their drift "
+        "limit; end of the curve without equilibrium beyond a drift limit. Null if none is reached",
         "m",
     )
     stiffness_N_m: float | None = fact(
@@ -123,9 +122,8 @@ class WallDeflection(ResultModel):
     height_m: float = fact("height above the ground at which the deflection is greatest", "m")
     reached: bool = fact("whether the acceleration decreases with further deflection; if not, the acceleration is a lower bound")
     rigid_acceleration_g: float | None = fact(
-        "collapse multiplier of the weakest rigid part of the wall above a storey (local-mechanism, "
-        "without confidence factor, same position of the hinge); null if floors restrain the wall, or "
-        "with a warning",
+        "collapse multiplier of the weakest rigid part of the wall above a storey (local-mechanism, without confidence factor, same "
+        "position of the hinge); null if floors restrain the wall, or with a warning",
         "g",
     )
     held_at_m: list[float] = fact("heights at which rigid floors or props restrain the wall", "m")

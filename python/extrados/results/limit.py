@@ -150,9 +150,8 @@ class NonDilatant(ResultModel):
     tension_residual: float = fact("greatest tension (or compression beyond the strength), divided by the total load")
     overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest joint")
     complementarity_residual: float = fact(
-        "error of complementarity: force and motion at the same joint (a joint that is compressed and "
-        "opens, or that sticks and slides). The lesser of force and motion counts at each joint; the "
-        "value is the greatest of all joints"
+        "error of complementarity: force and motion at the same joint (a joint that is compressed and opens, or that sticks and "
+        "slides). The lesser of force and motion counts at each joint; the value is the greatest of all joints"
     )
     work_residual: float = fact(
         "error of the work balance (work of the load minus work of weight and friction), divided by the work of the load"
@@ -394,17 +393,15 @@ class Thrust(KindResults):
     chain: str | None = fact("arch or column of blocks whose minimum and maximum thrust are given; null if there is none")
     admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the least central part of the joints that contains a "
-        "thrust line (found within 0.001), at most 100. Null if not requested, or if a thrust line "
-        "passes within 1 % of the middles of all joints (no horizontal demand)"
+        "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line (found within 0.001), "
+        "at most 100. Null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no horizontal demand)"
     )
     least_part_of_joints: float = maybe("least central part of the joints that contains a thrust line (found within 0.001)")
     weight_N: float = fact("weight of the structure, with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     dilating: bool = fact(
-        "whether joints in compression slide in the mechanisms at the ends of `admissible_interval_g`. "
-        "These ends are then upper bounds (dilatant friction), and an admissible line does not exclude "
-        "sliding without dilatancy"
+        "whether joints in compression slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds "
+        "(dilatant friction), and an admissible line does not exclude sliding without dilatancy"
     )
     duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
     least: ThrustLine = maybe("the line of least thrust")
@@ -462,9 +459,8 @@ class MovingLoad(KindResults):
         "before the adequacy factor is calculated"
     )
     permissible_factor: float = maybe(
-        "permissible limit state: greatest multiple of the train (with serviceability and dynamic factors) "
-        "for which a thrust line exists within the permissible stress and the passive pressure of "
-        "service"
+        "permissible limit state: greatest multiple of the train (with serviceability and dynamic factors) for which a thrust line "
+        "exists within the permissible stress and the passive pressure of service"
     )
     permissible_place_m: float = maybe("x of the first axle at the position with the least permissible factor", "m")
     permissible_stress_Pa: float = maybe("permissible compressive stress under service loads", "Pa")

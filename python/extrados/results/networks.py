@@ -35,15 +35,13 @@ class ThrustNetwork(KindResults):
         "central part of the vertical depth within which no network on this form diagram exists; null without a bound"
     )
     vertical_safety_factor: float | None = fact(
-        "1 divided by the part of the vertical depth that the most central network needs; null without a "
-        "demand. Where surfaces are steep (near the springing of a dome), it exceeds the geometric "
-        "safety factor, which refers to the thickness"
+        "1 divided by the part of the vertical depth that the most central network needs; null without a demand. Where surfaces are "
+        "steep (near the springing of a dome), it exceeds the geometric safety factor, which refers to the thickness"
     )
     load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
     horizontal_load_g: float | None = fact(
-        "greatest horizontal load (at the nodes, divided by the weight) that a network carries; null if "
-        "no network was found, or if the load has no limit. With the load at the centroids of the "
-        "blocks, the collapse load can be less",
+        "greatest horizontal load (at the nodes, divided by the weight) that a network carries; null if no network was found, or if the "
+        "load has no limit. With the load at the centroids of the blocks, the collapse load can be less",
         "g",
     )
     horizontal_load_bound_g: float | None = fact(

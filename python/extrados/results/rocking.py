@@ -54,9 +54,8 @@ class Conditions(ResultModel):
     hinges_elsewhere: int = maybe("for many runs: number of runs in which hinges form outside the rocking mechanism")
     hinges_elsewhere_share: float = maybe("for many runs: share of the runs in which hinges form outside the rocking mechanism")
     energy_astray: float = maybe(
-        "after a plastic impact at all joints: share of the kinetic energy that does not belong to the "
-        "mechanism in which rocking continues. If this share exceeds 0.2, impacts cause hinges outside "
-        "the mechanism",
+        "after a plastic impact at all joints: share of the kinetic energy that does not belong to the mechanism in which rocking "
+        "continues. If this share exceeds 0.2, impacts cause hinges outside the mechanism",
         source="Moreau 1988",
     )
     not_checked: str = fact("conditions that are not checked, with the reason; empty if all are checked")
@@ -192,9 +191,8 @@ class Rocking(KindResults):
     restitution_energy_safe: float = maybe("for an arch: coefficient of restitution by the energy-safe projection")
     restitution_inelastic: float = maybe("for an arch: coefficient of restitution by a plastic impact at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe(
-        "outcome by each impact rule, given if the coefficients of restitution c_v of the rules differ "
-        "by a factor of more than 1.3. If a plastic impact is unsafe, an outcome with the energy that "
-        "discrete elements keep is added"
+        "outcome by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3. If "
+        "a plastic impact is unsafe, an outcome with the energy that discrete elements keep is added"
     )
     decided_by_last_digits: bool = fact(
         "whether the response is chaotic: a perturbation of the motion by 1e-6 grows by a factor of more "
@@ -282,9 +280,8 @@ class FailureDomain(KindResults):
     )
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all pulses of the map")
     handed_over: int = maybe(
-        "number of pulses of the map that were continued with rigid contacts, because joints slide or "
-        "hinges form outside the rocking mechanism; there, the failure curve is accurate to one cell of "
-        "the map"
+        "number of pulses of the map that were continued with rigid contacts, because joints slide or hinges form outside the rocking "
+        "mechanism; there, the failure curve is accurate to one cell of the map"
     )
     amplitudes_by_rule: list[RuleCurve] = maybe(
         "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
@@ -434,9 +431,8 @@ class FailureCurves(KindResults):
         "share of the verdicts by the curves that agree with the run under the whole motion; null without a comparison"
     )
     scaling_misfit: float | None = fact(
-        "greatest relative difference of amplitude between two curves, with durations divided by the "
-        "natural time and amplitudes by the uplift acceleration; null with one curve, or with curves "
-        "for different trains",
+        "greatest relative difference of amplitude between two curves, with durations divided by the natural time and amplitudes by the "
+        "uplift acceleration; null with one curve, or with curves for different trains",
         source="thesis Eq. 5.7",
     )
 
@@ -510,9 +506,8 @@ class Assessment(KindResults):
     )
     conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, under the whole motion")
     margins_by_rule: dict[str, float | None] = maybe(
-        "safety factor by each impact rule (each with its own fitted curve), given if the coefficients "
-        "of restitution c_v of the rules differ by a factor of more than 1.3; null if no impulse can "
-        "cause collapse"
+        "safety factor by each impact rule (each with its own fitted curve), given if the coefficients of restitution c_v of the rules "
+        "differ by a factor of more than 1.3; null if no impulse can cause collapse"
     )
     margin_conditions: list[str] = fact(
         "assumptions, one sentence each, that hold under the motion but not under the motion times the "

@@ -89,9 +89,8 @@ class SlaCurve(ResultModel):
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It "
-        "is the work of the loads minus the stored energy, summed from one equilibrium state to the "
-        "next. Events without equilibrium count with the area of their teeth",
+        "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
+        "the stored energy, summed from one equilibrium state to the next. Events without equilibrium count with the area of their teeth",
         "J",
     )
     crack_energy_J: float = fact(

@@ -129,9 +129,8 @@ class SolidTilt(KindResults):
     )
     non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
     collapse_acceleration_face_law_g: float = maybe(
-        "upper bound along the load direction by the face law (friction and torsion of whole faces under "
-        "uniform pressure). `collapse_acceleration_g` follows the corner law, which allows the pressure "
-        "to concentrate",
+        "upper bound along the load direction by the face law (friction and torsion of whole faces under uniform pressure). "
+        "`collapse_acceleration_g` follows the corner law, which allows the pressure to concentrate",
         "g",
         source="after Orduna and Lourenco 2005",
     )
@@ -190,9 +189,8 @@ class SolidThrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations along the load direction between which an admissible state exists", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the least central part of the contacts in which an "
-        "equilibrium state exists; null if this part is below 1 % (no horizontal demand), or if it was "
-        "not found"
+        "geometric safety factor: 1 divided by the least central part of the contacts in which an equilibrium state exists; null if "
+        "this part is below 1 % (no horizontal demand), or if it was not found"
     )
     least_part_of_joints: float | None = fact("central part of the contacts that the most central state needs")
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
@@ -201,9 +199,8 @@ class SolidThrust(KindResults):
     contacts: int = fact("polygons along which they touch")
     weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
     dilating: bool = fact(
-        "whether contacts slide in the mechanisms at the ends of `admissible_interval_g`. These ends are "
-        "then upper bounds (dilatant friction), and an admissible state does not exclude sliding "
-        "without dilatancy"
+        "whether contacts slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds (dilatant "
+        "friction), and an admissible state does not exclude sliding without dilatancy"
     )
     ties: list[TieForce] = maybe("forces of ties, chains and hoops in the most central state")
     duality_gap: float = fact("greatest difference between the bounds of the thrusts, divided by the weight")

@@ -82,9 +82,8 @@ class Masonry(Description):
             more = sorted(self.materials[name].model_fields_set - {"density"})
             if more:
                 raise BadGeometry(
-                    f"[materials.{name}] gives blocks a different {more[0]}. Discrete and finite elements use one "
-                    "elastic material for all blocks, that of [material]: remove this value, or give the stiffness "
-                    "of the joints",
+                    f"[materials.{name}] gives blocks a different {more[0]}. Discrete and finite elements use one elastic material for "
+                    "all blocks, that of [material]: remove this value, or give the stiffness of the joints",
                     ("materials", name, more[0]),
                 )
 

@@ -177,9 +177,8 @@ def _push(asked: Asked, direction: float) -> Choice:
         **_action(asked),
     }
     words = (
-        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, in both senses; elements of "
-        f"{size:g} m, {LAYERS} points through the thickness, at most {events} events, until the load has decreased to "
-        f"{FALLEN:g} of its peak"
+        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, in both senses; elements of {size:g} m, {LAYERS} "
+        f"points through the thickness, at most {events} events, until the load has decreased to {FALLEN:g} of its peak"
     )
     return Choice(keys, words)
 

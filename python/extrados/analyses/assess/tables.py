@@ -34,9 +34,8 @@ class Assess(Analysis):
     starter: ClassVar = {"budget": "20"}
     budget: float = key(
         60.0,
-        "time limit in s. The program chooses the sizes of the expensive strategies so that their "
-        "estimated time (one core of a computer of 2024) fits into this limit. Steps that still run "
-        "after it are stopped and reported",
+        "time limit in s. The program chooses the sizes of the expensive strategies so that their estimated time (one core of a "
+        "computer of 2024) fits into this limit. Steps that still run after it are stopped and reported",
         ge=5,
         le=1e6,
     )
@@ -72,10 +71,9 @@ class Assess(Analysis):
     )
     sensitivity: bool = key(
         False,
-        "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and "
-        "rocking give the safety factor for each value, and the value at which their verdict changes. "
-        "Discrete elements vary the joint stiffness and move a support. This takes 25 % of the time "
-        "budget",
+        "also vary thickness, corners, friction, restitution and density one by one. Limit analysis and rocking give the safety factor "
+        "for each value, and the value at which their verdict changes. Discrete elements vary the joint stiffness and move a support. "
+        "This takes 25 % of the time budget",
     )
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
         None, 'keys to vary instead of the default ones, each with its relative change: { "structure.thickness" = 0.1 }'

@@ -71,9 +71,8 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
     if options.abutment_force is None:
         if strength is None:
             raise Refused(
-                "horizontal bending requires `abutment_force`, the force that each side wall resists. If the "
-                "side walls do not move, give `compressive_strength` of [material] instead, which then limits "
-                "the thrust",
+                "horizontal bending requires `abutment_force`, the force that each side wall resists. If the side walls do not move, "
+                "give `compressive_strength` of [material] instead, which then limits the thrust",
                 ("analysis",),
             )
         # H (t - a) with H = f h a is greatest at a = t/2

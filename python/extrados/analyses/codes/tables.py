@@ -79,9 +79,8 @@ class Verification(Table):
     peak_acceleration: ClassVar = None
     method: Literal["N2", "capacity-spectrum", "coefficient"] | None = key(
         None,
-        "method that gives the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); "
-        "capacity-spectrum: capacity spectrum method; coefficient: coefficient method of ASCE 41. "
-        "Default: coefficient (ASCE41), N2 (others)",
+        "method that gives the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); capacity-spectrum: capacity "
+        "spectrum method; coefficient: coefficient method of ASCE 41. Default: coefficient (ASCE41), N2 (others)",
     )
     secant: float = key(
         0.7,
@@ -100,9 +99,8 @@ class Verification(Table):
     )
     shape: Literal["displaced", "mode"] = key(
         "displaced",
-        "mode shape phi for the equivalent mass. displaced: elastic displacement under the horizontal "
-        "forces; mode: mode with the greatest participating mass along the load (this mass can be small "
-        "with flexible floors)",
+        "mode shape phi for the equivalent mass. displaced: elastic displacement under the horizontal forces; mode: mode with the "
+        "greatest participating mass along the load (this mass can be small with flexible floors)",
         source="Circ. 7/2019 C7.3.4.2: first mode",
     )
     spectrum: CodeSpectrum | None = key(
@@ -224,9 +222,8 @@ class LocalMechanism(BuildingAnalysis):
     wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
     abutment_force: Force | None = key(
         None,
-        "for horizontal bending: force H that each side wall (or its tie) resists against the thrust of "
-        "the strip. Default: the side walls do not move, for instance between neighbouring walls; the "
-        "strip then crushes at `compressive_strength` of [material]",
+        "for horizontal bending: force H that each side wall (or its tie) resists against the thrust of the strip. Default: the side "
+        "walls do not move, for instance between neighbouring walls; the strip then crushes at `compressive_strength` of [material]",
         gt=0,
     )
     interlocking: Interlocking | None = key(
@@ -258,9 +255,8 @@ class LocalMechanism(BuildingAnalysis):
     )
     base_height: Length | None = key(
         None,
-        "height z of the mechanism above the foundation. If z is above 0, the building amplifies the "
-        "motion. Default for blocks: the lowest hinge between moving and fixed parts; for a table: "
-        "`hinge_height`",
+        "height z of the mechanism above the foundation. If z is above 0, the building amplifies the motion. Default for blocks: the "
+        "lowest hinge between moving and fixed parts; for a table: `hinge_height`",
         ge=0,
     )
     building_height: Length | None = key(
@@ -293,7 +289,7 @@ class LocalMechanism(BuildingAnalysis):
     @model_validator(mode="after")
     def _one_building(self) -> "LocalMechanism":
         if self.modes and (given := sorted({"building_period", "storeys"} & self.model_fields_set)):
-            raise ValueError(f"the key `modes` already gives the value of `{given[0]}`: remove `{given[0]}`")
+            raise ValueError(f"{given[0]}: the key `modes` already gives this value: remove this key")
         return self
 
     @model_validator(mode="after")

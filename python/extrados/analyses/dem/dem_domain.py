@@ -262,9 +262,8 @@ def _apart(check: out.CrossCheck) -> str:
     """Where the two solvers do not agree, in words."""
     where = "; ".join(
         (
-            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} "
-            f"by the solver of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the "
-            "other solver"
+            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} by the solver "
+            f"of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the other solver"
         )
         for c in check.apart[:8]
     )

@@ -198,9 +198,8 @@ def unconverged(effort: dem_run.Effort) -> list[str]:
         return []
     return [
         (
-            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest "
-            f"error, at {effort.worst:.4g} s, is {effort.residual:.2g} of the velocity that gravity adds in one "
-            "step. Try a smaller `time_step`"
+            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest error, at {effort.worst:.4g} "
+            f"s, is {effort.residual:.2g} of the velocity that gravity adds in one step. Try a smaller `time_step`"
         )
     ]
 

@@ -100,9 +100,8 @@ class DemTable(BuildingAnalysis):
     )
     floor: Length | None = key(
         None,
-        "height of a level floor on which detached blocks land and slide. Default: no floor; each joint "
-        "to the ground has a footing that extends beyond the joint by a quarter of its length on both "
-        "sides",
+        "height of a level floor on which detached blocks land and slide. Default: no floor; each joint to the ground has a footing "
+        "that extends beyond the joint by a quarter of its length on both sides",
     )
 
     @property

@@ -79,9 +79,8 @@ class FramePushover(FrameAnalysis):
     senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of each direction", min_length=1, max_length=2)
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
-        "patterns of the horizontal forces. uniform: in proportion to the masses; static: in proportion "
-        "to the masses times their height; modal: in proportion to the masses times the mode with the "
-        "greatest participating mass",
+        "patterns of the horizontal forces. uniform: in proportion to the masses; static: in proportion to the masses times their "
+        "height; modal: in proportion to the masses times the mode with the greatest participating mass",
         min_length=1,
         max_length=3,
         source="NTC 2018, 7.3.4.2",

@@ -137,8 +137,7 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
     leeward = assembly.buttresses[-1]
     if building.ties and (building.anchored().block == leeward).any():
         raise Refused(
-            f"a tie is anchored in {assembly.block_names[leeward]}. The analysis does not decide whether the "
-            "crack separates the anchor from the rest of this buttress. Remove `fracture`, or anchor the "
-            "tie at another block",
+            f"a tie is anchored in {assembly.block_names[leeward]}. The analysis does not decide whether the crack separates the anchor "
+            "from the rest of this buttress. Remove `fracture`, or anchor the tie at another block",
             key,
         )

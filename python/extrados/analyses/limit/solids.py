@@ -409,9 +409,8 @@ def _told(r: out.SolidTilt) -> str:
         least = "none" if row.least_g is None else f"{row.least_g:.4f} g"
         most = "none" if row.associated_g is None else f"{row.associated_g:.4f} g"
         text += (
-            f"Without dilatancy, along {row.direction_deg % 360.0:g} degrees in plan: the design value is {design} "
-            f"(the lowest of {len(row.load_paths)} load paths with elastic joints), the lowest value found "
-            f"is {least}, and the upper bound is {most}. "
+            f"Without dilatancy, along {row.direction_deg % 360.0:g} degrees in plan: the design value is {design} (the lowest of "
+            f"{len(row.load_paths)} load paths with elastic joints), the lowest value found is {least}, and the upper bound is {most}. "
         )
     if r.non_associated_reason:
         text += f"Collapse without dilatancy is not given: {r.non_associated_reason}. "

@@ -91,11 +91,10 @@ def run(context: Context, options: MovingSupports) -> Result:
     }
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
-        f"The right support {way}: the arch follows on three hinges "
-        f"({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) and collapses at {movement[-1]:.3g} "
-        f"m ({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
-        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} "
-        f"to {three_figures(force[-1, 0] / 1e3)} kN."
+        f"The right support {way}: the arch follows on three hinges ({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) "
+        f"and collapses at {movement[-1]:.3g} m ({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
+        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} to "
+        f"{three_figures(force[-1, 0] / 1e3)} kN."
     )
     return result
 
@@ -230,9 +229,8 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
-            "dilatant friction: a joint that slides also opens, by its friction times the slip. States "
-            "without dilatancy, which may carry less, are not calculated. For joints that only open, give "
-            '`friction = "no-sliding"`'
+            "dilatant friction: a joint that slides also opens, by its friction times the slip. States without dilatancy, which may "
+            'carry less, are not calculated. For joints that only open, give `friction = "no-sliding"`'
         )
     result.answer = _opened_in_words(building.require_structure().word, movement, opened, len(slid), found.work) + spoken_ties(
         result.of(out.MovingSupports).ties

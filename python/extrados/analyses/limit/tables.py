@@ -71,9 +71,8 @@ class SpatialLimit(LimitAnalysisTable):
     )
     direction: Angle | None = key(
         None,
-        "direction of the horizontal load in plan: angle from +x towards +y (+y is across a plane "
-        "section). If this key is given, or if the structure has no plane section, the blocks are "
-        "analysed as solids",
+        "direction of the horizontal load in plan: angle from +x towards +y (+y is across a plane section). If this key is given, or if "
+        "the structure has no plane section, the blocks are analysed as solids",
         ge=-360,
         le=360,
     )
@@ -101,9 +100,8 @@ class Tilt(SpatialLimit, Animated):
     )
     face_law: bool | None = key(
         None,
-        "for solids: also calculate the capacity with uniform pressure on contact faces, which reduces "
-        "the resistance to torsion; default: true if contacts slide and the structure has at most 80 "
-        "contacts",
+        "for solids: also calculate the capacity with uniform pressure on contact faces, which reduces the resistance to torsion; "
+        "default: true if contacts slide and the structure has at most 80 contacts",
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
@@ -135,9 +133,8 @@ class Section(Table):
     )
     toward: Angle | None = key(
         None,
-        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, "
-        "or on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
-        "middle of the structure",
+        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, or on the blocks "
+        "or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the middle of the structure",
         ge=-360,
         le=360,
     )
@@ -386,9 +383,9 @@ class MovingLoad(LimitAnalysisTable):
     def _axles(self) -> "MovingLoad":
         given = self.model_fields_set
         if self.shares is not None and (len(self.shares) != len(self.axles) or min(self.shares) <= 0.0):
-            raise ValueError("`shares`: expected one number above 0 for each of the axles")
+            raise ValueError("shares: expected one number above 0 for each of the axles")
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
-            raise ValueError("`axle_loads`: expected one load above 0 for each of the axles")
+            raise ValueError("axle_loads: expected one load above 0 for each of the axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
             raise ValueError(
                 "the key `train` replaces `axles`, `shares`, `force`, `axle_loads` and `uniform`: remove either `train` or these keys"

@@ -144,9 +144,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
-        "distribution of the horizontal forces. mass: in proportion to the masses; triangular: in "
-        "proportion to the masses times their height; modal: in proportion to the masses times the "
-        "first mode in this direction",
+        "distribution of the horizontal forces. mass: in proportion to the masses; triangular: in proportion to the masses times their "
+        "height; modal: in proportion to the masses times the first mode in this direction",
     )
     drives: list[Drive] = key(
         [],
@@ -164,9 +163,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     stages: list[PushStage] = key(
         [],
-        "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either "
-        "direction, or settlements. Each stage keeps the damage of the stages before. The weight is "
-        "applied first, together with `settlements`",
+        "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either direction, or settlements. Each "
+        "stage keeps the damage of the stages before. The weight is applied first, together with `settlements`",
         min_length=1,
         max_length=50,
     )

@@ -296,8 +296,7 @@ def bring_on_constant_loads(
         if not far <= FAR * model.extent:
             raise NotCarried(
                 f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
-                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and "
-                "cracks",
+                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and cracks",
                 WHOLE,
             )
     return found, rubs
@@ -601,9 +600,8 @@ class _Run:
             gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
             if gap > UNBALANCED:
                 curve.warnings.append(
-                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the "
-                    f"loads by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not "
-                    "reliable."
+                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the loads "
+                    f"by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not reliable."
                 )
 
     def _end_on_a_line(self, curve: Curve) -> None:

@@ -194,9 +194,8 @@ class CrackOptions(Table):
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
-        "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed "
-        "direction from their first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); "
-        "isotropic: isotropic damage",
+        "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed direction from their "
+        "first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); isotropic: isotropic damage",
         source="Eq. 4.10",
     )
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
@@ -308,9 +307,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     stages: list[Stage] = key(
         [],
-        "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own "
-        "supports, loads and end, and keeps the damage of the stages before. `constant` is applied "
-        "before the first stage",
+        "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own supports, loads and end, and keeps the "
+        "damage of the stages before. `constant` is applied before the first stage",
         min_length=1,
         max_length=50,
     )
@@ -335,15 +333,13 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     crack_closure: bool | None = key(
         None,
-        "whether cracks that close regain their stiffness. Default true, with two exceptions: walls with "
-        "fixed or isotropic cracks, and walls under a single increasing load without constant loads or "
-        "stages",
+        "whether cracks that close regain their stiffness. Default true, with two exceptions: walls with fixed or isotropic cracks, and "
+        "walls under a single increasing load without constant loads or stages",
     )
     solution: Literal["events", "incremental"] = key(
         "events",
-        "solution method. events: one integration point after the other; incremental, for comparison: steps of arc "
-        "length with a secant iteration, in which all overloaded points lose teeth together (the key `events` then "
-        "limits the number of these steps)",
+        "solution method. events: one integration point after the other; incremental, for comparison: steps of arc length with a secant "
+        "iteration, in which all overloaded points lose teeth together (the key `events` then limits the number of these steps)",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
@@ -357,10 +353,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     continuation: Literal["newton", "implicit-explicit", "dissipation"] = key(
         "newton",
-        "method of the equilibrium iterations. newton: Newton's method, with staggered steps if it does "
-        "not converge; implicit-explicit: damage is extrapolated from the last step (one convex problem "
-        "for each step: faster and less accurate); dissipation: as newton, from the first load on, with "
-        "an arc length on dissipated energy where the displacement snaps back",
+        "method of the equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
+        "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster and less accurate); "
+        "dissipation: as newton, from the first load on, with an arc length on dissipated energy where the displacement snaps back",
         source="Oliver, Huespe and Cante 2008; Gutierrez 2004",
     )
     algorithm: Literal["update", "refactor"] = key(
@@ -372,9 +367,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     probes: list[Length] = key([], "control displacements at which the load of the envelope is reported", max_length=100)
     measured: str | None = key(
         None,
-        "CSV file of a test, with which the calculated curve is compared. Columns: 'displacement (mm)' "
-        "and 'load (N)', or 'least (N)' and 'greatest (N)' of several tests; lines that begin with # "
-        "give the source",
+        "CSV file of a test, with which the calculated curve is compared. Columns: 'displacement (mm)' and 'load (N)', or 'least (N)' "
+        "and 'greatest (N)' of several tests; lines that begin with # give the source",
     )
     section_x: list[Length] = key(
         [],

@@ -118,10 +118,9 @@ class Fragility(RockingTable):
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
         {},
-        "coefficients of variation of width, height, thickness and restitution; of the thickness lost at "
-        "worn `corners`; of the `density` of each block; of the `friction` of all joints together; of "
-        "`stiffness` and `damping_ratio` of a compliant base. `imperfection`: random displacement of "
-        "corners and joints of blocks, divided by the shortest joint. Sampled by a Sobol sequence",
+        "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; of the "
+        "`density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of a compliant base. "
+        "`imperfection`: random displacement of corners and joints of blocks, divided by the shortest joint. Sampled by a Sobol sequence",
     )
     sensitivity: int | None = key(
         None,

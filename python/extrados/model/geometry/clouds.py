@@ -225,10 +225,9 @@ def uncertain(fits: Sequence[Fit], thickness: float) -> tuple[str, ...]:
         return ()
     return (
         (
-            f"The points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}. "
-            f"This is more than a tenth of the thickness of {1000.0 * thickness:.3g} mm, so the capacity of the "
-            "fitted body is uncertain. Divide the points into parts of the fitted shape, or give the blocks "
-            "as solids"
+            f"The points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}. This is more than a "
+            f"tenth of the thickness of {1000.0 * thickness:.3g} mm, so the capacity of the fitted body is uncertain. Divide the points "
+            "into parts of the fitted shape, or give the blocks as solids"
         ),
     )
 

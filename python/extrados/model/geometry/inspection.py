@@ -66,8 +66,7 @@ class Inspection:
         shown = "; ".join(
             (
                 f"blocks {self.between(flaw)} {'are' if flaw.kind == 'gap' else 'overlap by'} "
-                f"{length(flaw.depth)}{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = "
-                f"{flaw.place[1]:.4g} m"
+                f"{length(flaw.depth)}{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = {flaw.place[1]:.4g} m"
             )
             for flaw in flaws[:SHOWN]
         )
@@ -127,9 +126,8 @@ class Inspection:
             heights = sorted({round(y, 4) for _, y in self.levels})
             named = ", ".join(f"'{self.names[i]}'" for i, _ in self.levels[:SHOWN])
             found.append(
-                f"no support is below the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} "
-                f"at y = {', '.join(f'{y:.4g}' for y in heights)} m. To make supports of these soles, give "
-                "`foundation_levels`"
+                f"no support is below the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} at y = "
+                f"{', '.join(f'{y:.4g}' for y in heights)} m. To make supports of these soles, give `foundation_levels`"
             )
         return found
 

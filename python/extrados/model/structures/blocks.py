@@ -123,9 +123,8 @@ class LayerTable(Table):
     name: str = key(about="name of the layer, in upper or lower case", max_length=255)
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
-        "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; "
-        "joints: lines along joints, so that [[joints.types]] can name these joints by the layer; "
-        "left-out: the layer is not read",
+        "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines along joints, so that "
+        "[[joints.types]] can name these joints by the layer; left-out: the layer is not read",
     )
     material: str | None = key(None, "material of the blocks on this layer: a name in [materials]")
 
@@ -144,9 +143,8 @@ class Blocks(Structure):
     kind: Literal["blocks"]
     file: str | None = key(
         None,
-        "file with the blocks, in the folder of the deck. Sections: JSON, COMPAS JSON or DXF; solids: "
-        "OBJ, STL, glTF (GLB), IFC or COMPAS JSON; with [structure.scan], a point cloud: PLY, XYZ, LAS "
-        "or LAZ",
+        "file with the blocks, in the folder of the deck. Sections: JSON, COMPAS JSON or DXF; solids: OBJ, STL, glTF (GLB), IFC or "
+        "COMPAS JSON; with [structure.scan], a point cloud: PLY, XYZ, LAS or LAZ",
         max_length=500,
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
@@ -187,18 +185,16 @@ class Blocks(Structure):
     )
     contact_tolerance: Length = key(
         1e-4,
-        "tolerance of contacts: faces that are closer than this value touch each other; overlaps below "
-        "this value are ignored; contacts of solids that are narrower carry no force. `check` reports "
-        "the tolerance that would close each gap. The default for solids is at most 1/10000 of their "
-        "size",
+        "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value are ignored; contacts "
+        "of solids that are narrower carry no force. `check` reports the tolerance that would close each gap. The default for solids is "
+        "at most 1/10000 of their size",
         gt=0,
         le=0.1,
     )
     mortar_gap: Length | None = key(
         None,
-        "greatest thickness of joints that are drawn as gaps. The faces on both sides of such a joint "
-        "are moved to the middle of the gap, so that the blocks touch. Default: gaps wider than "
-        "`contact_tolerance` stay open",
+        "greatest thickness of joints that are drawn as gaps. The faces on both sides of such a joint are moved to the middle of the "
+        "gap, so that the blocks touch. Default: gaps wider than `contact_tolerance` stay open",
         gt=0,
         le=0.1,
     )

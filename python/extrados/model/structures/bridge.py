@@ -57,7 +57,7 @@ class Span(Table):
         if not isinstance(given, dict) or given.get("shape") != "surveyed" or not isinstance(given.get("intrados"), list):
             return given
         if twice := [name for name in ("span", "rise") if name in given]:
-            raise ValueError(f"`{twice[0]}`: the points of `intrados` determine this value: remove this key")
+            raise ValueError(f"{twice[0]}: the points of `intrados` determine this value: remove this key")
         points = [point for point in given["intrados"] if isinstance(point, list) and len(point) == 2]
         if len(points) < len(given["intrados"]) or not all(isinstance(v, int | float) for point in points for v in point):
             raise ValueError("intrados: expected points [x, y] in metres")

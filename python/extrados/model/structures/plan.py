@@ -157,9 +157,8 @@ class StoreyFloor(Table):
     storey: int = key(about="number of the storey below the floor", ge=1)
     kind: Literal["rigid", "flexible", "joists", "none"] = key(
         "flexible",
-        "kind of floor. flexible: membrane with the stiffness `young` times `thickness`; rigid: "
-        "practically rigid (concrete slab of 30 GPa and 0.2 m); joists: bars across the floor in one "
-        "direction; none: only the load of the floor acts",
+        "kind of floor. flexible: membrane with the stiffness `young` times `thickness`; rigid: practically rigid (concrete slab of 30 "
+        "GPa and 0.2 m); joists: bars across the floor in one direction; none: only the load of the floor acts",
     )
     walls: list[str] | None = key(
         None, "names of the walls around the floor, in order; default: all walls of the storey, if they form a single ring", min_length=3
@@ -173,10 +172,9 @@ class StoreyFloor(Table):
     pitch: Angle | None = key(None, "slope of a roof from the horizontal", gt=0, le=75)
     roof: Literal["rafters", "trusses", "purlins"] | None = key(
         None,
-        "structure of a pitched roof. rafters: pairs of rafters that meet in the middle between the two "
-        "walls of `bears_on` and push these walls apart (not if a rigid floor ties them); trusses: "
-        "rafters with ties, without thrust; purlins: beams along the ridge between the two walls of "
-        "`bears_on`, without thrust",
+        "structure of a pitched roof. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and push "
+        "these walls apart (not if a rigid floor ties them); trusses: rafters with ties, without thrust; purlins: beams along the ridge "
+        "between the two walls of `bears_on`, without thrust",
     )
     bears_on: list[str] = key(
         [], "walls that carry the load, in proportion to their length; default: all walls around the floor", max_length=100
@@ -286,9 +284,8 @@ class RingBeam(Table):
     walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
     reinforcement: Reinforcement | None = key(
         None,
-        "bars of the beam. In frames, they give the plastic moment of its hinges and its strength as a "
-        "tie; the material of the beam then requires `compressive_strength`. Default: the beam remains "
-        "elastic",
+        "bars of the beam. In frames, they give the plastic moment of its hinges and its strength as a tie; the material of the beam "
+        "then requires `compressive_strength`. Default: the beam remains elastic",
     )
 
     @model_validator(mode="after")

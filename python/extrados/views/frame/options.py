@@ -17,10 +17,9 @@ class FrameOptions(Table):
     )
     shear: Literal["least", "mohr-coulomb", "turnsek-cacovic", "reversed", "damage", "none"] = key(
         "least",
-        "method for the shear strength of piers. mohr-coulomb: on the compressed part; turnsek-cacovic: "
-        "diagonal cracking; least: the lesser of both; reversed: as least, but cohesion acts only on "
-        "the part that opens in neither sense of the load; damage: friction with damage and softening; "
-        "none: flexure only",
+        "method for the shear strength of piers. mohr-coulomb: on the compressed part; turnsek-cacovic: diagonal cracking; least: the "
+        "lesser of both; reversed: as least, but cohesion acts only on the part that opens in neither sense of the load; damage: "
+        "friction with damage and softening; none: flexure only",
         source="NTC 2018, 7.8.2.2; Circ. 7/2019, C8.7.1.3.1; Gambarotta and Lagomarsino 1997",
     )
     cohesion: Stress | None = key(None, "f_v0: shear strength of bed joints at zero compression; default: `cohesion` of [joints]", gt=0)
@@ -81,9 +80,8 @@ class FrameOptions(Table):
     )
     flanges: Literal["effective", "whole", "none"] = key(
         "effective",
-        "flanges at corners. effective: a wall lifts at most the weight on the effective width of the "
-        "transverse wall; whole: the weight on the whole pier of the transverse wall; none: corners "
-        "transfer no vertical force",
+        "flanges at corners. effective: a wall lifts at most the weight on the effective width of the transverse wall; whole: the "
+        "weight on the whole pier of the transverse wall; none: corners transfer no vertical force",
         source="after EN 1996-1-1, 5.5.3",
     )
     softening: float = key(0.5, 'for shear = "damage": beta, exponent of the resistance beyond the peak', gt=0, lt=2)

@@ -77,9 +77,8 @@ class _Maker(Division):
             weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
             if weak:
                 self.remarks.append(
-                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
-                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the "
-                    "strength, or check the reinforcement."
+                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} has no "
+                    "`tensile_strength`: spandrels beside them have the full strut against a tie. Give it, or check the reinforcement."
                 )
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
@@ -116,9 +115,7 @@ class _Maker(Division):
         rods = self._rods()
         elements = [self._element(strip) for strip in self.strips]
         for k in sorted(self.idle):
-            self.remarks.append(
-                f"Rod {k + 1} has no effect on the frame: it passes no spandrel, and the walls that it joins do not move apart."
-            )
+            self.remarks.append(f"Rod {k + 1} passes no spandrel and joins no walls that move apart: it has no effect on the frame.")
         return EquivalentFrame(
             plan,
             self.nodes,

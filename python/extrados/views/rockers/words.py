@@ -23,10 +23,9 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
         )
     if building.supports.stiffness is not None:
         raise NoView(
-            "on a compliant base a building moves in more than one coordinate. Only `dem`, and (for one "
-            "block, column or wall) `rocking`, `fragility`, `failure-domain`, `failure-curves` and "
-            "`harmonic-map` can follow this. Remove `stiffness`, or give it only to these analyses, as "
-            "[analysis.supports] of each",
+            "on a compliant base a building moves in more than one coordinate. Only `dem`, and (for one block, column or wall) "
+            "`rocking`, `fragility`, `failure-domain`, `failure-curves` and `harmonic-map` can follow this. Remove `stiffness`, or give "
+            "it only to these analyses, as [analysis.supports] of each",
             ("supports", "stiffness"),
         )
     block = rocks_as_block(building)
@@ -50,9 +49,8 @@ def refuse_soft_base(building: Masonry) -> None:
     key = ("supports", "stiffness")
     if not rocks_as_block(building):
         raise NoView(
-            "rocking can follow a compliant base only under one block, column or wall. Remove `stiffness`, "
-            "or give it only to the analysis `dem` (as [analysis.supports]), which follows a compliant base "
-            "under any blocks",
+            "rocking can follow a compliant base only under one block, column or wall. Remove `stiffness`, or give it only to the "
+            "analysis `dem` (as [analysis.supports]), which follows a compliant base under any blocks",
             key,
         )
     if building.restraints or building.supports.abutting_wall is not None:
