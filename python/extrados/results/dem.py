@@ -203,7 +203,9 @@ class DemRun(BlocksRun):
     restitution_housner: float | None = fact(
         "for a block: ratio of angular velocity after / before impact, by the momentum balance", source="Housner 1963"
     )
-    sensitivity: list[Variation] = maybe("further runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
+    sensitivity: list[Variation] = maybe(
+        "runs that repeat the analysis with other values of damping, stiffness or friction", source="thesis Tables 7.1 to 7.7"
+    )
     friction_threshold: float | None = maybe("least coefficient of friction at which no joint slides; null if not found")
 
 
@@ -312,7 +314,7 @@ class CellApart(ResultModel):
     amplitude_g: float = fact("amplitude", "g")
     duration_s: float = fact("duration", "s")
     fails_as_given: bool = fact("whether the solver of the deck predicts collapse")
-    fails_by_the_other: bool = fact("whether the other solver predicts collapse")
+    fails_by_the_other: bool = fact("whether the second solver (the one that the deck does not choose) predicts collapse")
 
 
 class CrossCheck(ResultModel):

@@ -595,7 +595,7 @@ class Gap(ResultModel):
 
     value: float = fact("value of the varied key, in the unit of the key")
     status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked (no collapse mechanism), or no-answer (no result)")
-    reason: str = fact("reason; for a structure that cannot stand, the certificate")
+    reason: str = fact("reason for this outcome; for a structure that cannot stand, the certificate")
 
 
 class Sweep(KindResults):

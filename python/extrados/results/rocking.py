@@ -387,7 +387,7 @@ class FailureCurve(ResultModel):
 
     label: str = fact("difference from the other curves")
     durations_s: list[float] = fact("durations, or periods, of the pulses", "s")
-    amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null if it exceeds the cap of the deck", "g")
+    amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null if it exceeds `max_amplitude`", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     natural_time_s: float = fact("time by which the durations are scaled: sqrt(R/g) for an arch, 1/p for a block", "s")
@@ -494,7 +494,7 @@ class Assessment(KindResults):
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     static_verdict: Literal["stands", "fails"] = fact("outcome if the peak acceleration acts as a constant horizontal acceleration")
-    coefficients: Coefficients = fact("coefficients of the failure curve that is used")
+    coefficients: Coefficients = fact("coefficients of the failure curve with which the impulses are compared")
     coefficients_source: str = fact("source of the impulse")
     coefficients_of_this_arch: Coefficients = fact("coefficients of the failure curve fitted to this structure")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")

@@ -56,8 +56,8 @@ class SeatMotion(ResultModel):
     slip_m: float = fact("greatest displacement of an end of the floor away from its support on the wall", "m")
     slip_along_m: float = fact("greatest displacement of an end of the floor along its support on the wall", "m")
     slid_off: bool = fact("whether an end of the floor has moved by more than the length of its support")
-    slid_off_displacement_m: float | None = fact("control displacement at which it slid off", "m")
-    slid_off_base_shear_N: float | None = fact("base shear at which it slid off", "N")
+    slid_off_displacement_m: float | None = fact("control displacement at which the floor slid off", "m")
+    slid_off_base_shear_N: float | None = fact("base shear at which the floor slid off", "N")
 
     @property
     def told(self) -> str:
@@ -107,7 +107,7 @@ class PushCurve(SlaCurve):
     roof_drift: float | None = fact("roof drift: control displacement at the greatest load, divided by the height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
     walls: list[WallShare] = fact("base shear of each wall at the greatest load")
-    flanges: Flanges = maybe("whether the transverse walls (flanges) contribute")
+    flanges: Flanges = maybe("contribution of the transverse walls (flanges) to the base shear")
     first_crack: FirstCrack = maybe("location of the first crack; not given if nothing cracks")
     joints: list[JointMotion] = maybe("greatest opening and sliding of each joint")
     seats: list[SeatMotion] = maybe("load and slip of the floors on their supports; not given without such supports")

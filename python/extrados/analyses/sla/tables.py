@@ -63,7 +63,7 @@ class Load(Table):
             if not self.parts:
                 raise ValueError("a load of kind displacement requires parts = [{edge = ..., ratio = ...}, ...]")
         elif self.kind != "gravity" and self.edge is None and self.x is None and self.y is None:
-            raise ValueError(f"the place of the {self.kind} load is missing: give edge, x or y")
+            raise ValueError(f"the place of the {self.kind} load is missing: give `edge`, `x` or `y`")
         return self
 
 

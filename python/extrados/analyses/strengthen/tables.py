@@ -88,13 +88,13 @@ class TieOption(Tie):
         if self.hoop and self.far_to is not None:
             raise ValueError("a hoop has only one height: give `start_to`, and remove `far_to`")
         if any(len(point) != len(self.start) for point in (self.start_to, self.far_to) if point is not None):
-            raise ValueError("`start_to` and `far_to`: expected the same number of coordinates as in start")
+            raise ValueError("`start_to` and `far_to`: expected the same number of coordinates as in `start`")
         if "places" in self.model_fields_set and self.start_to is None and self.far_to is None:
             raise ValueError("the key `places` requires `start_to` or `far_to`, the second end of the range")
         if self.debonding_force is not None and self.source is None:
             raise ValueError("`debonding_force` requires its source: the document with the formula, or the test")
         if self.source is not None and self.debonding_force is None:
-            raise ValueError("the key `source` is used only with `debonding_force`: remove source")
+            raise ValueError("the key `source` is used only with `debonding_force`: remove `source`")
         if self.debonding_force is not None and (self.yield_force is not None or self.works_in != "tension"):
             raise ValueError("debonding_force: a bonded strip acts in tension and has no `yield_force`")
         if self.prestress:
@@ -185,11 +185,11 @@ class Strengthen(LimitAnalysisTable):
     def _target(self) -> "Strengthen":
         given = [n for n in ("acceleration", "safety_factor", "probability") if getattr(self, n) is not None]
         if len(given) != 1:
-            raise ValueError("give exactly one target: acceleration, `safety_factor` or probability")
+            raise ValueError("give exactly one target: `acceleration`, `safety_factor` or `probability`")
         if (self.by == "fragility") != (self.probability is not None):
             raise ValueError('the key `probability` requires by = "fragility", and by = "fragility" requires the key `probability`')
         if self.acceleration is not None and self.by != "tilt":
-            raise ValueError(f'the target acceleration requires by = "tilt"; with by = "{self.by}" give a `safety_factor`')
+            raise ValueError(f'the target `acceleration` requires by = "tilt"; with by = "{self.by}", give a `safety_factor`')
         if self.by == "tilt" and self.options:
             raise ValueError('options: with by = "tilt", give these keys in this table instead')
         if "levels" in self.model_fields_set and not self.fragility:
