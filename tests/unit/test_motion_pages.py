@@ -62,7 +62,7 @@ def test_milliseconds_are_not_read_as_seconds(tmp_path: Path) -> None:
     found = study(path)
     assert found["pga_time_s"] < 2.0 and any("are in ms" in w for w in found.warnings)
     bare = column_file(tmp_path / "bare.csv", "time", [f"{5 * k}" for k in range(400)])
-    with pytest.raises(RecordError, match=r"bare\.csv:2: the time step is 5 s, .* name their column time_ms"):
+    with pytest.raises(RecordError, match=r"bare\.csv:2: the time step is 5 s, .* name their column `time_ms`"):
         read_record(bare)
 
 
