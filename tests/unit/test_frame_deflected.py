@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 import extrados
 from extrados.analyses.frame.deflected import At, Chain, Piece
 from extrados.core.frame import Frame, section_forces
+from extrados.results.frame import FramePushover, WallDeflection
 from extrados.schema.constants import GRAVITY
 
 DENSITY, YOUNG = 1800.0, 1e9
@@ -124,6 +125,14 @@ def test_walls_of_a_plan_out_of_their_planes():
     assert all(row["rigid_acceleration_g"] is None and row["held_at_m"] == [3.0, 5.8] for row in held)
     rigid = 2.0 * 0.4 / 2.8  # a wall without load that is held on top: its hinge is there, W t = alpha W h/2
     assert 0.9 * rigid < held[0]["acceleration_g"] < 1.05 * rigid and 4.4 < held[0]["height_m"] < 5.8
+
+
+@pytest.mark.parametrize("reached, then", [(True, "the wall fails first"), (False, "which of the two fails first is not known")])
+def test_a_lower_bound_of_a_wall_does_not_decide_what_fails_first(reached, then):
+    """A wall whose acceleration still increases may carry more than the frame."""
+    wall = WallDeflection.model_construct(wall="south", acceleration_g=0.1, reached=reached, deflection_m=0.01, height_m=2.0)
+    result = FramePushover.model_construct(walls_out_of_plane=[wall], base_shear_N=2e5, weight_N=1e6)
+    assert result.weakest_wall().endswith(f"0.2: {then}.")
 
 
 def test_a_rigid_floor_on_a_seat_restrains_no_wall():

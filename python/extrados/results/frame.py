@@ -148,19 +148,22 @@ class FramePushover(KindResults):
     )
     verification: Verification = maybe("displacement-based verification: all runs at the limit states of the code")
 
+    @property
+    def wall_below_frame(self) -> bool:
+        """Whether the acceleration that a wall carries out of its plane is less than the base shear of the frame over the weight."""
+        return bool(self.walls_out_of_plane) and self.walls_out_of_plane[0].acceleration_g < self.base_shear_N / self.weight_N
+
     def weakest_wall(self) -> str:
         """The wall that carries the least acceleration out of its plane, in words; empty without such a calculation."""
         if not self.walls_out_of_plane:
             return ""
-        wall, ratio = self.walls_out_of_plane[0], self.base_shear_N / self.weight_N
+        wall = self.walls_out_of_plane[0]
         if not wall.acceleration_g > 0.0:
             return f"Out of its plane wall '{wall.wall}' has no equilibrium under its weight."
-        least = "" if wall.reached else "at least "
-        before = (
-            f" This is less than the base shear of the frame over the weight, {ratio:.3g}: the wall fails first."
-            if wall.acceleration_g < ratio
-            else ""
-        )
+        least, before = "" if wall.reached else "at least ", ""
+        if self.wall_below_frame:
+            then = "the wall fails first" if wall.reached else "which of the two fails first is not known"
+            before = f" This is less than the base shear of the frame over the weight, {self.base_shear_N / self.weight_N:.3g}: {then}."
         return (
             f"Out of its plane wall '{wall.wall}' carries {least}a constant acceleration of {wall.acceleration_g:.3g} g, with a deflection of "
             f"{1e3 * wall.deflection_m:.3g} mm at a height of {wall.height_m:.3g} m, without the transverse walls.{before}"
@@ -172,7 +175,7 @@ class FramePushover(KindResults):
         text = f"The frame can carry a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
         if self.ring_beam_moment_Nm is not None:
             text += f" Greatest moment of the ring beams, which remain elastic: {self.ring_beam_moment_Nm / 1e3:.3g} kN m."
-        if self.walls_out_of_plane and self.walls_out_of_plane[0].acceleration_g < self.base_shear_N / self.weight_N:
+        if self.wall_below_frame:
             text += f" {self.weakest_wall()}"
         if self.out_of_plane is not None and self.out_of_plane.outcome in ("collapses", "cannot-stand"):
             factor = "" if self.out_of_plane.factor is None else f" (safety factor {self.out_of_plane.factor:.3g})"
