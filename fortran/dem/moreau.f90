@@ -6,7 +6,7 @@ module dem_moreau
    use dem_contacts, only : contact_pair, overlap, measure_overlap, choose_edges
    use dem_law, only : point_force, point_frame, frame_of, hand_over, find_relative_velocity
    use dem_model, only : block_model, predict_velocity, prepare_step, pull_ties
-   use dem_rigid, only : number_bodies, parting, solve_step
+   use dem_rigid, only : bear_mortar, gives_way, has_mortar, number_bodies, parting, solve_step
    use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_plane, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -131,6 +131,7 @@ contains
       type(point_frame) :: frame
       real(wp) :: distance, u_n, u_t, still_n, still_t
       integer :: i, n, side
+      logical :: bonded
 
       associate (pair => model%contacts%pair(k), rigid => model%rigid, problem => model%rigid%problem)
          model%number(:, k) = 0
@@ -152,6 +153,7 @@ contains
                problem%row(:, 2, along_normal, n) = [frame%nx, frame%ny, frame%b_n]
                problem%row(:, 1, along_tangent, n) = [-frame%tx, -frame%ty, -frame%a_t]
                problem%row(:, 2, along_tangent, n) = [frame%tx, frame%ty, frame%b_t]
+               bonded = pair%point(i)%bonded .and. has_mortar(model%law(pair%law))
                ! Parting velocity over the last step, where supports move as in the next one
                u_n = 0.0_wp
                u_t = 0.0_wp
@@ -168,9 +170,10 @@ contains
                   end associate
                end do
                problem%shift(along_normal, n) = still_n &
-                  + parting(rigid, model%step, now%gap(i), next%gap(i), u_n + still_n)
+                  + parting(rigid, model%step, now%gap(i), next%gap(i), u_n + still_n, bonded)
                problem%shift(along_tangent, n) = still_t
                problem%friction(n) = model%law(pair%law)%friction
+               call bear_mortar(rigid, model%law(pair%law), n, merge(0.5_wp * now%width * model%kick, 0.0_wp, bonded))
                problem%impulse(:, n) = model%kick * [pair%point(i)%spring_n, pair%point(i)%spring_s]
             end do
             call share_friction(pair, now, model%number(:, k), problem)
@@ -220,8 +223,9 @@ contains
                   force%normal = problem%impulse(along_normal, point(i)) / model%kick
                   force%shear = problem%impulse(along_tangent, point(i)) / model%kick
                end if
+               if (pair%point(i)%bonded) pair%point(i)%bonded = is_held(model, point(i))
                associate (was => pair%point(i))
-                  if (.not. (was%closed .or. force%normal > 0.0_wp .or. abs(force%shear) > 0.0_wp)) cycle
+                  if (.not. (was%closed .or. max(abs(force%normal), abs(force%shear)) > 0.0_wp)) cycle
                   frame = frame_of(now, i, a, b)
                   call find_relative_velocity(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
                   was%damping_loss = was%damping_loss - 0.5_wp * model%drift * (was%spring_n + force%normal) * u_n
@@ -229,11 +233,20 @@ contains
                   call hand_over(model%kick, model%drift, frame, was, force, a, b, pair%support_work)
                   was%spring_n = force%normal
                   was%spring_s = force%shear
-                  was%closed = force%normal > 0.0_wp .or. abs(force%shear) > 0.0_wp
+                  was%closed = max(abs(force%normal), abs(force%shear)) > 0.0_wp
                end associate
             end do
          end associate
       end associate
    end subroutine apply_impulses
+
+   !> Whether mortar holds a point in this step
+   pure function is_held(model, point) result(held)
+      type(block_model), intent(in) :: model
+      integer, intent(in) :: point                  !! in the problem, 0: it cannot press
+      logical :: held
+      held = point > 0
+      if (held) held = .not. gives_way(model%rigid, model%model_clock, point)
+   end function is_held
 
 end module dem_moreau

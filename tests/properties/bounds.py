@@ -78,7 +78,7 @@ def rest_has_no_sense(deck: Deck, within: float) -> None:
     if not found.answers:
         reject()
     names = [
-        f"is carried only by friction between its neighbours. In a state without dilatancy it slides out at any load, so no horizontal load {way}"
+        f"is carried only by friction between its neighbours. In a state without dilatancy, this block slides out at any load, so no horizontal load {way}"
         for way in ("to +x", "to -x")
     ]
     told = [name in found.warnings for name in names]

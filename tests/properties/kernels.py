@@ -50,7 +50,7 @@ def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: t
         outlines = [a, b][::order]
         bodies = [moments(o) for o in outlines]
         mass = np.array([2000.0 * m[0] for m in bodies])
-        inertia = np.array([_inertia(o) for o in outlines])
+        inertia = np.array([inertia_of(o) for o in outlines])
         law = dem.Law(1e9, 5e8, how["friction"], damping=how["damping"])
         both = dem.Bodies(
             np.array([m[1] for m in bodies]), mass, inertia, outlines, [0, 1], [np.ones(len(o), bool) for o in outlines], 1.0, [law]
@@ -91,7 +91,7 @@ def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: t
     must(convex.overlap_depth(*there) < 0.02, f"bodies pass through each other by {convex.overlap_depth(*there)} m")
 
 
-def _inertia(outline: np.ndarray) -> float:
+def inertia_of(outline: np.ndarray) -> float:
     """Moment of inertia of 2000 kg/m^2 about the centre [kg m^2]."""
     _, centre, _ = moments(outline)
     p = outline - centre
@@ -212,6 +212,10 @@ def mechanisms_by_their_kinematics(deck: Deck, shares: list, within: float) -> N
         near("V", c.potential, (place[:n, :, 1] - rest[:, 1]) @ one.mass * GRAVITY, 1e-5, abs(table.gravity_moment) * table.critical)
         edge, _, _ = core_mechanism.follow(one, [table.critical * (1.0 - 1e-6), table.critical * (1.0 + 1e-6)])
         rise = (edge[:, :, 1] - rest[:, 1]) @ one.mass
+        limit = float(table.numbers[1])
+        if limit < min(1.59, 2.0 * table.critical * (1.0 - 1e-9)):  # the hinges lock there, not at the greatest rotation looked at
+            last, _, _ = core_mechanism.follow(one, limit / 0.999 * np.array([1.0 - 1e-6, 1.0 + 1e-4]))
+            must(bool(np.isfinite(last[0]).all()) and not np.isfinite(last[1]).any(), "the hinges lock elsewhere")
         must(
             bool(rise.max() >= ((place[:n, :, 1] - rest[:, 1]) @ one.mass).max() * (1.0 - 1e-6)),
             "no unstable equilibrium at the critical rotation",

@@ -161,7 +161,7 @@ def test_panel_as_stones() -> None:
     tilt, thrust = run({**PANEL, **UNIT, "openings": [WINDOW]}, {"kind": "tilt"}, {"kind": "thrust", "gamma": 0.1})
     assert tilt.status == "ok" and 0.2 < tilt["collapse_acceleration_g"] < 0.7
     assert "thrusts" not in tilt.results
-    assert thrust["chain"] is None and "no least and greatest thrust are given" in thrust.answer
+    assert thrust["chain"] is None and "no minimum and maximum thrust are given" in thrust.answer
     up = sum(r["vertical_N"] for r in thrust["central"]["reactions"])
     side = sum(r["horizontal_N"] for r in thrust["central"]["reactions"])
     assert up == pytest.approx(thrust["weight_N"], rel=1e-6) and side == pytest.approx(-0.1 * up, rel=1e-5)

@@ -128,6 +128,35 @@ def test_points_of_another_shape_are_refused_or_doubted() -> None:
     assert "mm (95 %) off the" in remark and "more than a tenth of the thickness of 4" in remark and "uncertain" in remark
 
 
+@pytest.mark.parametrize(("shape", "height"), [("wall", 0.06), ("barrel", 0.07)])
+def test_a_bulge_over_a_tenth_of_a_face_counts_in_its_misfit(shape: str, height: float) -> None:
+    """Its points leave the plane or the circle in one region: they do not shape the face, and they are not stray points."""
+    points = wall_cloud(14) if shape == "wall" else barrel_cloud(14)
+    clean = Scan(shape=shape, courses=3).solids(points, 2000.0, "scan.ply")
+    along, across, width = (points[:, 0], points[:, 2], 0.3 * 4.0) if shape == "wall" else (points[:, 1], points[:, 0], 0.35 * 5.0)
+    patch = (np.abs(along - 2.5) < 0.5 * width) & (np.abs(across - (2.0 if shape == "wall" else 0.5)) < (0.5 if shape == "wall" else 1.0))
+    if shape == "wall":
+        patch &= points[:, 1] > 0.2 + 0.01 * points[:, 2]
+        points[patch, 1] += height
+    else:
+        radius = np.hypot(points[:, 0], points[:, 2])
+        patch &= radius < 4.25
+        points[patch] *= np.where(np.arange(3) == 1, 1.0, (1.0 - height / radius[patch])[:, None])
+    assert 0.08 < patch.sum() / (0.5 * len(points)) < 0.15
+    bulged = Scan(shape=shape, courses=3).solids(points, 2000.0, "scan.ply")
+    assert clean.remarks == () and bulged.measures == pytest.approx(clean.measures, rel=2e-3, abs=2e-2)
+    (remark,) = bulged.remarks
+    stated = float(remark.split("up to ")[1].split(" mm")[0])
+    assert stated == pytest.approx(1e3 * height, abs=3e3 * NOISE) and "more than a tenth of the thickness" in remark
+
+
+def test_a_bulge_at_the_top_does_not_shorten_a_wall() -> None:
+    points = wall_cloud(15)
+    points[points[:, 2] > 2.7, 1] += 0.06
+    made = Scan(shape="wall", courses=3).solids(points, 2000.0, "scan.ply")
+    assert made.measures["height_m"] == pytest.approx(3.0, abs=0.02) and "uncertain" in made.remarks[0]
+
+
 def test_stray_points_far_away_change_nothing() -> None:
     far = np.array([[40.0, 0.0, 0.0], [0.0, 0.0, 30.0]])
     wall, barrel = wall_cloud(12), barrel_cloud(12)

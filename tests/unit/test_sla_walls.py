@@ -98,7 +98,7 @@ def test_repetitions_give_a_band() -> None:
     data["analysis"][0]["seeds"] = [4]
     assert run_deck(data).results["scatter"]["peak_loads_N"] == peaks[:1]
     assert scatter["scatter_load"].shape[0] == 2
-    assert "seeds require a random mesh" in run_deck(wall(events=5, seeds=[1])).reason
+    assert "`seeds` require a random mesh" in run_deck(wall(events=5, seeds=[1])).reason
 
 
 def test_strength_field_has_its_mean_and_scatter() -> None:

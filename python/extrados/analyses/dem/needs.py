@@ -6,7 +6,7 @@ from functools import partial
 from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
-from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_shoves, refuse_stones
+from extrados.analyses.dem.solid_model import refusals, refuse_shoves, refuse_stones
 from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.model.errors import BadGeometry, Key
@@ -74,16 +74,15 @@ def _rigid(options: tables.DemTable) -> bool:
 def _refuse_bars(building: Building) -> None:
     key = ("analysis", "merge")
     if not isinstance(building.blocks(), ArchAssembly):
-        raise Refused('merge = "three-bars" requires an arch', key)
+        raise Refused('merge = "three-bars" is only for arches: remove `merge`', key)
     if building.initial.rotation_ratio:
-        raise Refused('voussoirs that are merged cannot start with a rotation: with [initial] rotation_ratio, give merge = "none"', key)
+        raise Refused(('merged voussoirs cannot start with a rotation: with `rotation_ratio` of [initial], give merge = "none"'), key)
 
 
 def _refuse_springs(building: Building) -> None:
     """Refused where rigid contacts are asked for what only springs have."""
-    refuse_mortar(building)
     if building.supports.stiffness is not None:
-        raise Refused(f"{RIGID} have no springs", ("supports", "stiffness"))
+        raise Refused('rigid contacts (solver = "nonsmooth", or cross_check) have no springs', ("supports", "stiffness"))
 
 
 def _refuse_restitution(building: Building) -> None:
@@ -102,7 +101,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
 
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
-    yield lambda: refuse_stones(building, stones, _rigid(options))
+    yield lambda: refuse_stones(stones)
     yield lambda: refuse_rigid_ties(building)
     yield building.strands
     yield lambda: damper_strands(building)

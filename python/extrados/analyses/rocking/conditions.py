@@ -49,11 +49,11 @@ def not_checked(rocker: Rocker) -> str:
     if isinstance(rocker.model, StackModel | SoftBaseModel):
         return ""
     if watch is None or not len(watch.joints):
-        return "Friction and thrust line are not checked, because the forces at the hinges are statically indeterminate."
+        return "Sliding and the thrust line are not checked, because the forces at the hinges are statically indeterminate."
     if watch.unknown:
         return (
-            f"Friction and thrust line are checked at {len(watch.joints)} of {len(watch.assembly.a)} joints, because the "
-            "forces at the other joints are statically indeterminate."
+            f"Sliding and the thrust line are checked at {len(watch.joints)} of {len(watch.assembly.a)} "
+            "joints only, because the forces at the other joints are statically indeterminate."
         )
     return ""
 
