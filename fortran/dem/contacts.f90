@@ -21,6 +21,8 @@ module dem_contacts
       real(wp) :: dash_s = 0.0_wp       !! shear dashpot force [N]
       real(wp) :: friction_loss = 0.0_wp  !! [J]
       real(wp) :: damping_loss = 0.0_wp   !! [J]
+      real(wp) :: slip(2) = 0.0_wp      !! on rigid contacts: sliding velocities of the last step and of the one before [m/s]
+      real(wp) :: late = 0.0_wp         !! shear impulse that acts in the next step, see dem_rigid [N s]
       logical :: closed = .false.
       logical :: bonded = .false.       !! cohesion and tension not lost yet
    end type contact_point
