@@ -42,6 +42,7 @@ module dem_contacts
       real(wp) :: ax = 0.0_wp, ay = 0.0_wp          !! end of the incident edge, in body 2: low end [m]
       real(wp) :: bx = 0.0_wp, by = 0.0_wp          !! start of the incident edge: high end [m]
       real(wp) :: support_work = 0.0_wp             !! done by moving supports [J]
+      real(wp) :: crushed = 0.0_wp                  !! energy that crushing corners hold, see dem_crushing [J]
       real(wp) :: loss_before(2) = 0.0_wp           !! friction, damping of contacts that are gone [J]
       type(contact_point) :: point(2)
    end type contact_pair
@@ -76,6 +77,7 @@ module dem_contacts
       real(wp) :: x(2), y(2)            !! contact points [m]
       real(wp) :: gap(2)                !! distances, negative where they overlap [m]
       real(wp) :: width                 !! of the common stretch [m]
+      logical :: propped(2) = .false.   !! without dashpot: open but pressed, or crushed altogether
    end type overlap
 
 contains
