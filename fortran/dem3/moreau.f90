@@ -215,8 +215,8 @@ contains
             if (.not. any(abs(pair%point(i)%late) > 0.0_wp)) cycle
             do side = 1, 2
                associate (at => freedoms * problem%node(side, n))
-                  if (at > 0) problem%free(at - 5:at) = problem%free(at - 5:at) + matmul(problem%row(:, side, :, n), &
-                     matmul(pair%point(i)%late, frame)) / problem%mass(at - 5:at)
+                  if (at > 0) problem%free(at - 5:at) = problem%free(at - 5:at) + matmul(problem%row(1:freedoms, side, &
+                     1:in_space, n), matmul(pair%point(i)%late, frame)) / problem%mass(at - 5:at)
                end associate
             end do
          end do
@@ -312,7 +312,7 @@ contains
             if (.not. one%is_out) then
                n = n + 1
                frame = frame_of(axis)
-               force = matmul(frame(:, along_tangent:), problem%impulse(along_tangent:, n)) / model%kick
+               force = matmul(frame(:, along_tangent:), problem%impulse(along_tangent:in_space, n)) / model%kick
                if (norm2(force) > yields * one%strength) then
                   u = find_point_rate(problem, n)
                   one%slip = one%slip + matmul(model%step * matmul(frame(:, along_tangent:), u(along_tangent:)), a%turn)
@@ -363,8 +363,8 @@ contains
             if (number(i) > 0) then
                if (gives_way(model%rigid, model%model_clock, number(i))) w = shear_of(problem, number(i), &
                   find_point_rate(problem, number(i)))
-               problem%impulse(along_tangent:, number(i)) = problem%impulse(along_tangent:, number(i)) &
-                  + matmul(point%late, problem%row(1:3, 2, along_tangent:, number(i)))
+               problem%impulse(along_tangent:in_space, number(i)) = problem%impulse(along_tangent:in_space, number(i)) &
+                  + matmul(point%late, problem%row(1:3, 2, along_tangent:in_space, number(i)))
             end if
             point%slip(:, 2) = merge(old, 0.0_wp, dot_product(w, old) > 0.0_wp)
             point%slip(:, 1) = w
@@ -395,7 +395,7 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: value(in_space)
       real(wp) :: shear(3)
-      shear = matmul(problem%row(1:3, 2, along_tangent:, k), value(along_tangent:))
+      shear = matmul(problem%row(1:3, 2, along_tangent:in_space, k), value(along_tangent:))
    end function shear_of
 
    !> A force at a place, added to a body unless it is a support

@@ -159,6 +159,9 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     return movement
 
 
+OPENING = "opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip"
+
+
 def _any_structure(context: Context, movement: np.ndarray) -> Result:
     """The joints that open under movements (joints, 3) of supports, all at once and small."""
     building = context.building
@@ -205,12 +208,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
         **tie_arrays(building, loads, {"settled": found.state}),
         **state_arrays(assembly, "settled", found.state, "under moving supports"),
         "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
-        "settled_opening": Array(
-            motion,
-            ("joint", "component"),
-            "m",
-            ("opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip"),
-        ),
+        "settled_opening": Array(motion, ("joint", "component"), "m", OPENING),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }
     result.tables = {
@@ -232,9 +230,8 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
-            "dilatant friction: a joint that slides also opens, by its friction times the slip. States "
-            "without dilatancy, which may carry less, are not calculated. For joints that only open, give "
-            '`friction = "no-sliding"`'
+            "dilatant friction: a joint that slides also opens, by its friction times the slip. States without dilatancy, which may carry "
+            'less, are not calculated. For joints that only open, give `friction = "no-sliding"`'
         )
     result.answer = _opened_in_words(building.require_structure().word, movement, opened, len(slid), found.work) + spoken_ties(
         result.of(out.MovingSupports).ties

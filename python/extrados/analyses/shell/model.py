@@ -185,10 +185,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         )
     if options.without_equilibrium != "continue" and any(joint.floor for joint in mesh.joints):
         raise Refused(
-            (
-                'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove '
-                "`without_equilibrium`, or the seats"
-            ),
+            'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove `without_equilibrium`, or the seats',
             ("analysis", "without_equilibrium"),
         )
     mass = mesh.mass()
