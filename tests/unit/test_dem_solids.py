@@ -64,7 +64,7 @@ def test_energies_of_a_run_in_space_are_drawn(tmp_path) -> None:
     deck = tmp_path / "deck.toml"
     deck.write_text(f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.02\n')
     drawn = extrados.run(deck).plot("dem")
-    assert "The error of the balance is" in drawn.captions["dem-energy"]
+    assert "The balance has an error of" in drawn.captions["dem-energy"]
 
 
 def test_one_contact_and_its_damper_are_drawn(tmp_path) -> None:

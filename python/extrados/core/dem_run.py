@@ -230,7 +230,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         real("places of ties", ties.place, (anchors, None))
         bodies = integers("bodies of ties", np.asarray(ties.body) + 1, anchors)
         if np.any(bodies < 0) or np.any(bodies > self.count):
-            raise IndexError(f"a tie has the number of a body that does not exist; the model has {self.count} bodies")
+            raise IndexError(f"a tie refers to the number of a body that does not exist; the model has {self.count} bodies")
         if not np.bincount(integers("points of ties", ties.point, anchors)).all():
             raise ValueError("a point of a tie has no anchor body")
         on = np.flatnonzero(ties.body >= 0)
@@ -323,14 +323,14 @@ class BodyModel(Owner, ABC, Generic[Found]):
             times = np.arange(round(o.end_time / o.output_step * (1 - 1e-12)) + 1) * o.output_step
         wanted = real("times", times, (None,))
         if not len(wanted) or np.any(np.diff(wanted) < 0.0):
-            raise ValueError("output times must increase, and at least one is required")
+            raise ValueError("output times must increase, and at least one output time is required")
         for number in (motion, across or 0):
             if not 0 <= number < len(motions):
                 raise IndexError(f"motion number {number} does not exist: the set has {len(motions)} motions")
         if across is not None and not self.in_space:
             raise ValueError("a plane model takes one horizontal component only")
         if not np.isfinite(scale):
-            raise ValueError(f"scale is {scale}, expected a number")
+            raise ValueError(f"the scale factor of the motion is {scale}, expected a number")
         other = 0 if across is None else int(across) + 1
         where = (self.handle, motions.handle, int(motion) + 1, other, float(scale))
         steps = FIRST_PAUSE if watch else 0
@@ -378,7 +378,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         if status == status_code("out_of_memory"):
             check(status, "state of the run")
         if status != status_code("ok"):
-            raise ValueError("this state belongs to a run of another model, to other times or to another build")
+            raise ValueError("this saved state belongs to a run of another model, with other output times, or of another build of extrados")
 
     @abstractmethod
     def _last_run(self, interrupted: bool) -> Found:

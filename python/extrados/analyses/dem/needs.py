@@ -78,9 +78,9 @@ def _rigid(options: tables.DemTable) -> bool:
 def _refuse_bars(building: Building) -> None:
     key = ("analysis", "merge")
     if not isinstance(building.blocks(), ArchAssembly):
-        raise Refused('merge = "three-bars" requires an arch', key)
+        raise Refused('merge = "three-bars" is only for arches: remove `merge`', key)
     if building.initial.rotation_ratio:
-        raise Refused('voussoirs that are merged cannot start with a rotation: with [initial] rotation_ratio, give merge = "none"', key)
+        raise Refused(('merged voussoirs cannot start with a rotation: with `rotation_ratio` of [initial], give merge = "none"'), key)
 
 
 def _refuse_springs(building: Building) -> None:
