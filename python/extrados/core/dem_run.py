@@ -33,7 +33,7 @@ STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic
 @dataclass(frozen=True)
 class Law:
     """A type of joint. Stiffnesses [Pa/m]; cohesion and tension of mortar, lost at the first failure [Pa]; damping: beta of
-    stiffness-proportional damping [s]."""
+    stiffness-proportional damping [s]; strength: compressive strength by which corners crush, in the plane, 0 none [Pa]."""
 
     normal_stiffness: float
     shear_stiffness: float
@@ -41,12 +41,15 @@ class Law:
     cohesion: float = field(default=0.0, kw_only=True)
     tension: float = field(default=0.0, kw_only=True)
     damping: float = field(default=0.0, kw_only=True)
+    strength: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
             raise ValueError(f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0")
-        if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
-            raise ValueError("friction, cohesion, tension and damping of a joint must be 0 or above")
+        if min(self.friction, self.cohesion, self.tension, self.damping, self.strength) < 0.0:
+            raise ValueError("friction, cohesion, tension, damping and strength of a joint must be 0 or above")
+        if self.strength > 0.0 and max(self.cohesion, self.tension) > 0.0:
+            raise ValueError("a joint whose corners crush has no mortar")
 
 
 @dataclass(frozen=True)
@@ -266,7 +269,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
             self.handle,
             *(
                 real(name, [getattr(law, name) for law in laws], (len(laws),))
-                for name in ("normal_stiffness", "shear_stiffness", "friction", "cohesion", "tension", "damping")
+                for name in ("normal_stiffness", "shear_stiffness", "friction", "cohesion", "tension", "damping", "strength")
             ),
         )
         check(status, "laws of the joints")

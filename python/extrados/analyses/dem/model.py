@@ -44,12 +44,14 @@ class JointValues(ContactValues):
 
 @dataclass(frozen=True)
 class Model:
-    """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry."""
+    """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry. strength: at which the corners of joints
+    crush, 0 never [Pa]."""
 
     assembly: Assembly
     rigid: RigidBodies
     values: JointValues
     ties: ElementTies = NO_TIES
+    strength: float = 0.0
 
     @property
     def count(self) -> int:
@@ -72,7 +74,7 @@ class Model:
         return float(np.ptp(np.concatenate(self.assembly.outlines), axis=0).max())
 
     def bodies(self, values: JointValues | None = None) -> dem.Bodies:
-        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
+        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar and crushing."""
         v = values or self.values
 
         def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
@@ -85,6 +87,7 @@ class Model:
             if pair is None:
                 continue
             one = law(v.stiffness[j], v.shear_stiffness[j], v.friction[j], v.cohesion[j], v.tension[j])
+            one = replace(one, strength=self.strength)
             if one not in numbers:
                 numbers[one] = len(laws)
                 laws.append(one)
@@ -139,6 +142,8 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     if options.rigid:
         return found + doubts_of_rigid_mortar(model.values)
     found += doubts_of_springs(values or model.values)
+    if model.strength:
+        found.append("crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected")
     if options.mass_damping > 0.0:
         found.append(
             "mass-proportional damping acts like viscous air around a rocking block. This has no physical "

@@ -123,7 +123,7 @@ class DemTable(BuildingAnalysis):
     def _one_solver(self) -> "DemTable":
         """What only the other solver knows is refused."""
         given = self.model_fields_set
-        if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness"})):
+        if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness", "crushing"})):
             raise ValueError(f'{wrong[0]} is used only with solver = "compliant": rigid contacts have no stiffness and no damping')
         if not self.rigid and (wrong := sorted(given & {"rebound", "quasi_static"})):
             raise ValueError(f'{wrong[0]} needs solver = "nonsmooth"')
@@ -142,11 +142,25 @@ class SpatialDem(DemTable):
         le=360,
     )
 
+    crushing: bool = key(
+        False,
+        "include crushing of the corners of joints, which moves hinges inward: the pressure is at most the compressive strength of the "
+        "material. For plane sections on springs, without mortar",
+    )
+
     @property
     def way(self) -> tuple[float, float, float]:
         """Unit vector of the horizontal motion."""
         turn = math.radians(self.direction or 0.0)
         return (math.cos(turn), math.sin(turn), 0.0)
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Corners that crush depend on the strength."""
+        return {**super().rests_on(building), **({"material.compressive_strength": None} if self.crushing else {})}
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Corners crush at the strength of the material."""
+        return super().reckons_with(building) | ({"material.compressive_strength"} if self.crushing else set())
 
 
 class Dem(SpatialDem, Animated):

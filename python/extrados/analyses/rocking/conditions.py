@@ -160,14 +160,12 @@ def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     """The same of two stacked blocks, and on a compliant base."""
     found = []
     soft = isinstance(rocker.model, SoftBaseModel)
-    if counted.sliding and (np.isfinite(counted.friction) or not soft):
+    if counted.sliding:
         share = _share(counted.sliding, counted.runs, runs)
+        requires = f": rocking requires up to {counted.friction:.2f}" if np.isfinite(counted.friction) else ""
         found.append(
-            (
-                f"Friction {friction_of(rocker):.2f} is too low {share}: rocking requires up to {counted.friction:.2f}. Blocks "
-                "slide first. Use dem, or check the friction."
-            )
-            if np.isfinite(counted.friction)
+            f"Friction {friction_of(rocker):.2f} is too low {share}{requires}. Blocks slide first. Use dem, or check the friction."
+            if requires or soft
             else f"A joint slides or opens over its whole length {share}. Use dem."
         )
     if counted.elsewhere:

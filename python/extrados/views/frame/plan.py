@@ -66,20 +66,7 @@ class _Maker(Division):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
         self.remarks += plan.floor_remarks
-        if plan.beds:
-            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
-        if plan.ring_beams:
-            elastic = [b for b in plan.ring_beams if b.reinforcement is None]
-            if elastic:
-                self.remarks.append(
-                    "Ring beams of [[structure.ring_beams]] without reinforcement remain elastic: check them for the greatest moment."
-                )
-            weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
-            if weak:
-                self.remarks.append(
-                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} has no "
-                    "`tensile_strength`: spandrels beside them have the full strut against a tie. Give it, or check the reinforcement."
-                )
+        self._remark_beams()
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
@@ -133,6 +120,25 @@ class _Maker(Division):
             self._unbonded(),
             self._traces(),
         )
+
+    def _remark_beams(self) -> None:
+        """Remarks on bed joints and ring beams, which the frame simplifies."""
+        plan = self.plan
+        if plan.beds:
+            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
+        if plan.ring_beams:
+            elastic = [b for b in plan.ring_beams if b.reinforcement is None]
+            if elastic:
+                self.remarks.append(
+                    "Ring beams of [[structure.ring_beams]] without reinforcement remain elastic: check them for the greatest moment."
+                )
+            weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
+            if weak:
+                self.remarks.append(
+                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
+                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the strength, or check the "
+                    "reinforcement."
+                )
 
     def _traces(self) -> list[Trace]:
         found = []
