@@ -195,7 +195,7 @@ def _interfaces(
     for strength, energy in (("tension", "fracture_energy"), ("cohesion", "shear_energy")):
         if (missing := np.flatnonzero((value[strength] > 0.0) & np.isnan(value[energy]))).size:
             raise BadGeometry(
-                f"joint '{assembly.joint_names[missing[0]]}' has a {strength} but no {energy}: give joints.{energy}, or {strength} = 0"
+                f"joint '{assembly.joint_names[missing[0]]}' has a `{strength}` but no `{energy}`: give `{energy}` of [joints], or {strength} = 0"
             )
     if (missing := np.flatnonzero(np.isnan(value["compressive_strength"]) != np.isnan(value["crushing_energy"]))).size:
         raise BadGeometry(f"joint '{assembly.joint_names[missing[0]]}': `compressive_strength` and `crushing_energy` require each other")
