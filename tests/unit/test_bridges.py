@@ -659,7 +659,7 @@ def test_any_load_on_a_bare_ring_leaves_the_verdict_open(load: dict[str, Any]) -
 
 @pytest.mark.parametrize("factors", [{}, {"live": 1.35}, {"masonry": 0.95}, {"strength": 2.0}, {"friction": 1.1}])
 def test_a_verdict_without_partial_factors_says_so(factors: dict[str, float]) -> None:
-    words = "All partial factors are 1.0: loads and strengths are characteristic, without the safety margin of a code."
+    words = "All partial factors are 1.0: loads and strengths are characteristic values, without the safety margin of a code."
     for found in (run(moving(train="LM1", factors=factors), depth=4.0, fill={"cover": 0.4}), ring(force="10 kN", factors=factors)):
         assert (words in found.verdict.statement) == (words in found.answer) == (not factors)
 

@@ -81,7 +81,7 @@ def test_components_must_fit(tmp_path: Path, three: list[Path]) -> None:
     with pytest.raises(RecordError, match="two components"):
         deck_motion(tmp_path, kind="record", file="first.at2", vertical="first.at2")
     for keys in ({"second": "second.at2"}, {"angle": 30.0}):
-        with pytest.raises(DeckError, match="angle` requires second"):
+        with pytest.raises(DeckError, match="angle` requires `second`"):
             deck_motion(tmp_path, kind="record", file="first.at2", **keys)
 
 

@@ -65,7 +65,7 @@ def test_good_deck() -> None:
         ("embrace = 157.5", "embrace = 157.5\nfloat = 1", 7, ["unknown key"]),
         ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'energy-safe' or 'inelastic', or", "number"]),
         ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
-        ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound` requires abutting_wall"]),
+        ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound` requires `abutting_wall`"]),
         (
             "voussoirs = 7",
             "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]",

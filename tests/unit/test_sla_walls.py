@@ -77,7 +77,7 @@ def test_outline_from_a_drawing(tmp_path) -> None:
     area = 3.0 * 1.8 + 0.5 * 3.0 * 0.8 - 0.8**2
     assert result.results["reference_load_N"] == pytest.approx(1950.0 * 0.2 * area, rel=1e-6)
     del data["structure"]["outline"]
-    with pytest.raises(DeckError, match="width and height are missing"):
+    with pytest.raises(DeckError, match="`width` and `height` are missing"):
         make_deck(data, tmp_path)
     data["structure"] |= {"outline": "gable.dxf", "width": 3.0}
     with pytest.raises(DeckError, match="an outline replaces width"):
@@ -98,7 +98,7 @@ def test_repetitions_give_a_band() -> None:
     data["analysis"][0]["seeds"] = [4]
     assert run_deck(data).results["scatter"]["peak_loads_N"] == peaks[:1]
     assert scatter["scatter_load"].shape[0] == 2
-    assert "seeds require a random mesh" in run_deck(wall(events=5, seeds=[1])).reason
+    assert "`seeds` require a random mesh" in run_deck(wall(events=5, seeds=[1])).reason
 
 
 def test_strength_field_has_its_mean_and_scatter() -> None:

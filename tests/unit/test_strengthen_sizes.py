@@ -93,7 +93,7 @@ def test_a_probability_is_met_under_the_same_motions():
         ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "prestress": "1 kN"}]}, "does not depend on prestress"),
         ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "places": 4}]}, "second end of the range"),
         ({"by": "local-mechanism", "safety_factor": 1.0, "options": {"mechanisms": "facade"}}, "has no key 'mechanisms'"),
-        ({"by": "code-checks", "safety_factor": 1.0}, "requires ties or changes"),
+        ({"by": "code-checks", "safety_factor": 1.0}, "requires `ties` or `changes`"),
         ({"by": "code-checks", "safety_factor": 1.0, "ties": [ANCHOR]}, "give yield_force"),
         ({"acceleration": "0.3 g", "levels": [1.0, 2.0]}, "needs fragility"),
         ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "anchorage": {"plate_width": 0.3}}]}, "plate_height"),

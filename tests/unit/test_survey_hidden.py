@@ -53,7 +53,7 @@ def hidden(document: Any, space: Any) -> None:
 
 
 HIDDEN = (
-    "not read, because the drawing does not display it: 1 of layer '0' (reference to another drawing), 7 of layer 'OLD' (frozen), "
+    "entities that the drawing does not display are not read: 1 of layer '0' (reference to another drawing), 7 of layer 'OLD' (frozen), "
     "4 of layer 'SKETCH' (off), 5 of layer 'STONE' (invisible)"
 )
 

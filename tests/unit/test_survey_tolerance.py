@@ -87,7 +87,7 @@ def test_random_surveys_give_a_band() -> None:
             "analysis": {"kind": "imperfections"},
         }
     )
-    assert "give the key deviation" in run_analyses(Context(arch, threads=1))[0].reason
+    assert "give the key `deviation`" in run_analyses(Context(arch, threads=1))[0].reason
     assert "1/4 of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
 
 

@@ -82,7 +82,7 @@ def _of_solids(building: Building, options: Imperfections, deviation: float) -> 
     assembly = building.solids()
     nominal = solid_variation.capacities(building, options, assembly)
     if not nominal["answered"]:
-        raise Refused("no capacity is found for the blocks as given: `tilt` gives the reason", WHOLE)
+        raise Refused("no capacity is found for the blocks of the deck: `tilt` gives the reason", WHOLE)
     given = float(nominal["gamma"].min())
     if not np.isfinite(given):
         raise CannotStand("certificate: a motion that no contact hinders and by which the weights do work; `tilt` shows it")
@@ -128,7 +128,7 @@ def run(context: Context, options: Imperfections) -> Result:
             gamma,
             ("survey", "sense"),
             "g",
-            "capacity in both senses (towards +x or along the direction, then opposite); NaN if a geometry cannot stand",
+            ("capacity in both senses (towards +x or along the direction; then opposite); NaN if a geometry cannot stand"),
         ),
     }
     senses = ("along", "opposite") if in_space(building, options) else ("to_right", "to_left")
@@ -146,10 +146,13 @@ def run(context: Context, options: Imperfections) -> Result:
         result.answer += f" In {r.upper_bounds} geometries joints slide, so the capacity is an {out.DILATANT}."
     if given < low:
         result.warnings.append(
-            f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. Where "
-            f"blocks are laid in bond, a hinge forms at the outermost of several corners. Random deviations of the "
-            f"corners move the hinge outward and raise the capacity. The verdict uses the capacity of the given geometry"
+            f"The capacity of the given geometry, {given:.4f} g, is below the range of the random geometries. In "
+            "a bond, several corners can meet at one hinge, and the hinge forms at the outermost one. "
+            "Random deviations of the corners move the hinge outward and raise the capacity. The verdict "
+            "uses the capacity of the given geometry"
         )
     if r.without_answer:
-        result.warnings.append(f"{r.without_answer} random geometries are not counted, because their linear programmes gave no result")
+        result.warnings.append(
+            f"{r.without_answer} random geometries are not counted, because they gave no result (no solution of the linear programmes)"
+        )
     return result

@@ -104,7 +104,7 @@ def _way_arrays(options: MovingSupports, states: list[SupportState]) -> dict[str
     """The states on the way of the support to the collapse."""
     movement = np.array([s.movement for s in states])
     pose_axes, line_axes = ("block", "component"), ("joint", "axis")
-    places, line = "places of the centroids, rotations", "thrust line on the displaced joints"
+    places, line = "places of the centroids, rotations", "thrust line, drawn through the displaced joints"
 
     def poses(index: Iterable[int], axis: str) -> Array:
         return Array(np.array([states[i].pose for i in index]), (axis, *pose_axes), "m, m, rad", places)
@@ -116,7 +116,9 @@ def _way_arrays(options: MovingSupports, states: list[SupportState]) -> dict[str
     arrays = {
         "movement": Array(movement, ("movement",), "m", "movement of the right support"),
         "force": Array(np.array([s.force for s in states]), ("movement", "axis"), "N", "force of the arch on the right support"),
-        "energy": Array(np.array([s.energy for s in states]), ("movement",), "J", "increase of the potential energy from rest"),
+        "energy": Array(
+            np.array([s.energy for s in states]), ("movement",), "J", "increase of the potential energy from the initial position"
+        ),
         "hinge": Array(np.array([[h[0] for h in s.hinges] for s in states]), ("movement", "hinge_number"), "", "joints that hinge"),
         "shown_movement": Array(movement[shown], ("shown",), "m", "movements drawn"),
         "shown_pose": poses(shown, "shown"),
@@ -143,8 +145,10 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            "the structure has only one support, whose movement moves all of it. Give [[initial.movements]] for the joints "
-            "on the ground that move",
+            (
+                "the structure has only one support, so its movement moves the whole structure. Give "
+                "[[initial.movements]] for the joints on the ground that move"
+            ),
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -205,7 +209,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
             motion,
             ("joint", "component"),
             "m",
-            "opening at the first end (intrados of an arch) and at the second end (extrados) of each joint, and slip",
+            ("opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip"),
         ),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }
@@ -228,8 +232,9 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
-            "dilatant friction: a joint that slides also opens by its friction times the slip. States without dilatancy, "
-            'which may carry less, are not calculated. To consider joints that only open, give `friction = "no-sliding"`'
+            "dilatant friction: a joint that slides also opens, by its friction times the slip. States "
+            "without dilatancy, which may carry less, are not calculated. For joints that only open, give "
+            '`friction = "no-sliding"`'
         )
     result.answer = _opened_in_words(building.require_structure().word, movement, opened, len(slid), found.work) + spoken_ties(
         result.of(out.MovingSupports).ties

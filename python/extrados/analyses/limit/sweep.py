@@ -305,8 +305,10 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
             moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
     of = [number for number, count in blocks.items() for _ in range(count)]
     return {
-        "example_mechanism": Array(np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each block illustrates"),
-        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number/block)"),
+        "example_mechanism": Array(
+            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each of these blocks shows"
+        ),
+        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number of the mechanism / block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
 
@@ -355,9 +357,9 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if not located:
-        text += " Changes of the mechanism between these values are not located: locate = true locates them."
+        text += " The values at which the mechanism changes are not located precisely: `locate = true` locates them."
     if locked:
-        text += f" At {locked} the structure locks: beyond this value no load of this kind causes collapse."
+        text += f" At {locked} the structure locks: beyond this value a load of this kind never causes collapse."
     if r.stable_limits:
         text += f" The range in which the structure stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
     counts = {status: sum(gap.status == status for gap in r.gaps) for status in ("cannot-stand", "no-answer")}

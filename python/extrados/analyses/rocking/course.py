@@ -83,7 +83,7 @@ def build_result(context: Context, r: rocking.Course, course: Course, **further:
     if r.events_found > len(r.events):
         result.warnings.append(f"only the first {len(r.events)} of {r.events_found} events are saved")
     if not course.settled and not r.interrupted:
-        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s, so the outcome is open: give a later end_time")
+        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s, so the outcome is open: give a later `end_time`")
     results = {
         "rotation_of": course.of,
         "outcome": r.outcome,

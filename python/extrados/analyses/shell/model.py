@@ -185,7 +185,10 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         )
     if options.without_equilibrium != "continue" and any(joint.floor for joint in mesh.joints):
         raise Refused(
-            'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove without_equilibrium, or the seats',
+            (
+                'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove '
+                "`without_equilibrium`, or the seats"
+            ),
             ("analysis", "without_equilibrium"),
         )
     mass = mesh.mass()
@@ -285,7 +288,7 @@ def _place(mesh: ShellMesh, drive: Drive, what: str) -> np.ndarray:
 def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> list[tuple[int, int, float]]:
     """Freedoms that move by given parts of one displacement."""
     if np.abs(along).max() < 1.0:
-        raise BadGeometry("drives: a prescribed displacement goes along x or y: direction is 0, 90, 180 or 270")
+        raise BadGeometry("drives: an imposed displacement acts along x or y: give direction = 0, 90, 180 or 270")
     axis = int(np.abs(along).argmax())
     tie: dict[int, float] = {}
     for k, drive in enumerate(options.drives):

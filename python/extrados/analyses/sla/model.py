@@ -241,7 +241,7 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         for part in moved.parts:
             common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in common):
-            raise BadGeometry("displacement: every ratio is 0, so nothing moves")
+            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves")
         if len({n for n, _, _ in common}) < len(common):
             raise BadGeometry("two parts of the displacement have a node in common")
         ties.append(common)
@@ -273,8 +273,8 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
     if ratio > MOST_OF_FLOOR / floor:
         raise BadGeometry(
-            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would carry the load. "
-            f"Give at most {MOST_OF_FLOOR / floor:g}"
+            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would "
+            f"carry the load. Give at most {MOST_OF_FLOOR / floor:g}"
         )
     most = MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes
     return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor, options.crack_band_rule == "extent"), ratio
@@ -283,7 +283,7 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
 def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     held, springs = _held(mesh)
     if mesh.has_joints and options.cracking == "isotropic":
-        raise BadGeometry("joints open along their own direction, so isotropic cracking is only for walls without blocks")
+        raise BadGeometry("joints open perpendicular to their own direction, so isotropic cracking is only for walls without blocks")
     constant_loads, reference_loads = loads_of(mesh, options)
     moved = next((load for load in reference_loads if load.kind == "displacement"), None)
     freedoms, common = _freedoms(mesh, held, moved)

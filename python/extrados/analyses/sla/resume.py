@@ -166,8 +166,11 @@ def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) ->
         return get["damage_end"].T
     if traceless is not None:
         raise Refused(
-            f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, because of "
-            f"{traceless}. Saved events: {', '.join(str(e) for e in kept)}. Give others in `states` of the earlier run",
+            (
+                f"resume_event: the damage before event {event} was not saved and cannot be reconstructed, "
+                f"because of {traceless}. Saved events: {', '.join((str(e) for e in kept))}. To save other "
+                "events, name them in `states` of the earlier run"
+            ),
             ("analysis", "resume_event"),
         )
     return damage_before(get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1])

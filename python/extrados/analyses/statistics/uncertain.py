@@ -130,11 +130,14 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
             )
         sized = name not in (*STONES, *BASE, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
-            raise Refused(f"this {structure.word} has no such value; its values are {', '.join(known) or 'none'}", key)
+            raise Refused(f"this {structure.word} has no value of this name; its values are {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
-            "random differences between the blocks make the arch unsymmetric, and the impact rule of the thesis covers only "
-            'symmetric arches: give joints.restitution another value than "thesis"',
+            (
+                "random differences between the blocks make the arch unsymmetric, but the impact rule of the "
+                "thesis covers only symmetric arches: give `restitution` of [joints] another value than "
+                '"thesis"'
+            ),
             ("analysis", "uncertain"),
         )
     if "friction" in names and (building.joints.coefficient is None or any(t.friction is not None for t in building.joints.types)):

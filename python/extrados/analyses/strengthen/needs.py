@@ -60,13 +60,16 @@ def _refuse(text: str, key: tuple[str | int, ...]) -> None:
 
 def _refuse_directions(options: Strengthen) -> None:
     if options.directions:
-        raise Refused("the key `directions` is only for blocks in space: give direction", ("analysis", "directions"))
+        raise Refused(
+            ("the key `directions` is only for blocks in space: to analyse the blocks in space, give `direction`"),
+            ("analysis", "directions"),
+        )
 
 
 def _refuse_without_peak(context: Context) -> None:
     if context.deck.motion is None or is_set(context.deck.motion):
         raise Refused(
-            'safety_factor with by = "tilt" refers to the peak of one motion: give a single [motion], or an acceleration',
+            ('`safety_factor` with by = "tilt" refers to the peak of one motion: give a single [motion], or an `acceleration`'),
             ("analysis", "safety_factor"),
         )
     context.refuse_motion()
@@ -107,6 +110,6 @@ def _refuse_idle(context: Context, options: Strengthen) -> None:
     if options.ties or options.changes:
         return
     if options.by != "tilt":
-        raise Refused(f'by = "{options.by}" requires ties or changes: give the interventions to compare', ("analysis",))
+        raise Refused(f'by = "{options.by}" requires `ties` or `changes`: give the interventions to compare', ("analysis",))
     if not changes and not tie_alternatives(building, options):
-        raise Refused("this structure has no default interventions: give ties or changes", ("analysis",))
+        raise Refused("this structure has no default interventions: give `ties` or `changes`", ("analysis",))

@@ -28,13 +28,14 @@ def closed(
 def told(gaps: np.ndarray, mortar: float, grown: float) -> tuple[str, ...]:
     """The note on gaps [m] that were closed; grown: volume or area of the blocks after over before."""
     if not len(gaps):
-        return (f"mortar_gap {1e3 * mortar:.3g} mm: no joint is drawn as a gap",)
+        return (f"mortar_gap {1000.0 * mortar:.3g} mm: no joint is drawn as a gap, so the key has no effect",)
     least, most = (f"{1e3 * gap:.3g}" for gap in (gaps.min(), gaps.max()))
     return (
         (
-            f"{len(gaps)} joints drawn as gaps of {most if least == most else f'{least} to {most}'} mm were closed (mortar_gap "
-            f"{1e3 * mortar:.3g} mm): the faces on both sides were moved to the middle of the mortar. The volume of the blocks "
-            f"increased by {100.0 * (grown - 1.0):.3g} %, at the density of the blocks"
+            f"{len(gaps)} joints that are drawn as gaps of {(most if least == most else f'{least} to {most}')} "
+            f"mm were closed (mortar_gap {1000.0 * mortar:.3g} mm): the faces on both sides were moved to the "
+            f"middle of the mortar. The volume of the blocks increased by {100.0 * (grown - 1.0):.3g} %, with "
+            "the density of the blocks"
         ),
     )
 

@@ -77,8 +77,9 @@ class _Maker(Division):
             weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
             if weak:
                 self.remarks.append(
-                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} has no "
-                    "tensile_strength: spandrels beside them have the full strut against a tie. Give the strength, or check the reinforcement."
+                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
+                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the "
+                    "strength, or check the reinforcement."
                 )
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
@@ -115,7 +116,9 @@ class _Maker(Division):
         rods = self._rods()
         elements = [self._element(strip) for strip in self.strips]
         for k in sorted(self.idle):
-            self.remarks.append(f"Rod {k + 1} passes no spandrel and joins no walls that move apart: it has no effect on the frame.")
+            self.remarks.append(
+                f"Rod {k + 1} has no effect on the frame: it passes no spandrel, and the walls that it joins do not move apart."
+            )
         return EquivalentFrame(
             plan,
             self.nodes,
@@ -283,17 +286,17 @@ class _Maker(Division):
             middles = a + (b - a) * (np.arange(SLICES) + 0.5) / SLICES
             self.weight += sum(force / SLICES @ self._vector(w, s, floor.storey) for s in middles.tolist())
             self.remarks.append(
-                f"Floor on storey {floor.storey}: the rafters push wall '{self.plan.walls[w].name}' outward with "
-                f"{float(np.hypot(*force)) / (b - a) / 1e3:.3g} kN/m. In the frame the transverse walls resist this thrust: check the wall "
-                "out of its plane with local-mechanism."
+                f"Floor on storey {floor.storey}: the rafters push wall '{self.plan.walls[w].name}' outward with {float(np.hypot(*force)) / (b - a) / 1000.0:.3g} "
+                "kN/m. The transverse walls of the frame resist this thrust: check the wall out of its plane "
+                "with `local-mechanism`."
             )
 
     def _floor(self, floor: StoreyFloor) -> None:
         plan, level = self.plan, floor.storey
         if floor.seat is not None:
             self.remarks.append(
-                f"Floor on storey {level} is connected to its walls in the frame: its seat cannot slide. Out of their planes it restrains no "
-                "wall. `pushover` with shells follows seats."
+                f"Floor on storey {level}: the frame connects this floor to its walls, so its seat cannot slide. "
+                "The floor restrains no wall out of its plane. `pushover` with shells considers seats."
             )
         around = plan.around(floor)
         rows = []
@@ -481,15 +484,18 @@ class _Maker(Division):
         concrete = self.building.materials[beam.material].compressive_strength
         if concrete is None:
             raise BadGeometry(
-                f"ring beam of storey {beam.storey}: its reinforcement requires a compressive_strength in [materials.{beam.material}]",
+                (f"ring beam of storey {beam.storey}: its reinforcement requires `compressive_strength` in [materials.{beam.material}]"),
                 place,
             )
         axis = beam.reinforcement.relative_axis(beam.depth, strip.thickness, concrete)
         if axis > DEEPEST_AXIS:
             raise BadGeometry(
-                f"ring beam of storey {beam.storey}, wall '{wall.name}': with bars of {1e4 * beam.reinforcement.area:.3g} cm^2 in all the "
-                f"neutral axis is at {axis:.2f} of the effective depth; above {DEEPEST_AXIS:g} the concrete crushes before the hinge "
-                "rotates. Reduce reinforcement.area, or increase depth or the compressive_strength of its material",
+                (
+                    f"ring beam of storey {beam.storey}, wall '{wall.name}': with a total of {10000.0 * beam.reinforcement.area:.3g} "
+                    f"cm^2 of bars, the neutral axis is at {axis:.2f} of the effective depth. Above {DEEPEST_AXIS:g}, the "
+                    "concrete crushes before the hinge rotates. Reduce reinforcement.area, or increase the depth or "
+                    "the `compressive_strength` of its material"
+                ),
                 place,
             )
         moment, tension = beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete), beam.reinforcement.tension

@@ -110,8 +110,8 @@ class Mesh:
                 )
             if distance[nearest] > 1e-3 * self.size:
                 self.tell(
-                    f"{what}: no node lies at x {point[0]:g} m, y {point[1]:g} m. The nearest node is used, at "
-                    f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
+                    f"{what}: no node is at x {point[0]:g} m, y {point[1]:g} m. The nearest node is used instead, at {self.xy[nearest, 0]:g}, "
+                    f"{self.xy[nearest, 1]:g}"
                 )
             return np.array([nearest])
         for axis, ends in enumerate((place.x, place.y)):
@@ -242,7 +242,7 @@ def build_mesh(
     warnings = []
     for i, region in enumerate(wall.regions):
         if region.edge is not None:
-            raise BadGeometry("a region is given by x and y, not by an edge")
+            raise BadGeometry("give a region by `x` and `y`, not by `edge`")
         inside = region.holds(centre)
         if not inside.any():
             warnings.append(f"region {i + 1} contains no element")

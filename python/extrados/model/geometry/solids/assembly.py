@@ -335,7 +335,7 @@ def _refuse(names: Sequence[str], met: Touching, a: np.ndarray, b: np.ndarray, c
                 f": the width of its widest contact is {1e3 * narrow[k]:.3g} mm, less than {1e3 * close:.3g} mm{cure}, so this "
                 "contact counts as a line"
             )
-        wrong.append(f"{names[k]} touches neither another block nor the ground{told}")
+        wrong.append(f"{names[k]} touches no other block and not the ground{told}")
     if len(lonely) > MOST_TOLD:
         wrong.append(f"and {len(lonely) - MOST_TOLD} more blocks touch nothing")
     if not lonely and not (b == GROUND).any():
@@ -375,8 +375,9 @@ def _narrow(names: Sequence[str], slivers: Sequence[tuple[int, int, float]], clo
     other = names[two] if two < len(names) else "the ground"
     return (
         (
-            f"{len(slivers)} contacts are narrower than {1e3 * close:.3g} mm (contact_tolerance). They count as lines or "
-            f"points and carry no force. The widest of them has {1e3 * width:.3g} mm ({names[one]} and {other})"
+            f"{len(slivers)} contacts are narrower than {1000.0 * close:.3g} mm (`contact_tolerance`). They count "
+            f"as lines or points and carry no force. The widest of these contacts has a width of {1000.0 * width:.3g} "
+            f"mm ({names[one]} and {other})"
         ),
     )
 
