@@ -215,8 +215,9 @@ contains
             if (.not. any(abs(pair%point(i)%late) > 0.0_wp)) cycle
             do side = 1, 2
                associate (at => freedoms * problem%node(side, n))
-                  if (at > 0) problem%free(at - 5:at) = problem%free(at - 5:at) + matmul(problem%row(:, side, :, n), &
-                     matmul(pair%point(i)%late, frame)) / problem%mass(at - 5:at)
+                  if (at > 0) problem%free(at - 5:at) = problem%free(at - 5:at) &
+                     + (dot_product(pair%point(i)%late, frame(:, 2)) * problem%row(:, side, 2, n) &
+                     + dot_product(pair%point(i)%late, frame(:, 3)) * problem%row(:, side, 3, n)) / problem%mass(at - 5:at)
                end associate
             end do
          end do
@@ -284,7 +285,8 @@ contains
                problem%row(:, :, along_normal, n) = 0.0_wp
                ! The offset from where it slipped to is none at the end of the step, seen from the first body
                offset = matmul(next_away, model%ahead(one%body(1))%turn) - one%slip
-               problem%shift(:, n) = matmul(matmul(a%turn, offset), frame) / model%step - u
+               offset = matmul(a%turn, offset)
+               problem%shift(:, n) = matmul(offset, frame) / model%step - u
                problem%shift(along_normal, n) = 0.0_wp
                problem%friction(n) = 0.0_wp
                problem%cohesion(n) = one%strength * model%kick
@@ -312,10 +314,11 @@ contains
             if (.not. one%is_out) then
                n = n + 1
                frame = frame_of(axis)
-               force = matmul(frame(:, along_tangent:), problem%impulse(along_tangent:, n)) / model%kick
+               force = (problem%impulse(2, n) * frame(:, 2) + problem%impulse(3, n) * frame(:, 3)) / model%kick
                if (norm2(force) > yields * one%strength) then
                   u = find_point_rate(problem, n)
-                  one%slip = one%slip + matmul(model%step * matmul(frame(:, along_tangent:), u(along_tangent:)), a%turn)
+                  u = model%step * (u(2) * frame(:, 2) + u(3) * frame(:, 3))
+                  one%slip = one%slip + matmul(u, a%turn)
                   one%most_slip = max(one%most_slip, norm2(one%slip))
                end if
             end if
@@ -339,7 +342,7 @@ contains
       integer, intent(in) :: number(:)              !! (points) of each in the problem, 0 where it cannot press
       real(wp) :: w(3), old(3), due(3), held, bound, share
       logical :: reverses
-      integer :: i
+      integer :: i, d
       held = 0.0_wp
       bound = 0.0_wp
       do i = 1, pair%points
@@ -363,8 +366,10 @@ contains
             if (number(i) > 0) then
                if (gives_way(model%rigid, model%model_clock, number(i))) w = shear_of(problem, number(i), &
                   find_point_rate(problem, number(i)))
-               problem%impulse(along_tangent:, number(i)) = problem%impulse(along_tangent:, number(i)) &
-                  + matmul(point%late, problem%row(1:3, 2, along_tangent:, number(i)))
+               do d = along_tangent, in_space
+                  problem%impulse(d, number(i)) = problem%impulse(d, number(i)) &
+                     + dot_product(point%late, problem%row(1:3, 2, d, number(i)))
+               end do
             end if
             point%slip(:, 2) = merge(old, 0.0_wp, dot_product(w, old) > 0.0_wp)
             point%slip(:, 1) = w
@@ -395,7 +400,7 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: value(in_space)
       real(wp) :: shear(3)
-      shear = matmul(problem%row(1:3, 2, along_tangent:, k), value(along_tangent:))
+      shear = value(2) * problem%row(1:3, 2, 2, k) + value(3) * problem%row(1:3, 2, 3, k)
    end function shear_of
 
    !> A force at a place, added to a body unless it is a support

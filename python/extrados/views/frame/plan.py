@@ -66,21 +66,7 @@ class _Maker(Division):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
         self.remarks += plan.floor_remarks
-        if plan.beds:
-            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
-        if plan.ring_beams:
-            elastic = [b for b in plan.ring_beams if b.reinforcement is None]
-            if elastic:
-                self.remarks.append(
-                    "Ring beams of [[structure.ring_beams]] without reinforcement remain elastic: check them for the greatest moment."
-                )
-            weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
-            if weak:
-                self.remarks.append(
-                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
-                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the "
-                    "strength, or check the reinforcement."
-                )
+        self._remark_beams()
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
@@ -116,9 +102,7 @@ class _Maker(Division):
         rods = self._rods()
         elements = [self._element(strip) for strip in self.strips]
         for k in sorted(self.idle):
-            self.remarks.append(
-                f"Rod {k + 1} has no effect on the frame: it passes no spandrel, and the walls that it joins do not move apart."
-            )
+            self.remarks.append(f"Rod {k + 1} passes no spandrel and joins no walls that move apart: it has no effect on the frame.")
         return EquivalentFrame(
             plan,
             self.nodes,
@@ -136,6 +120,25 @@ class _Maker(Division):
             self._unbonded(),
             self._traces(),
         )
+
+    def _remark_beams(self) -> None:
+        """Remarks on bed joints and ring beams, which the frame simplifies."""
+        plan = self.plan
+        if plan.beds:
+            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
+        if plan.ring_beams:
+            elastic = [b for b in plan.ring_beams if b.reinforcement is None]
+            if elastic:
+                self.remarks.append(
+                    "Ring beams of [[structure.ring_beams]] without reinforcement remain elastic: check them for the greatest moment."
+                )
+            weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
+            if weak:
+                self.remarks.append(
+                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
+                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the strength, or check the "
+                    "reinforcement."
+                )
 
     def _traces(self) -> list[Trace]:
         found = []
@@ -157,8 +160,10 @@ class _Maker(Division):
         slides = "" if o.shear in ("none", "damage") else f"piers slide at {o.friction:g} times their compression, "
         corners = ", and walls that meet at corners are not bonded" if self.junctions and not o.flange_strength else ""
         return [
-            f"Neither cohesion nor diagonal_strength is given: {slides}spandrels have no strength{corners}. For masonry in mortar, give "
-            "[joints] cohesion, or diagonal_strength in [analysis.frame]."
+            (
+                f"Neither cohesion nor `diagonal_strength` is given: {slides}spandrels have no strength{corners}. "
+                "For masonry in mortar, give [joints] cohesion, or `diagonal_strength` in [analysis.frame]."
+            )
         ]
 
     def _named(self, name: str) -> int:
@@ -484,18 +489,16 @@ class _Maker(Division):
         concrete = self.building.materials[beam.material].compressive_strength
         if concrete is None:
             raise BadGeometry(
-                (f"ring beam of storey {beam.storey}: its reinforcement requires `compressive_strength` in [materials.{beam.material}]"),
+                f"ring beam of storey {beam.storey}: its reinforcement requires `compressive_strength` in [materials.{beam.material}]",
                 place,
             )
         axis = beam.reinforcement.relative_axis(beam.depth, strip.thickness, concrete)
         if axis > DEEPEST_AXIS:
             raise BadGeometry(
-                (
-                    f"ring beam of storey {beam.storey}, wall '{wall.name}': with a total of {10000.0 * beam.reinforcement.area:.3g} "
-                    f"cm^2 of bars, the neutral axis is at {axis:.2f} of the effective depth. Above {DEEPEST_AXIS:g}, the "
-                    "concrete crushes before the hinge rotates. Reduce reinforcement.area, or increase the depth or "
-                    "the `compressive_strength` of its material"
-                ),
+                f"ring beam of storey {beam.storey}, wall '{wall.name}': with a total of {10000.0 * beam.reinforcement.area:.3g} "
+                f"cm^2 of bars, the neutral axis is at {axis:.2f} of the effective depth. Above {DEEPEST_AXIS:g}, the "
+                "concrete crushes before the hinge rotates. Reduce reinforcement.area, or increase the depth or "
+                "the `compressive_strength` of its material",
                 place,
             )
         moment, tension = beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete), beam.reinforcement.tension

@@ -167,7 +167,7 @@ def _rows(
     bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
     if len(bad):
         raise BadGeometry(
-            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' overlaps itself: use a smaller joint_thickness"
+            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' overlaps itself: use a smaller `joint_thickness`"
         )
     materials, index, dry = _joint_materials(building, assembly, thickness)
     normal = assembly.normal[joint]
