@@ -202,9 +202,9 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     weight, acceleration = float(GRAVITY * mass.sum()), None
     if not weight > 0.0:
         raise BadGeometry("the building has no weight: give the material a density")
-    behaviour = core.Behaviour(
-        options.cracking, options.shear_retention, options.closes, MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes
-    )
+    changes = MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes
+    extent = options.crack_band_rule == "extent"
+    behaviour = core.Behaviour(options.cracking, options.shear_retention, options.closes, changes, extent=extent)
     control = _control(mesh, options, along, held)
     model = ShellModel(
         mesh=mesh,

@@ -200,7 +200,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         "this is the default with stages",
         source="thesis 4.3.1",
     )
-    continuation: Literal["newton", "implicit-explicit", "dissipation"] = key("newton", "equilibrium iterations, see sla")
+    continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"] = key("newton", "equilibrium iterations, see sla")
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "numbers of the events whose state is saved, besides the peak and the last event", max_length=200
     )

@@ -41,6 +41,8 @@ PICTURES = 80
 #: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
 #: displacement below which nothing counts as running away, over the extent across the control displacement
 DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
+#: Continuations that begin with the first load
+FROM_THE_START = ("steps", "dissipation")
 #: Part of the work of the loads by which the energies of steps may differ without a warning
 UNBALANCED = 0.06
 #: Part of the greatest load that a step of the arc length may lose without a warning
@@ -591,6 +593,11 @@ class _Run:
                 "confinement, shear retention or bars). The later events are therefore calculated with "
                 '"load-unload".'
             )
+        if self.options.continuation in FROM_THE_START and not self.goes_on:
+            curve.warnings.append(
+                f"`continuation` = {self.options.continuation} had no effect: equilibrium iterations can follow only rotating cracks of "
+                "isotropic masonry, and joints. The run consists of events."
+            )
         if self.options.continuation == "dissipation":
             self._warn_of_drops(curve)
         steps = events.steps & events.equilibrium
@@ -671,7 +678,7 @@ def run_reference_loads(
     goes_on = options.without_equilibrium == "continue" and core_model.continues and model.continues
     variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
     follow(core_model, model, options.continuation if goes_on else None)
-    if goes_on and (model.steps_alone or options.continuation == "dissipation") and not core_model.iterates:
+    if goes_on and (model.steps_alone or options.continuation in FROM_THE_START) and not core_model.iterates:
         core_model.go_on(core_model.displacement(0.0))
     ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
     if ends_by_drift:
@@ -684,7 +691,7 @@ def run_reference_loads(
 def follow(core_model: core.Model, model: EventModel, how: str | None) -> None:
     """How a stage goes on without equilibrium under its constant loads, see core.Model.follow."""
     reach = 1.0 if how is None else model.reach
-    core_model.follow(how, LONGEST_STEP * reach, RUNAWAY * reach, 1.0 if model.driven else abs(model.unit))
+    core_model.follow("newton" if how == "steps" else how, LONGEST_STEP * reach, RUNAWAY * reach, 1.0 if model.driven else abs(model.unit))
 
 
 def _incremental_stage(

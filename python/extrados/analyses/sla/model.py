@@ -277,7 +277,7 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
             f"carry the load. Give at most {MOST_OF_FLOOR / floor:g}"
         )
     most = MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes
-    return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor), ratio
+    return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor, options.crack_band_rule == "extent"), ratio
 
 
 def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:

@@ -187,9 +187,10 @@ class CrackOptions(Table):
     )
     overshoot: bool = key(True, "true: the first tooth rises above the strength; false: the first tooth ends at the strength")
     crack_band: Length | None = key(None, "width h of the crack band; default: by `crack_band_rule`", gt=0)
-    crack_band_rule: Literal["projected", "area"] = key(
+    crack_band_rule: Literal["projected", "extent", "area"] = key(
         "projected",
-        "rule for the width of the crack band. projected: the width of the element across its crack; area: the "
+        "rule for the width of the crack band. projected: the width of a row of elements across the crack; extent: that of "
+        "the element, for cracks askew to the mesh that open every element on their way; area: the "
         "rule of the thesis, sqrt(2 A) for linear and sqrt(A) for quadratic elements of area A",
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
@@ -219,7 +220,7 @@ class Staged:
         stop_fraction: float
         budget: float | None
         without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"]
-        continuation: Literal["newton", "implicit-explicit", "dissipation"]
+        continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"]
         states: list[int]
         probes: list[float]
 
@@ -351,9 +352,10 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "releases acts on the other points before the load increases again",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
-    continuation: Literal["newton", "implicit-explicit", "dissipation"] = key(
+    continuation: Literal["newton", "steps", "implicit-explicit", "dissipation"] = key(
         "newton",
         "method of the equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
+        "steps: as newton, from the first load on, without events; "
         "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster and less accurate); "
         "dissipation: as newton, from the first load on, with an arc length on dissipated energy where the displacement snaps back",
         source="Oliver, Huespe and Cante 2008; Gutierrez 2004",
