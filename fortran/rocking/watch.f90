@@ -170,8 +170,9 @@ contains
       x = max(q, 0.0_wp) * watch%per_rotation(i)
       drive = horizontal * weight * watch%per_drive(i) + 0.5_wp * real(drives, wp)
       rate = v**2 * weight * watch%per_rate(i)
-      if (x < real(watch%bounded, wp) .and. drive >= 0.0_wp .and. drive < real(drives, wp) .and. rate < real(rates, wp)) &
+      if (x < real(watch%bounded, wp) .and. drive >= 0.0_wp .and. drive < real(drives, wp) .and. rate < real(rates, wp)) then
          cell = cell_number(watch, i, int(rate), int(drive), int(x))
+      end if
    end function cell_at
 
    !> Number of a cell
