@@ -17,6 +17,10 @@
 !> are any within these limits, so that mortar holds as long as some forces in equilibrium do, as in limit analysis. Where a
 !> bonded point moves at a limit, its mortar is lost for good.
 !>
+!> Reversals: where sliding stops within a step and starts again in the opposite direction, the impulses of the step hold the contact
+!> at its end. Friction would have acted against the first direction for a share theta of the step, and against the second for the
+!> rest: mu N h (1 - 2 theta) in sum. The difference acts in the next step, so that the slip is of second order, too.
+!>
 !> Quasi-static: every step starts from rest, so that nothing moves but what is moved or cannot stand, and time waits
 !> until what moves has come to rest.
 module dem_rigid
@@ -30,7 +34,7 @@ module dem_rigid
    implicit none
    private
    public :: rigid_solver, rigid_setting, set_rigid, forget_effort, walk_effort, suitable_step, number_bodies, &
-      solve_step, parting, has_mortar, bear_mortar, gives_way, wait_for_rest
+      solve_step, parting, has_mortar, bear_mortar, gives_way, find_reversal, wait_for_rest
 
    real(wp), parameter :: natural = 0.002_wp       !! of the time in which a block falls by its own size
    real(wp), parameter :: unhurried = 0.1_wp       !! the same without inertia
@@ -38,6 +42,8 @@ module dem_rigid
    integer, parameter :: most_rounds = 200
    real(wp), parameter :: at_rest = 1.0e-4_wp      !! of that velocity
    integer, parameter :: most_waits = 5000
+   !> Of a normal impulse: no impact where it changes by less in a step
+   real(wp), parameter, public :: steady = 0.5_wp
    real(wp), parameter :: recovery = 2.0_wp        !! steps of gravity: velocity at which overlaps are undone
    real(wp), parameter :: gentle = 5.0_wp          !! steps of gravity: slower contacts do not rebound
    real(wp), parameter :: least_gravity = 1.0e-3_wp   !! by which velocities are measured where there is less [m/s^2]
@@ -225,6 +231,26 @@ contains
       logical :: moves
       moves = norm2(find_point_rate(solver%problem, k)) > at_rest * clock%step * solver%gravity
    end function gives_way
+
+   !> Whether sliding stops within a step and starts again in the opposite direction, from the speeds in the last two steps and from
+   !> the friction that holds the contact. Over the weight of the step the load is rho, with old = theta (1 + rho) and
+   !> held = rho - theta (1 + rho) of the friction; it starts again where rho > 1
+   pure subroutine find_reversal(older, old, held, bound, reverses, share)
+      real(wp), intent(in) :: older                 !! speed in the step before the last [m/s]
+      real(wp), intent(in) :: old                   !! speed in the last step [m/s]
+      real(wp), intent(in) :: held                  !! impulse along that motion that holds the contact [N s]
+      real(wp), intent(in) :: bound                 !! greatest friction impulse [N s]
+      logical, intent(out) :: reverses
+      real(wp), intent(out) :: share                !! friction impulse of the step along that motion, over its bound: 1 - 2 theta
+      real(wp) :: fall, brake
+      share = 0.0_wp
+      fall = older - old
+      reverses = old > 0.0_wp .and. fall >= old .and. bound > 0.0_wp .and. held > -bound
+      if (.not. reverses) return
+      brake = (fall - old) / (1.0_wp + held / bound)
+      reverses = fall - brake > brake
+      share = 1.0_wp - 2.0_wp * old / fall
+   end subroutine find_reversal
 
    !> Without inertia time stands still until all has come to rest, or fallen
    pure subroutine wait_for_rest(solver, clock, speed)

@@ -7,7 +7,7 @@
 module dem3_moreau
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_rigid, only : bear_mortar, gives_way, has_mortar, number_bodies, parting, solve_step
+   use dem_rigid, only : bear_mortar, find_reversal, gives_way, has_mortar, number_bodies, parting, solve_step, steady
    use dem3_bodies, only : body, cross, turn_freely
    use dem3_dowels, only : place_dowel
    use dem3_law, only : contact_pair, contact_point
@@ -186,7 +186,7 @@ contains
       type(contact_pair), intent(in) :: pair
       integer, intent(out) :: number(:)             !! (points) of each in the problem, 0 where it cannot press
       real(wp) :: normal(3), frame(3, in_space), gap, next_gap, at(3), next_at(3), u(3), still(3), filled
-      integer :: i, n, who(2)
+      integer :: i, n, side, who(2)
       logical :: bonded
 
       number = 0
@@ -212,6 +212,14 @@ contains
             problem%friction(n) = model%law(pair%law)%friction
             call bear_mortar(rigid, model%law(pair%law), n, merge(pair%point(i)%what%area * model%kick, 0.0_wp, bonded))
             problem%impulse(:, n) = model%kick * matmul(pair%point(i)%force, frame)
+            if (.not. any(abs(pair%point(i)%late) > 0.0_wp)) cycle
+            do side = 1, 2
+               associate (at => freedoms * problem%node(side, n))
+                  if (at > 0) problem%free(at - 5:at) = problem%free(at - 5:at) &
+                     + (dot_product(pair%point(i)%late, frame(:, 2)) * problem%row(:, side, 2, n) &
+                     + dot_product(pair%point(i)%late, frame(:, 3)) * problem%row(:, side, 3, n)) / problem%mass(at - 5:at)
+               end associate
+            end do
          end do
       end associate
    end subroutine gather_points
@@ -277,7 +285,8 @@ contains
                problem%row(:, :, along_normal, n) = 0.0_wp
                ! The offset from where it slipped to is none at the end of the step, seen from the first body
                offset = matmul(next_away, model%ahead(one%body(1))%turn) - one%slip
-               problem%shift(:, n) = matmul(matmul(a%turn, offset), frame) / model%step - u
+               offset = matmul(a%turn, offset)
+               problem%shift(:, n) = matmul(offset, frame) / model%step - u
                problem%shift(along_normal, n) = 0.0_wp
                problem%friction(n) = 0.0_wp
                problem%cohesion(n) = one%strength * model%kick
@@ -305,10 +314,11 @@ contains
             if (.not. one%is_out) then
                n = n + 1
                frame = frame_of(axis)
-               force = matmul(frame(:, along_tangent:), problem%impulse(along_tangent:, n)) / model%kick
+               force = (problem%impulse(2, n) * frame(:, 2) + problem%impulse(3, n) * frame(:, 3)) / model%kick
                if (norm2(force) > yields * one%strength) then
                   u = find_point_rate(problem, n)
-                  one%slip = one%slip + matmul(model%step * matmul(frame(:, along_tangent:), u(along_tangent:)), a%turn)
+                  u = model%step * (u(2) * frame(:, 2) + u(3) * frame(:, 3))
+                  one%slip = one%slip + matmul(u, a%turn)
                   one%most_slip = max(one%most_slip, norm2(one%slip))
                end if
             end if
@@ -323,6 +333,75 @@ contains
          end associate
       end do
    end subroutine apply_dowels
+
+   !> Shear impulses that are due to the points of a pair in the next step, as sliding has reversed; keeps the sliding velocities.
+   !> Those that were due in this step are added to the impulses
+   pure subroutine find_late(model, pair, number)
+      type(solid_model), intent(inout) :: model
+      type(contact_pair), intent(inout) :: pair
+      integer, intent(in) :: number(:)              !! (points) of each in the problem, 0 where it cannot press
+      real(wp) :: w(3), old(3), due(3), held, bound, share
+      logical :: reverses
+      integer :: i, d
+      held = 0.0_wp
+      bound = 0.0_wp
+      do i = 1, pair%points
+         if (.not. is_turning(model, pair%point(i), number(i))) cycle
+         old = pair%point(i)%slip(:, 1)
+         associate (problem => model%rigid%problem, p => model%rigid%problem%impulse(:, number(i)))
+            held = held + dot_product(old, shear_of(problem, number(i), p)) / norm2(old)
+            bound = bound + problem%friction(number(i)) * p(along_normal)
+         end associate
+      end do
+      do i = 1, pair%points
+         associate (point => pair%point(i), problem => model%rigid%problem)
+            old = point%slip(:, 1)
+            due = 0.0_wp
+            if (is_turning(model, point, number(i))) then
+               call find_reversal(dot_product(point%slip(:, 2), old) / norm2(old), norm2(old), held, bound, reverses, share)
+               if (reverses) due = share * problem%friction(number(i)) * problem%impulse(along_normal, number(i)) &
+                  * old / norm2(old) - shear_of(problem, number(i), problem%impulse(:, number(i)))
+            end if
+            w = 0.0_wp
+            if (number(i) > 0) then
+               if (gives_way(model%rigid, model%model_clock, number(i))) w = shear_of(problem, number(i), &
+                  find_point_rate(problem, number(i)))
+               do d = along_tangent, in_space
+                  problem%impulse(d, number(i)) = problem%impulse(d, number(i)) &
+                     + dot_product(point%late, problem%row(1:3, 2, d, number(i)))
+               end do
+            end if
+            point%slip(:, 2) = merge(old, 0.0_wp, dot_product(w, old) > 0.0_wp)
+            point%slip(:, 1) = w
+            point%late = due
+         end associate
+      end do
+   end subroutine find_late
+
+   !> Whether a dry point that slid does not slide on, without an impact
+   pure function is_turning(model, point, k) result(turns)
+      type(solid_model), intent(in) :: model
+      type(contact_point), intent(in) :: point
+      integer, intent(in) :: k                      !! in the problem, 0: it cannot press
+      logical :: turns
+      turns = k > 0 .and. any(abs(point%slip(:, 1)) > 0.0_wp) .and. .not. point%bonded
+      if (.not. turns) return
+      associate (problem => model%rigid%problem, p => model%rigid%problem%impulse(along_normal, k))
+         turns = dot_product(shear_of(problem, k, find_point_rate(problem, k)), point%slip(:, 1)) &
+            <= 0.0_wp .or. .not. gives_way(model%rigid, model%model_clock, k)
+         if (turns) turns = abs(p - model%kick * dot_product(point%force, problem%row(1:3, 2, along_normal, k))) &
+            < steady * p
+      end associate
+   end function is_turning
+
+   !> The part along the tangents of values along the normal and the tangents of a point
+   pure function shear_of(problem, k, value) result(shear)
+      type(impulse_problem), intent(in) :: problem
+      integer, intent(in) :: k
+      real(wp), intent(in) :: value(in_space)
+      real(wp) :: shear(3)
+      shear = value(2) * problem%row(1:3, 2, 2, k) + value(3) * problem%row(1:3, 2, 3, k)
+   end function shear_of
 
    !> A force at a place, added to a body unless it is a support
    pure subroutine push_body(b, force, at)
@@ -347,6 +426,7 @@ contains
 
       who = model%set%parts(pair%part)%owner
       associate (a => model%set%item(who(1)), b => model%set%item(who(2)))
+         call find_late(model, pair, number)
          do i = 1, pair%points
             associate (point => pair%point(i))
                if (number(i) == 0 .and. .not. point%closed) cycle

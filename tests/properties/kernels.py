@@ -36,7 +36,7 @@ MOTION = st.tuples(number(0.3, 1.0), number(-2.0, 2.0), number(-2.0, 2.0), numbe
 
 @relation("dem", st.tuples(stars(), stars(), number(0.0, 360.0), MOTION, WAYS), 1e-6, share=5.0)
 def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: tuple, how: dict, within: float) -> None:
-    """Two free bodies that hit each other keep momentum and moment of momentum, lose what the ledger says, whichever is named first."""
+    """In an impact of two free bodies momentum and angular momentum are conserved, the loss of energy is that of the energy balance, and the order of the bodies has no effect."""
     a, b = convex.hull(one), convex.hull(two)
     way = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
     (_, first, _), (_, second, _) = moments(a), moments(b)
@@ -111,8 +111,7 @@ TURNS = st.tuples(number(-180.0, 180.0), number(-180.0, 180.0), number(-180.0, 1
 
 @relation("dem", st.lists(st.tuples(SIZES, SIZES, TURNS, TURNS, MOTION, WAYS), min_size=6, max_size=6), 0.0, share=2.0)
 def blows_in_space(cases: list, within: float) -> None:
-    """Two free boxes that hit each other by corners, edges or faces keep both momenta, and lose what the ledger says, whichever is
-    named first."""
+    """In an impact of two free boxes by corners, edges or faces both momenta are conserved, the loss is that of the energy balance, and the order of the boxes has no effect."""
     for case in cases:
         _keeps_its_ledger(*case)
 
@@ -256,7 +255,7 @@ def _carried(place: np.ndarray, rest: np.ndarray, part: int, point: np.ndarray) 
     share=1.0,
 )
 def elements_on_a_moving_support(deck: Deck, dx: float, dy: float, start: float, duration: float, rigid: bool, within: float) -> None:
-    """A pier goes with the ground that it stands on, along a raised cosine, and stands on it at the end."""
+    """A pier follows the ground that moves along a raised cosine, and is at rest on it at the end."""
     if abs(dx) + abs(dy) < 0.01:
         reject()
     there = deck["structure"]
@@ -313,8 +312,7 @@ def rebounds_by_newton(one: tuple, two: tuple, speed: float, rebound: float, spa
 
 @relation("dem", st.tuples(SIZES, TURNS, number(0.02, 0.1), number(-1.0, 1.0), st.sampled_from([0.0, 0.3, 0.8])), 1e-4, share=2.0)
 def corners_on_a_slab(size: tuple, turn: tuple, speed: float, aside: float, friction: float, within: float) -> None:
-    """A box that meets a fixed slab with a corner, slowly and obliquely, loses by friction alone what its motion loses, and no more
-    impulse along the slab than friction times that across it."""
+    """A box that meets a fixed slab with a corner, slowly and obliquely, loses energy only by friction; the impulse along the slab is at most friction times that across it."""
     slab = box((-5.0, -5.0, -1.0), (5.0, 5.0, 0.0))
     part = box(tuple(-0.5 * np.array(size)), tuple(0.5 * np.array(size))).moved(Rotation.from_euler("xyz", turn, degrees=True).as_matrix())
     low = np.sort(part.vertices[:, 2])
@@ -371,7 +369,7 @@ def settlements_of_prisms(sides: int, radius: float, height: float, exponent: fl
 
 @relation("tilt", st.integers(0, 10**6), 1e-8, share=1.0)
 def programmes_of_the_core(number_of: int, within: float) -> None:
-    """The vertex method solves what HiGHS solves, with its value and with multipliers that prove it; a banded factor solves its system."""
+    """The vertex method gives the optimum of HiGHS, with multipliers that prove it; a banded factor solves its system."""
     draw = np.random.default_rng(number_of)
     n, k = int(draw.integers(2, 20)), int(draw.integers(3, 120))
     rows, least, cost = draw.normal(size=(k, n)), draw.normal(size=k) - 1.0, draw.normal(size=n)

@@ -483,7 +483,7 @@ def test_refusals(path, value, says) -> None:
     ("path", "value", "says"),
     [
         ("structure.regions", [{"x": [0, 1], "material": "steel"}], "material 'steel' does not exist"),
-        ("analysis.0.mesh.pattern", "random", 'expected "T3" or "T6"'),
+        ("analysis.0.mesh.pattern", "random", 'give "T3" or "T6"'),
         ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "is outside the wall"),
         ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "requires a width and a height"),
         ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
@@ -493,7 +493,7 @@ def test_refusals(path, value, says) -> None:
         ("material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
         ("supports.held", [{"fix": "x"}], "the place is missing"),
         ("supports.held", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
-        ("supports.held", [{"x": [2, 1], "y": 0}], "the range decreases"),
+        ("supports.held", [{"x": [2, 1], "y": 0}], "the range goes from"),
         ("analysis.0.directions", ["+", "+"], "each sense may occur only once"),
         ("analysis.0.control", [{"edge": "top", "weight": 0}], "a term with weight 0 has no effect"),
         ("analysis.0.seeds", [3, 3], "a seed occurs twice"),

@@ -158,8 +158,16 @@ def _results(**keys) -> ThrustNetwork:
 @pytest.mark.parametrize(
     ("load", "bound", "words"),
     [
-        (None, 0.3, "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3"),
-        (0.0, 0.3, "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3"),
+        (
+            None,
+            0.3,
+            "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3",
+        ),
+        (
+            0.0,
+            0.3,
+            "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3",
+        ),
         (None, None, "No upper limit of the horizontal load was found"),
         (0.0, 1e-9, "networks on this form diagram carry no horizontal load"),
         (None, 0.0, "networks on this form diagram carry no horizontal load"),

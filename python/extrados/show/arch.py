@@ -164,9 +164,8 @@ def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     return (
         saved,
         (
-            "Histories: ground motion, rotations, energies, greatest slip of a joint. Dotted: start of the "
-            f"calculation with rigid contacts at {over.time_s:.3f} s. Dashed: acceleration at which rocking "
-            "starts."
+            "Histories: ground motion, rotations, energies, greatest slip of a joint. Dotted: start of the calculation with rigid "
+            f"contacts at {over.time_s:.3f} s. Dashed: acceleration at which rocking starts."
         ),
     )
 

@@ -204,7 +204,7 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
                 checked,
                 ("solver", "amplitude", "duration"),
                 "",
-                ("1 if the pulse causes collapse, for each cell of the map. Solver 0: solver of the deck; solver 1: the other solver"),
+                "1 if the pulse causes collapse, for each cell of the map. Solver 0: solver of the deck; solver 1: the other solver",
             ),
         }
         if numbers["cross_check"].agreement_ratio < AGREE:
@@ -262,9 +262,8 @@ def _apart(check: out.CrossCheck) -> str:
     """Where the two solvers do not agree, in words."""
     where = "; ".join(
         (
-            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} "
-            f"by the solver of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the "
-            "other solver"
+            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} by the solver "
+            f"of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the other solver"
         )
         for c in check.apart[:8]
     )

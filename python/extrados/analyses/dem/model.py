@@ -44,12 +44,14 @@ class JointValues(ContactValues):
 
 @dataclass(frozen=True)
 class Model:
-    """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry."""
+    """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry. strength: at which the corners of joints
+    crush, 0 never [Pa]."""
 
     assembly: Assembly
     rigid: RigidBodies
     values: JointValues
     ties: ElementTies = NO_TIES
+    strength: float = 0.0
 
     @property
     def count(self) -> int:
@@ -72,7 +74,7 @@ class Model:
         return float(np.ptp(np.concatenate(self.assembly.outlines), axis=0).max())
 
     def bodies(self, values: JointValues | None = None) -> dem.Bodies:
-        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
+        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar and crushing."""
         v = values or self.values
 
         def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
@@ -85,6 +87,7 @@ class Model:
             if pair is None:
                 continue
             one = law(v.stiffness[j], v.shear_stiffness[j], v.friction[j], v.cohesion[j], v.tension[j])
+            one = replace(one, strength=self.strength)
             if one not in numbers:
                 numbers[one] = len(laws)
                 laws.append(one)
@@ -139,6 +142,8 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     if options.rigid:
         return found + doubts_of_rigid_mortar(model.values)
     found += doubts_of_springs(values or model.values)
+    if model.strength:
+        found.append("crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected")
     if options.mass_damping > 0.0:
         found.append(
             "mass-proportional damping acts like viscous air around a rocking block. This has no physical "
@@ -153,7 +158,7 @@ def adjusted(model: Model) -> list[str]:
     if rigid.moved > 1e-6 * model.size:
         found.append(
             f"the program moved faces of blocks by up to {1000.0 * rigid.moved:.2g} mm, so that they meet at "
-            f"their joints (contact_tolerance {1000.0 * tolerance:g} mm)"
+            f"their joints (`contact_tolerance` {1000.0 * tolerance:g} mm)"
         )
     if rigid.cut > 0.0:
         why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"
@@ -198,9 +203,8 @@ def unconverged(effort: dem_run.Effort) -> list[str]:
         return []
     return [
         (
-            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest "
-            f"error, at {effort.worst:.4g} s, is {effort.residual:.2g} of the velocity that gravity adds in one "
-            "step. Try a smaller `time_step`"
+            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest error, at {effort.worst:.4g} "
+            f"s, is {effort.residual:.2g} of the velocity that gravity adds in one step. Try a smaller `time_step`"
         )
     ]
 

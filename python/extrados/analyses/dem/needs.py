@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from functools import partial
 
+import numpy as np
+
 from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
@@ -38,6 +40,8 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         yield lambda: _refuse_bars(building)
     if _rigid(options):
         yield lambda: _refuse_springs(building)
+    if isinstance(options, tables.SpatialDem) and options.crushing:
+        yield lambda: _refuse_crushing(building, _rigid(options))
     yield lambda: refuse_rigid_ties(building)
     yield lambda: section_strands(building)
     if building.joints.damping == "restitution" and building.joints.beta is None:
@@ -60,8 +64,8 @@ def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
     most = SHARE * room.total() / (8.0 * values)
     if options.end_time / options.output_step > most:
         raise Refused(
-            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: give an "
-            f"output_step of at least {options.end_time / most:.2g} s",
+            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: "
+            f"give an `output_step` of at least {options.end_time / most:.2g} s",
             ("analysis", "output_step"),
         )
 
@@ -76,13 +80,25 @@ def _refuse_bars(building: Building) -> None:
     if not isinstance(building.blocks(), ArchAssembly):
         raise Refused('merge = "three-bars" is only for arches: remove `merge`', key)
     if building.initial.rotation_ratio:
-        raise Refused(('merged voussoirs cannot start with a rotation: with `rotation_ratio` of [initial], give merge = "none"'), key)
+        raise Refused('merged voussoirs cannot start with a rotation: with `rotation_ratio` of [initial], give merge = "none"', key)
 
 
 def _refuse_springs(building: Building) -> None:
     """Refused where rigid contacts are asked for what only springs have."""
     if building.supports.stiffness is not None:
-        raise Refused('rigid contacts (solver = "nonsmooth", or cross_check) have no springs', ("supports", "stiffness"))
+        raise Refused('rigid contacts (solver = "nonsmooth", or `cross_check`) have no springs', ("supports", "stiffness"))
+
+
+def _refuse_crushing(building: Building, rigid: bool) -> None:
+    """Refused where corners are to crush without a strength, on rigid contacts, or at joints with mortar."""
+    key = ("analysis", "crushing")
+    if building.material.compressive_strength is None:
+        raise Refused("crushing of corners requires a compressive_strength of the [material]", key)
+    if rigid:
+        raise Refused("crushing of corners requires springs: omit cross_check", key)
+    for name in ("cohesion", "tension"):
+        if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
+            raise Refused("joints with mortar do not crush: remove cohesion and tension, or omit crushing", ("joints", name))
 
 
 def _refuse_restitution(building: Building) -> None:

@@ -145,6 +145,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ),
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
+        ("crushing of corners", options.crushing, ("analysis", "crushing")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),
     ]
     if isinstance(options, Dem):
@@ -174,10 +175,8 @@ def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:
     for k, one in enumerate(building.initial.movements):
         if one.dy:
             raise Refused(
-                (
-                    "`dy` moves a support of this section sideways (in space, y is across its depth): give `dz` for "
-                    "a settlement (z is upward in space)"
-                ),
+                "`dy` moves a support of this section sideways (in space, y is across its depth): give `dz` for "
+                "a settlement (z is upward in space)",
                 ("initial", "movements", k, "dy"),
             )
 

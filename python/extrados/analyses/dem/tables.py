@@ -77,11 +77,9 @@ class DemTable(BuildingAnalysis):
     )
     solver: Literal["compliant", "nonsmooth"] = key(
         "compliant",
-        (
-            "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap "
-            "or tension (Moreau 1988, Jean 1999). Rigid contacts require no stiffness and no damping, and "
-            "allow large time steps. Each model can be used to check the other"
-        ),
+        "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap "
+        "or tension (Moreau 1988, Jean 1999). Rigid contacts require no stiffness and no damping, and "
+        "allow large time steps. Each model can be used to check the other",
     )
     rebound: float = key(
         0.0,
@@ -91,24 +89,19 @@ class DemTable(BuildingAnalysis):
     )
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
     merge: Literal["none", "three-bars"] = key(
-        "none", ("three-bars: the voussoirs of an arch are joined to the three rigid bars of its four-hinge mechanism")
+        "none", "three-bars: the voussoirs of an arch are joined to the three rigid bars of its four-hinge mechanism"
     )
     fraction: float = key(0.3, "time step, as a fraction of the critical time step", gt=0, le=0.9)
     time_step: Time | None = key(
         None,
-        (
-            'time step. Default: `fraction` times the critical time step; for solver = "nonsmooth", 1/500 of '
-            "the time of free fall over the size of the smallest block"
-        ),
+        'time step. Default: `fraction` times the critical time step; for solver = "nonsmooth", 1/500 of '
+        "the time of free fall over the size of the smallest block",
         gt=0,
     )
     floor: Length | None = key(
         None,
-        (
-            "height of a level floor on which detached blocks land and slide. Default: no floor; each joint "
-            "to the ground has a footing that extends beyond the joint by a quarter of its length on both "
-            "sides"
-        ),
+        "height of a level floor on which detached blocks land and slide. Default: no floor; each joint to the ground has a footing "
+        "that extends beyond the joint by a quarter of its length on both sides",
     )
 
     @property
@@ -130,7 +123,7 @@ class DemTable(BuildingAnalysis):
     def _one_solver(self) -> "DemTable":
         """What only the other solver knows is refused."""
         given = self.model_fields_set
-        if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness"})):
+        if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness", "crushing"})):
             raise ValueError(f'{wrong[0]} is used only with solver = "compliant": rigid contacts have no stiffness and no damping')
         if not self.rigid and (wrong := sorted(given & {"rebound", "quasi_static"})):
             raise ValueError(f'{wrong[0]} needs solver = "nonsmooth"')
@@ -143,12 +136,16 @@ class SpatialDem(DemTable):
     solid: ClassVar = True
     direction: Angle | None = key(
         None,
-        (
-            "direction of the horizontal motion or load in plan: angle from +x towards +y. If this key is "
-            "given, or if the structure has no plane section, the blocks are solids"
-        ),
+        "direction of the horizontal motion or load in plan: angle from +x towards +y. If this key is "
+        "given, or if the structure has no plane section, the blocks are solids",
         ge=-360,
         le=360,
+    )
+
+    crushing: bool = key(
+        False,
+        "include crushing of the corners of joints, which moves hinges inward: the pressure is at most the compressive strength of the "
+        "material. For plane sections on springs, without mortar",
     )
 
     @property
@@ -157,15 +154,23 @@ class SpatialDem(DemTable):
         turn = math.radians(self.direction or 0.0)
         return (math.cos(turn), math.sin(turn), 0.0)
 
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Corners that crush depend on the strength."""
+        return {**super().rests_on(building), **({"material.compressive_strength": None} if self.crushing else {})}
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Corners crush at the strength of the material."""
+        return super().reckons_with(building) | ({"material.compressive_strength"} if self.crushing else set())
+
 
 class Dem(SpatialDem, Animated):
     """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
 
     starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
-    quasi_static: bool = key(False, ('for solver = "nonsmooth": neglect inertia, to follow large displacements of supports up to collapse'))
+    quasi_static: bool = key(False, 'for solver = "nonsmooth": neglect inertia, to follow large displacements of supports up to collapse')
     test: Literal["motion", "tilt"] = key(
-        "motion", ("type of the test. motion: the motion acts; tilt: find the constant acceleration that causes collapse")
+        "motion", "type of the test. motion: the motion acts; tilt: find the constant acceleration that causes collapse"
     )
     end_time: Time | None = key(
         None,
@@ -181,22 +186,18 @@ class Dem(SpatialDem, Animated):
     )
     collapse_displacement: Length | None = key(
         None,
-        (
-            "displacement of a block that counts as collapse if the block also rotates or loses height (in a "
-            "tilt test, also if it slides). Default: 1/5 of the size of the structure; in a tilt test, 1/20"
-        ),
+        "displacement of a block that counts as collapse if the block also rotates or loses height (in a "
+        "tilt test, also if it slides). Default: 1/5 of the size of the structure; in a tilt test, 1/20",
         gt=0,
     )
     domain: float = key(
-        10.0, ("the run ends if a block is farther from the structure than this multiple of the size of the structure"), gt=1, le=1000
+        10.0, "the run ends if a block is farther from the structure than this multiple of the size of the structure", gt=1, le=1000
     )
     stop_at_collapse: bool = key(True, "end the run when a block has moved by the collapse displacement")
     perturbed: bool = key(
         True,
-        (
-            "repeat the run with the motion times 1 + 1e-6, to find whether the response is chaotic. This "
-            "takes twice the time; if the perturbation grows a thousandfold, ten times the time"
-        ),
+        "repeat the run with the motion times 1 + 1e-6, to find whether the response is chaotic. This "
+        "takes twice the time; if the perturbation grows a thousandfold, ten times the time",
     )
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
@@ -204,7 +205,7 @@ class Dem(SpatialDem, Animated):
     vary_damping: list[Positive] = key([], "repeat the run with beta multiplied by each of these factors", max_length=50)
     vary_stiffness: list[Positive] = key([], "repeat the run with joint stiffnesses multiplied by each of these factors", max_length=50)
     vary_friction: list[Positive] = key(
-        [], ("repeat the run with each of these coefficients of friction at all joints, including those of [[joints.types]]"), max_length=50
+        [], "repeat the run with each of these coefficients of friction at all joints, including those of [[joints.types]]", max_length=50
     )
     find_friction: bool = key(False, "also find the least coefficient of friction, equal at all joints, at which no joint slides")
     slip: Length = key(1e-4, "slip that counts as sliding, in the search for the least coefficient of friction", gt=0)
@@ -238,18 +239,14 @@ class DemDomain(SpatialDem):
     )
     mode_II: bool = key(
         False,
-        (
-            "also calculate the shortest pulses that cause collapse in the first swing, before any impact. "
-            'With merge = "three-bars", the curve of the four-hinge model is given for comparison'
-        ),
+        "also calculate the shortest pulses that cause collapse in the first swing, before any impact. "
+        'With merge = "three-bars", the curve of the four-hinge model is given for comparison',
         source="thesis Fig. 7-11",
     )
     cross_check: bool = key(
         False,
-        (
-            "also calculate the failure curve with the other solver, and the share of the cells (amplitudes "
-            "and durations) in which both solvers give the same outcome"
-        ),
+        "also calculate the failure curve with the other solver, and the share of the cells (amplitudes "
+        "and durations) in which both solvers give the same outcome",
     )
     vary_damping: list[Positive] = key([], "also calculate failure curves with beta multiplied by each of these factors", max_length=20)
     vary_stiffness: list[Positive] = key(
@@ -257,7 +254,7 @@ class DemDomain(SpatialDem):
     )
     vary_friction: list[Positive] = key(
         [],
-        ("also calculate failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]"),
+        "also calculate failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]",
         max_length=20,
     )
 

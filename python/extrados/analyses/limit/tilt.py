@@ -365,9 +365,8 @@ def _told(found: out.Tilt) -> str:
                 f"Without dilatancy, the design value {way} is {design:.4f} g, the lowest of {len(paths)} load paths with elastic joints. "
             )
         text += (
-            f"The lowest of {len(r.starts_g)} collapse accelerations found {way} is {least:.4f} g (scatter {r.spread_g:.4f} "
-            f"g). The lower bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
-            ""
+            f"The lowest of {len(r.starts_g)} collapse accelerations found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The "
+            f"lower bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
         )
     if found.non_associated_reason:
         text += f"Collapse without dilatancy is not given: {found.non_associated_reason}. "

@@ -179,16 +179,13 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     groups += spring_groups(mesh.springs)
     if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
-            'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = "no-sliding", or '
-            "remove without_equilibrium",
+            'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = '
+            '"no-sliding", or remove `without_equilibrium`',
             ("analysis", "without_equilibrium"),
         )
     if options.without_equilibrium != "continue" and any(joint.floor for joint in mesh.joints):
         raise Refused(
-            (
-                'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove '
-                "`without_equilibrium`, or the seats"
-            ),
+            'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove `without_equilibrium`, or the seats',
             ("analysis", "without_equilibrium"),
         )
     mass = mesh.mass()

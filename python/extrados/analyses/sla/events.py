@@ -220,10 +220,8 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    (
-                        f"resume_from: the earlier wall has {damage.shape[1]} integration points (with those of bars), "
-                        f"but this wall has {core_model.points}"
-                    ),
+                    f"resume_from: the earlier wall has {damage.shape[1]} integration points (with those of bars), "
+                    f"but this wall has {core_model.points}",
                     ("analysis", "resume_from"),
                 )
             core_model.set_damage(damage)
@@ -298,8 +296,7 @@ def bring_on_constant_loads(
         if not far <= FAR * model.extent:
             raise NotCarried(
                 f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
-                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and "
-                "cracks",
+                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and cracks",
                 WHOLE,
             )
     return found, rubs
@@ -374,15 +371,13 @@ def _constant_stage(
         most = float(events.load.max()) if len(events) else 0.0
         if events.reason == SPENT:
             raise NotCarried(
-                (
-                    f"the `budget` of {options.budget:.4g} s of processor time ended while the constant loads were "
-                    f"applied, at {100 * most:.3g} % of them. Increase `budget`, or use larger elements"
-                ),
+                f"the `budget` of {options.budget:.4g} s of processor time ended while the constant loads were "
+                f"applied, at {100 * most:.3g} % of them. Increase `budget`, or use larger elements",
                 WHOLE,
             )
         why = events.reason or f"{way.done} events were not enough"
         raise NotCarried(
-            (f"the structure cannot carry the constant loads: with damage, it carries at most {100 * most:.3g} % of them ({why})"), WHOLE
+            f"the structure cannot carry the constant loads: with damage, it carries at most {100 * most:.3g} % of them ({why})", WHOLE
         )
     return events
 
@@ -504,10 +499,8 @@ class _Run:
             if error.status != status_code("beyond_strength"):
                 raise
             raise Refused(
-                (
-                    "the constant loads alone exceed the strength, and no multiplier of the reference load relieves "
-                    "them. Reduce the constant loads, or apply them with damage: constant_damage = true"
-                ),
+                "the constant loads alone exceed the strength, and no multiplier of the reference load relieves "
+                "them. Reduce the constant loads, or apply them with damage: constant_damage = true",
                 WHOLE,
             ) from None
         if self.model.driven and not part.steps.any():  # as of a force that moves them
@@ -607,9 +600,8 @@ class _Run:
             gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
             if gap > UNBALANCED:
                 curve.warnings.append(
-                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the "
-                    f"loads by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not "
-                    "reliable."
+                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the loads "
+                    f"by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not reliable."
                 )
 
     def _end_on_a_line(self, curve: Curve) -> None:

@@ -241,7 +241,7 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         for part in moved.parts:
             common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in common):
-            raise BadGeometry("displacement: every ratio is 0, so nothing moves")
+            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves")
         if len({n for n, _, _ in common}) < len(common):
             raise BadGeometry("two parts of the displacement have a node in common")
         ties.append(common)
@@ -425,7 +425,7 @@ def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOp
     if not any(criterion is not None for criterion in found):
         return None
     if options.cracking == "isotropic":
-        raise BadGeometry("compressive_strength_parallel requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`compressive_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
     return found
 
 
@@ -466,7 +466,7 @@ def values_of(
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
-        raise BadGeometry("tensile_strength_parallel requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`tensile_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
     widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):

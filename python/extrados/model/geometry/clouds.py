@@ -43,8 +43,8 @@ class Fit:
     def told(self) -> str:
         """The misfit in words."""
         return (
-            f"{self.name}: {self.used} points within {1e3 * self.most:.3g} mm (95 %; root mean square {1e3 * self.rms:.3g} mm), "
-            f"{self.dropped} stray points not used"
+            f"{self.name}: {self.used} points within {1e3 * self.most:.3g} mm of the fitted surface (95 %; "
+            f"root mean square {1e3 * self.rms:.3g} mm), {self.dropped} stray points not used"
         )
 
 
@@ -88,7 +88,7 @@ def read_cloud(file: File, scale: float) -> np.ndarray:
         raise BadGeometry(f"{name}: {error}", ("structure", "file")) from None
     points = scale * np.asarray(found["points"])
     if len(points) < FEWEST_POINTS:
-        raise BadGeometry(f"{name}: {len(points)} points, at least {FEWEST_POINTS} are required", ("structure", "file"))
+        raise BadGeometry(f"{name}: the file has {len(points)} points, but at least {FEWEST_POINTS} are required", ("structure", "file"))
     return points[:: -(-len(points) // CONSIDERED)]
 
 
@@ -110,7 +110,7 @@ def parse_cloud(content: bytes, sort: str) -> dict[str, np.ndarray]:
     except ImportError:
         raise Unreadable("reading point clouds requires trimesh and laspy. Install them by pip install 'extrados[scan]'") from None
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
-        raise Unreadable("the file has no points of three finite coordinates")
+        raise Unreadable("the file has no points with three finite coordinates")
     if len(points) > MOST_POINTS:
         raise Unreadable(f"the file has more than {MOST_POINTS} points")
     return {"points": points}
@@ -147,7 +147,7 @@ def fit_wall(points: np.ndarray, thickness: float | None = None) -> WallFit:
     origin = np.median(points, axis=0)
     normal = np.linalg.svd((points - origin)[:: -(-len(points) // 20_000)], full_matrices=False)[2][2]
     if abs(normal[2]) > UPRIGHT:
-        raise BadGeometry("the points do not form a vertical wall; give one wall a file", ("structure", "scan"))
+        raise BadGeometry("the points do not form a vertical wall: give a separate file for each wall", ("structure", "scan"))
     across = np.array([normal[0], normal[1], 0.0]) / np.hypot(normal[0], normal[1])
     along = np.array([across[1], -across[0], 0.0])
     s, n, z = _local(points - origin, along, across)
@@ -224,9 +224,11 @@ def uncertain(fits: Sequence[Fit], thickness: float) -> tuple[str, ...]:
     if worst.most <= ROUGH * thickness:
         return ()
     return (
-        f"The points lie up to {1e3 * worst.most:.3g} mm (95 %) off the {worst.name}, which is more than a tenth of the thickness of "
-        f"{1e3 * thickness:.3g} mm. The capacity of the fitted body is uncertain. Divide the points into parts of the fitted shape, or give the "
-        "blocks as solids",
+        (
+            f"The points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}. This is more than a "
+            f"tenth of the thickness of {1000.0 * thickness:.3g} mm, so the capacity of the fitted body is uncertain. Divide the points "
+            "into parts of the fitted shape, or give the blocks as solids"
+        ),
     )
 
 
@@ -235,10 +237,11 @@ def _refuse_other_shapes(fits: Sequence[Fit], thickness: float, given: float | N
     worst = max(fits, key=lambda fit: fit.most)
     if worst.most <= OTHER * thickness:
         return
-    cure = "If they show one face only, give `thickness`" if given is None else "If they show both faces, remove `thickness`"
+    cure = "If the points show one face only, give `thickness`" if given is None else "If the points show both faces, remove `thickness`"
     raise BadGeometry(
-        f"the points lie up to {1e3 * worst.most:.3g} mm (95 %) off the {worst.name}, which is more than a quarter of the thickness of "
-        f"{1e3 * thickness:.3g} mm. {cure}; otherwise they do not form {shape}: divide the points, or give the blocks as solids",
+        f"the points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}, "
+        f"which is more than a quarter of the thickness of {1000.0 * thickness:.3g} mm. {cure}; otherwise "
+        f"the points do not form {shape}: divide them, or give the blocks as solids",
         ("structure", "scan", "thickness"),
     )
 
@@ -271,7 +274,7 @@ def _robust(
     places (n, 2) [m]: of all points along the face. fit: a face of numbered points; off: their distances [m] from a face.
     """
     if len(side) < FEWEST_POINTS // 2:
-        raise BadGeometry(f"{name}: {len(side)} points are too few", ("structure", "scan"))
+        raise BadGeometry(f"{name}: {len(side)} points are too few to fit a surface", ("structure", "scan"))
     kept = side
     for _ in range(20):
         face = fit(kept)
