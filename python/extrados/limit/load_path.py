@@ -102,7 +102,7 @@ class LoadPath:
             if flat >= FLAT_STEPS:
                 return SlidingState(state.gamma, state.force, state.share, moved / step)
             step, moved = GROWTH * step, GROWTH * moved
-        raise NoAnswer(f"the load on the load path has not become constant after {MOST_STEPS} steps: {state.gamma:.4f} g")
+        raise NoAnswer(f"the load still changes after {MOST_STEPS} steps of the load path: {state.gamma:.4f} g")
 
     def _held(self, old: _State, start: np.ndarray, gamma: float, work: float | None) -> _State | None:
         """The state after a step of `work` of the live load (None: gamma stays), by proximal steps where Newton's fail."""
@@ -132,7 +132,7 @@ class LoadPath:
     def _newton(self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray) -> _State | None:
         """The state in equilibrium after a step, with springs `hold` to the displacements `about`; None without one."""
         if self.solves > self.effort:
-            raise NoAnswer(f"the load path ended at {gamma:.4f} g, because it needed more than {self.effort} linear systems")
+            raise NoAnswer(f"the load path was stopped at {gamma:.4f} g, because more than {self.effort} linear systems had to be solved")
         p = self.points
 
         def left(u: np.ndarray, gamma: float) -> tuple[_State, np.ndarray, float, float]:

@@ -208,14 +208,14 @@ def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) ->
     )
     result.arrays |= {
         "incremental_ratio": Array(
-            seen.ratio[:SHOWN], ("shown", "stripe"), "", "ratio of peak to critical rotation, for the first motions"
+            seen.ratio[:SHOWN], ("shown", "stripe"), "", "peak rotation divided by the critical rotation, for the first motions"
         ),
         "incremental_over": Array(over[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: collapse"),
         "incremental_risen": Array(
             risen[:SHOWN].astype(np.int8),
             ("shown", "stripe"),
             "",
-            "1: the structure survives at this level although a lower level of the motion overturns it",
+            "1: the structure survives at this level, although a lower level of the same motion overturns it",
         ),
     }
 
