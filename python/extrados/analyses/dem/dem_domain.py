@@ -96,7 +96,6 @@ class Search:
         return {
             "end_time": end + self.settle,
             "output_step": output_step,
-            "fraction": self.options.fraction,
             **self.collapse.options,
             "settle_damping": self.curves[curve].values.settle_damping,
             "stop_at_rest": True,
@@ -116,7 +115,8 @@ def _of_section(search: Search, model: Model) -> Callable[[list[Pulse], float], 
     def task(curve: int, amplitude: float, duration: float, output_step: float) -> Task:
         motion = unit_pulse(search.options.pulse, duration)
         given = search.core_options(curve, motion.end, output_step)
-        options = dem.Options(**given, settlement=settlement[curve], mass_damping=search.options.mass_damping)
+        fraction = search.options.step_fraction(space=False)
+        options = dem.Options(**given, fraction=fraction, settlement=settlement[curve], mass_damping=search.options.mass_damping)
         return Task(curve, options, motion.ground, amplitude, shift)
 
     return lambda pulses, output_step: Runs(bodies, [task(*one, output_step) for one in pulses])
@@ -130,7 +130,8 @@ def _of_solids(search: Search, model: SolidModel) -> Callable[[list[Pulse], floa
     def task(curve: int, amplitude: float, duration: float, output_step: float) -> SolidTask:
         motion = unit_pulse(search.options.pulse, duration)
         given = search.core_options(curve, motion.end, output_step)
-        options = dem3.Options(**given, settlement=settlement[curve], way=search.options.way)
+        fraction = search.options.step_fraction(space=True)
+        options = dem3.Options(**given, fraction=fraction, settlement=settlement[curve], way=search.options.way)
         return SolidTask(options, motion.ground, scale=amplitude)
 
     return lambda pulses, output_step: SolidRuns(bodies, [task(*one, output_step) for one in pulses])

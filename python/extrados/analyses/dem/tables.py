@@ -31,6 +31,8 @@ OF_SPRINGS = {"material.young"} | {
         "energy_ratio",
     )
 }
+#: Time step over the critical one. In space mirrored columns differ by 0.5 % of the displacement after their impacts at 0.6
+IN_PLANE, IN_SPACE = 0.3, 0.5
 Positive = Annotated[float, Field(gt=0.0)]
 
 
@@ -91,7 +93,9 @@ class DemTable(BuildingAnalysis):
     merge: Literal["none", "three-bars"] = key(
         "none", "three-bars: the voussoirs of an arch are joined to the three rigid bars of its four-hinge mechanism"
     )
-    fraction: float = key(0.3, "time step, as a fraction of the critical time step", gt=0, le=0.9)
+    fraction: float | None = key(
+        None, "time step, as a fraction of the critical time step. Default: 0.3 in the plane, 0.5 in space", gt=0, le=0.9
+    )
     time_step: Time | None = key(
         None,
         'time step. Default: `fraction` times the critical time step; for solver = "nonsmooth", 1/500 of '
@@ -108,6 +112,10 @@ class DemTable(BuildingAnalysis):
     def rigid(self) -> bool:
         """Without springs?"""
         return self.solver == "nonsmooth"
+
+    def step_fraction(self, *, space: bool) -> float:
+        """The time step over the critical one."""
+        return self.fraction or (IN_SPACE if space else IN_PLANE)
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
         """As it says: rigid contacts do not ask how stiff and damped they are."""
