@@ -193,6 +193,11 @@ class Dem(SpatialDem, Animated):
         "also run the motion times 1 + 1e-6, to find whether the response is chaotic. This doubles the time of the run; "
         "if the perturbation grows a thousandfold, the time is ten times as long",
     )
+    thrust: bool = key(
+        False,
+        "for springs: also calculate the place of the force in each joint and the stress at its ends or corners; drawings and the film show "
+        "these forces",
+    )
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
     vtk: bool = key(False, "write VTU files and a PVD collection")
@@ -205,6 +210,14 @@ class Dem(SpatialDem, Animated):
     slip: Length = key(1e-4, "slip that counts as sliding in the search of the least friction", gt=0)
     tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
     tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
+
+    @model_validator(mode="after")
+    def _places_of_forces(self) -> "Dem":
+        if self.thrust and self.rigid:
+            raise ValueError(
+                'rigid contacts do not determine the place of a force in a joint: give solver = "compliant", or remove `thrust`'
+            )
+        return self
 
     @property
     def has_rates(self) -> bool:
