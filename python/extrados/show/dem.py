@@ -440,7 +440,8 @@ def film_dem(run: Stored, name: str, folder: Path) -> None:
             ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
         stones = Stones(run, name, ax)
         (hinges,) = ax.plot([], [], "o", color=style.HINGE, markersize=6, markerfacecolor="white", markeredgewidth=1.6)
-        thrust = ax.add_collection(LineCollection([], color=style.HINGE, linewidth=1.6, zorder=4), autolim=False)
+        thrust = LineCollection([], color=style.HINGE, linewidth=1.6, zorder=4)
+        ax.add_collection(thrust, autolim=False)
         left, right, bottom, top = scene.window
         ax.set_xlim(left, right)
         ax.set_ylim(bottom, top)
