@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -52,6 +53,15 @@ def copy(place: Path) -> None:
 def _made(path: Path) -> bool:
     """Whether a build or a run has made a file."""
     return "__pycache__" in path.parts or path.name.startswith("_core") or path.name == "_build_info.py"
+
+
+def build_core(place: Path, target: Path) -> None:
+    """Build the compiled module of a folder that was built before, and copy it to a file; the module among the sources stays."""
+    name = f"_core{sysconfig.get_config_var('EXT_SUFFIX')}"
+    ninja = [str(Path(sys.executable).with_name("ninja")), "-C", str(place / "build"), f"python/{name}"]
+    subprocess.run(ninja, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy2(place / "build" / "python" / name, target)
 
 
 def build(place: Path, *options: str) -> None:

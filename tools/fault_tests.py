@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -108,10 +108,17 @@ SHARED = ("asking", "buildings", "relations")
 BROKE = 2
 #: How much longer a test may take with a fault than without
 SLOWER = 5.0
+#: Chapters of the property suite that ask kernels themselves
+KERNEL_CHAPTERS = ("kernels.py", "crowds.py")
+#: Share of the cases of those of less than so many seconds
+OF_KERNELS, QUICK = 0.5, 0.3
 #: Share of the cases with which relations whose results change are repeated
 MORE = 0.3
 #: Fates of a fault that no relation finds: a result changes, none does, no relation runs through it, the time is up
 MISSED, UNCHANGED, NOWHERE, UNDECIDED = "", "no result of the suite changes", "no relation runs through it", "undecided"
+#: Fate of one with which a test takes much longer
+ENDLESS = "a test that does not end"
+#: Those of them that no test caught
 NOT_CAUGHT = (MISSED, UNCHANGED, NOWHERE, UNDECIDED)
 
 
@@ -129,9 +136,11 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
 
 @dataclass(frozen=True)
 class Row:
-    """A test of the property suite without a fault: seconds of a processor, digest of its results, the lines of Python that it runs through."""
+    """A test of the property suite without a fault: the file of its text, seconds of a processor, digest of its results, the lines of
+    Python that it runs through."""
 
     test: str
+    chapter: str
     seconds: float
     results: str
     lines: frozenset[tuple[str, int]]
@@ -143,7 +152,7 @@ def _read(kept: Path) -> list[dict[str, Any]]:
 
 def rows_of(kept: Path) -> list[Row]:
     """The tests noted in a file, the quickest first."""
-    found = [Row(r["test"], r["seconds"], r["results"], frozenset((file, n) for file, n in r["lines"])) for r in _read(kept)]
+    found = [Row(r["test"], r["chapter"], r["seconds"], r["results"], frozenset((file, n) for file, n in r["lines"])) for r in _read(kept)]
     return sorted(found, key=lambda row: row.seconds)
 
 
@@ -211,19 +220,21 @@ def span_of(tree: ast.Module, line: int) -> range:
 
 
 def relations_of(place: Path, fault: Fault) -> list[Row]:
-    """The tests of the property suite that run through the changed statement or beside the changed kernel, the quickest first."""
+    """The tests of the property suite that run through the changed statement, the quickest first; beside a changed kernel, first those
+    of the chapters that call kernels themselves."""
     rows = touched(place)
     if not fault.in_python:
         core = tuple(f"core/{name}" for name in KERNELS[fault.file].split())
-        return [row for row in rows if any(file.startswith(core) for file, _ in row.lines)]
+        beside = [row for row in rows if any(file.startswith(core) for file, _ in row.lines)]
+        return sorted(beside, key=lambda row: row.chapter not in KERNEL_CHAPTERS)
     file = fault.file.removeprefix(f"{PACKAGE}/")
     span = span_of(ast.parse((place / fault.file).read_text(encoding="utf-8")), fault.line)
     return [row for row in rows if any((file, line) in row.lines for line in span)]
 
 
 @cache
-def suite(place: Path, build: int) -> subprocess.Popen[str]:
-    """The property suite, loaded with a build, which waits for the faults of Python and the tests to run."""
+def suite(place: Path) -> subprocess.Popen[str]:
+    """The property suite, loaded without a fault, which waits for faults and the tests to run with each."""
     words = [apart.python(place), "-m", "pytest", "-q", "-s", "-m", "not verify", "-n", "0", "-p", "no:cacheprovider", "tests/properties"]
     environment = environment_of(place / "unused", EXTRADOS_FAULTS="1")
     return subprocess.Popen(
@@ -238,49 +249,69 @@ def suite(place: Path, build: int) -> subprocess.Popen[str]:
     )
 
 
-def asked_of(place: Path, build: int, fault: Fault, tests: list[Row], share: float, patience: int) -> tuple[str, list[Row]]:
-    """The first of some tests that fails with a fault, or one of the `NOT_CAUGHT`, and the notes of the tests before."""
-    limits = {row.test: max(patience, SLOWER * row.seconds * share / float(SHARE)) for row in tests}
-    kept, failed, process = place / "results.jsonl", place / "failed.txt", suite(place, build)
+@dataclass(frozen=True)
+class Planted:
+    """The change in a fork of the suite: a line of a file of Python, or another build of the core, or none."""
+
+    file: str = ""
+    line: int = 0
+    new: str = ""
+    core: str = ""
+
+
+def asked_of(place: Path, planted: Planted, shares: dict[Row, float], patience: int) -> tuple[str, list[Row]]:
+    """The first of some tests that fails with a fault, or one of the `NOT_CAUGHT`, and the notes of the tests before; shares: of the
+    cases, by test; patience: seconds of a processor for all."""
+    limits = {row.test: (max(0.25 * patience, SLOWER * row.seconds * share / float(SHARE)), share) for row, share in shares.items()}
+    kept, failed, process = place / "results.jsonl", place / "failed.txt", suite(place)
     kept.unlink(missing_ok=True)
     assert process.stdin is not None and process.stdout is not None
-    question = {
-        "file": fault.file.removeprefix(f"{PACKAGE}/"),
-        "line": fault.line,
-        "new": fault.new if fault.in_python else "",
-        "tests": limits,
-        "share": share,
-        "limit": 8 * patience,
-        "kept": str(kept),
-        "failed": str(failed),
-    }
+    question = {**asdict(planted), "tests": limits, "limit": patience, "kept": str(kept), "failed": str(failed)}
     process.stdin.write(json.dumps(question) + "\n")
     process.stdin.flush()
     code = next((int(text.split()[1]) for text in process.stdout if text.startswith("ended: ")), None)
     if code is None or code == BROKE:
-        raise RuntimeError(f"the property suite did not run with {fault}")
-    by = {0: MISSED, -signal.SIGPROF: "a test that does not end", -signal.SIGXCPU: UNDECIDED, -signal.SIGKILL: UNDECIDED}
+        raise RuntimeError(f"the property suite did not run with {planted}")
+    by = {0: MISSED, -signal.SIGPROF: ENDLESS, -signal.SIGXCPU: UNDECIDED, -signal.SIGKILL: UNDECIDED}
     if code == 1:
         return failed.read_text(encoding="utf-8"), rows_of(kept)
     return by.get(code, f"exit {code}"), rows_of(kept)
 
 
-def failing_relation(place: Path, fault: Fault, patience: int) -> str:
-    """The first test of the property suite that fails with a fault planted, the quickest first, then with more cases those
+@cache
+def passes(place: Path, row: Row, share: float, patience: int) -> bool:
+    """Whether a test passes without a fault, with a share of the cases."""
+    return asked_of(place, Planted(), {row: share}, patience)[0] == MISSED
+
+
+def finding(place: Path, planted: Planted, shares: dict[Row, float], patience: int) -> tuple[str, list[Row]]:
+    """`asked_of`, without tests that fail without a fault too."""
+    spare, passed = dict(shares), []
+    while True:
+        by, seen = asked_of(place, planted, spare, patience)
+        passed += seen
+        spare = {row: share for row, share in spare.items() if row.test not in {one.test for one in seen}}
+        at = next((row for row in spare if by in (row.test, ENDLESS)), None)
+        if at is None or passes(place, at, spare[at], patience):
+            return by, passed
+        print(f"skipped, since it fails without a fault: {at.test}", flush=True)
+        del spare[at]
+
+
+def failing_relation(place: Path, fault: Fault, planted: Planted, patience: int) -> str:
+    """The first test of the property suite that fails with a fault planted, in the order of `relations_of`, then with more cases those
     whose results change, or all; else one of the `NOT_CAUGHT`."""
     chosen = relations_of(place, fault)
     if not chosen:
         return NOWHERE
-    build = 0 if fault.in_python else time.monotonic_ns()
-    by, seen = asked_of(place, build, fault, chosen, float(SHARE), patience)
+    shares = {row: OF_KERNELS if row.chapter in KERNEL_CHAPTERS and row.seconds < QUICK else float(SHARE) for row in chosen}
+    by, seen = finding(place, planted, shares, patience)
     before = {row.test: row.results for row in chosen}
     turned = {row.test for row in seen if row.results != before[row.test]}
     changed = [row for row in chosen if row.test in turned]
     if by == MISSED:
-        more, _ = asked_of(place, build, fault, changed or chosen, MORE, patience)
+        more, _ = finding(place, planted, {row: MORE for row in changed or chosen}, patience)
         by = (MISSED if changed else UNCHANGED) if more in NOT_CAUGHT else f"{more} with more cases"
-    if build:
-        suite(place, build).kill()
     return by
 
 
@@ -308,14 +339,19 @@ def failing(place: Path, room: str, patience: int) -> str:
 def caught_by(place: Path, fault: Fault, patience: int, properties: bool = False) -> str:
     """The test that fails with a fault planted, or ""; properties: of the property suite alone."""
     if fault.in_python:
-        return failing_relation(place, fault, patience)
+        planted = Planted(fault.file.removeprefix(f"{PACKAGE}/"), fault.line, fault.new)
+        return failing_relation(place, fault, planted, patience)
+    core = place / "cores" / f"{time.monotonic_ns()}.so"  # the loader keeps what it has loaded by its name
     plant(place, fault)
     try:
-        if not fault.in_python:
-            try:
-                apart.build(place)
-            except subprocess.CalledProcessError:
-                return "the build"
-        return failing_relation(place, fault, patience) if properties else failing(place, fault.room, patience)
+        if properties:
+            apart.build_core(place, core)
+        else:
+            apart.build(place)
+    except subprocess.CalledProcessError:
+        return "the build"
+    else:
+        return failing_relation(place, fault, Planted(core=str(core)), patience) if properties else failing(place, fault.room, patience)
     finally:
+        core.unlink(missing_ok=True)
         plant(place, fault, back=True)

@@ -5,6 +5,7 @@ import re
 #: Quantity -> patterns of `analysis.key` (without indices) that belong to it; the first that fits wins
 QUANTITIES: dict[str, tuple[str, ...]] = {
     "size of a strengthening": (r"^strengthen\S*\.",),
+    "thrust and horizontal load of networks": (r"^thrust-network\S*\.",),
     "start of sliding": (r"hand_over\.time_s$", r"\.handed_over$"),
     "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks(?:\[\d+\])?\.", r"verification\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
@@ -49,7 +50,6 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"thrust_at_rest",
         r"least_part_of_joints",
         r"sections\.(?:least|central|greatest)_N",
-        r"^thrust-network\S*\.",
     ),
     "force in a tie, a wall or a restraint": (r"ties(?:_opposite)?\.", r"bars\.", r"pushover\S*\.walls\.", r"seats\.", r"restraints\."),
     "movement of supports": (r"movement_at_fall", r"openings\."),

@@ -9,8 +9,8 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     codes     `code-checks` of a panel, by NTC 2018, the code of decks that name none; its least lateral strength
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
     units     `sla` of its units and joints, likewise, to 75 % of the peak, on a bed joint at the foot. Walls of more than 200 units
-              have units twice as long and as high. Head joints of blocks in thin beds are unfilled and carry no stress (Mann and
-              Mueller 1982). Blocks are units of 190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a
+              have units twice as long and as high, if five of them or more remain in a course. Head joints of blocks in thin beds
+              are unfilled and carry no stress (Mann and Mueller 1982). Blocks are units of 190 mm and higher; a bed is thin up to 3 mm (height of a course less that of a
               unit). Walls with the same deck share one run. The failure mode is that of the state at the peak: does more than half
               of the displacement of the top come from the rotation of horizontal sections (F), or from the slip of beds and the
               shear of units (S)?
@@ -275,8 +275,9 @@ def has_unfilled_heads(wall: Wall) -> bool:
 def units_deck(wall: Wall) -> dict[str, Any]:
     """The deck of a wall of units."""
     courses, count = round(wall.height / wall.unit_height), max(1, round(wall.length / wall.unit_length))
-    if courses * count > MOST_UNITS:
-        courses, count = round(0.5 * wall.height / wall.unit_height), max(1, round(0.5 * wall.length / wall.unit_length))
+    fewer = round(0.5 * wall.length / wall.unit_length)
+    if courses * count > MOST_UNITS and fewer >= LEAST_UNITS:
+        courses, count = round(0.5 * wall.height / wall.unit_height), fewer
     bond = {"unit_length": wall.length / count, "unit_height": wall.height / courses}
     tension, cracks = BOND_TENSION * wall.cohesion, UNIT_TENSION * wall.compressive
     joints = {
@@ -367,8 +368,10 @@ def failure_of_state(wall: Wall, answer: dict[str, Any], arrays: dict[str, Any])
     return "F" if shares[0] > 0.5 else "S", "rotation {:.0%}, slip {:.0%}, shear of units {:.0%}".format(*shares)
 
 
-#: Units of a wall beyond which they are twice as long and as high; processor time of a run [s]
-MOST_UNITS, BUDGET = 200, 180.0
+#: Units of a wall beyond which they are twice as long and as high, which keeps the slope of stair-step cracks; units that then remain
+#: in a course at least: an element is half a unit, so that the middle of the compressed toe lies within a twentieth of the length.
+#: Processor time of a run [s]
+MOST_UNITS, LEAST_UNITS, BUDGET = 200, 5, 180.0
 #: Share of the peak below which a wall of units is followed no further: the load at 80 % is passed
 ENOUGH = 0.75
 #: Least height of blocks; greatest thickness of beds of thin layer mortar [m]

@@ -12,7 +12,8 @@ module api_dem_run
 contains
 
    !> Types of joints; the first is that of contacts that form later
-   subroutine laws(handle, nlaw, normal_stiffness, shear_stiffness, friction, cohesion, tension, damping, status)
+   subroutine laws(handle, nlaw, normal_stiffness, shear_stiffness, friction, cohesion, tension, damping, strength, &
+                   status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_out_of_memory
       use dem_handle, only : built_model, model_take, set_laws
@@ -25,6 +26,7 @@ contains
       real(c_double), intent(in) :: cohesion(nlaw)
       real(c_double), intent(in) :: tension(nlaw)
       real(c_double), intent(in) :: damping(nlaw)
+      real(c_double), intent(in) :: strength(nlaw)            !! in compression; 0: corners do not crush
       integer(c_int), intent(out) :: status
       class(built_model), pointer :: built
       type(joint_law), allocatable :: given(:)
@@ -40,6 +42,7 @@ contains
          given%cohesion = cohesion
          given%tension = tension
          given%damping = damping
+         given%strength = strength
          call set_laws(built, given, status)
       end if
       call handle_leave(handle)

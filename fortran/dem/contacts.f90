@@ -21,6 +21,8 @@ module dem_contacts
       real(wp) :: dash_s = 0.0_wp       !! shear dashpot force [N]
       real(wp) :: friction_loss = 0.0_wp  !! [J]
       real(wp) :: damping_loss = 0.0_wp   !! [J]
+      real(wp) :: slip(2) = 0.0_wp      !! on rigid contacts: sliding velocities of the last step and of the one before [m/s]
+      real(wp) :: late = 0.0_wp         !! shear impulse that acts in the next step, see dem_rigid [N s]
       logical :: closed = .false.
       logical :: bonded = .false.       !! cohesion and tension not lost yet
    end type contact_point
@@ -40,6 +42,7 @@ module dem_contacts
       real(wp) :: ax = 0.0_wp, ay = 0.0_wp          !! end of the incident edge, in body 2: low end [m]
       real(wp) :: bx = 0.0_wp, by = 0.0_wp          !! start of the incident edge: high end [m]
       real(wp) :: support_work = 0.0_wp             !! done by moving supports [J]
+      real(wp) :: crushed = 0.0_wp                  !! energy that crushing corners hold, see dem_crushing [J]
       real(wp) :: loss_before(2) = 0.0_wp           !! friction, damping of contacts that are gone [J]
       type(contact_point) :: point(2)
    end type contact_pair
@@ -74,6 +77,7 @@ module dem_contacts
       real(wp) :: x(2), y(2)            !! contact points [m]
       real(wp) :: gap(2)                !! distances, negative where they overlap [m]
       real(wp) :: width                 !! of the common stretch [m]
+      logical :: propped(2) = .false.   !! without dashpot: open but pressed, or crushed altogether
    end type overlap
 
 contains

@@ -142,7 +142,7 @@ contains
       status = status_invalid_argument
       if (size(law) < max(1, built%highest_law)) return
       if (.not. all(law%normal_stiffness > 0.0_wp .and. law%shear_stiffness > 0.0_wp)) return
-      if (.not. all(min(law%friction, law%cohesion, law%tension, law%damping) >= 0.0_wp)) return
+      if (.not. all(min(law%friction, law%cohesion, law%tension, law%damping, law%strength) >= 0.0_wp)) return
       status = status_out_of_memory
       allocate (copy(size(law)), stat=failed)
       if (failed /= 0) return

@@ -15,6 +15,7 @@ module dem_joint
       real(wp) :: cohesion = 0.0_wp             !! of a bonded joint: plane [N per m of joint], space [Pa]
       real(wp) :: tension = 0.0_wp              !! strength of a bonded joint, the same
       real(wp) :: damping = 0.0_wp              !! stiffness-proportional, beta [s]
+      real(wp) :: strength = 0.0_wp             !! in compression, plane alone [N per m of joint]; 0: corners do not crush
    end type joint_law
 
 contains

@@ -58,12 +58,15 @@ contains
       type(body), intent(inout) :: a            !! owner of the reference edge
       type(body), intent(inout) :: b            !! owner of the incident edge
       type(contact_pair), intent(inout) :: pair
+      type(joint_law) :: own
       type(point_frame) :: frame
       type(point_force) :: force
       real(wp) :: u_n, u_t
       integer :: i
 
+      own = law
       do i = 1, 2
+         own%damping = merge(0.0_wp, law%damping, now%propped(i))
          associate (point => pair%point(i))
             if (now%gap(i) >= 0.0_wp .or. now%width <= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.
@@ -76,7 +79,7 @@ contains
             call find_relative_velocity(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
             if ((now%gap(i) < 0.0_wp .and. now%width > 0.0_wp) .or. point%bonded) then
                if (.not. point%closed) call close_point(pair, now%width, point)
-               call press_point(law, kick, drift, now%gap(i), u_t, frame, a, b, point, force)
+               call press_point(own, kick, drift, now%gap(i), u_t, frame, a, b, point, force)
             else
                call open_point(law, point)
                force = point_force()
@@ -311,13 +314,13 @@ contains
       point%length = 0.5_wp * max(width, sliver * min(pair%reference_length, pair%incident_length))
    end subroutine close_point
 
-   !> Energy in the springs of a pair: (N^2 / k_n + S^2 / k_s) / (2 l), summed over its points [J]
+   !> Energy in the springs of a pair: (N^2 / k_n + S^2 / k_s) / (2 l), summed over its points, and in corners that crush [J]
    pure function elastic_energy(law, pair) result(energy)
       type(joint_law), intent(in) :: law
       type(contact_pair), intent(in) :: pair
       real(wp) :: energy
       integer :: i
-      energy = 0.0_wp
+      energy = pair%crushed
       do i = 1, 2
          associate (point => pair%point(i))
             if (.not. point%closed) cycle

@@ -6,8 +6,10 @@ module dem_moreau
    use dem_contacts, only : contact_pair, overlap, measure_overlap, choose_edges
    use dem_law, only : point_force, point_frame, frame_of, hand_over, find_relative_velocity
    use dem_model, only : block_model, predict_velocity, prepare_step, pull_ties
-   use dem_rigid, only : number_bodies, parting, solve_step
-   use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_plane, problem_room
+   use dem_rigid, only : bear_mortar, gives_way, find_reversal, has_mortar, number_bodies, parting, &
+      solve_step, steady
+   use nonsmooth_impulses, only : along_normal, along_tangent, find_point_rate, impulse_problem, in_plane, &
+      problem_room
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -131,6 +133,7 @@ contains
       type(point_frame) :: frame
       real(wp) :: distance, u_n, u_t, still_n, still_t
       integer :: i, n, side
+      logical :: bonded
 
       associate (pair => model%contacts%pair(k), rigid => model%rigid, problem => model%rigid%problem)
          model%number(:, k) = 0
@@ -152,6 +155,7 @@ contains
                problem%row(:, 2, along_normal, n) = [frame%nx, frame%ny, frame%b_n]
                problem%row(:, 1, along_tangent, n) = [-frame%tx, -frame%ty, -frame%a_t]
                problem%row(:, 2, along_tangent, n) = [frame%tx, frame%ty, frame%b_t]
+               bonded = pair%point(i)%bonded .and. has_mortar(model%law(pair%law))
                ! Parting velocity over the last step, where supports move as in the next one
                u_n = 0.0_wp
                u_t = 0.0_wp
@@ -168,10 +172,18 @@ contains
                   end associate
                end do
                problem%shift(along_normal, n) = still_n &
-                  + parting(rigid, model%step, now%gap(i), next%gap(i), u_n + still_n)
+                  + parting(rigid, model%step, now%gap(i), next%gap(i), u_n + still_n, bonded)
                problem%shift(along_tangent, n) = still_t
                problem%friction(n) = model%law(pair%law)%friction
+               call bear_mortar(rigid, model%law(pair%law), n, merge(0.5_wp * now%width * model%kick, 0.0_wp, bonded))
                problem%impulse(:, n) = model%kick * [pair%point(i)%spring_n, pair%point(i)%spring_s]
+               if (.not. abs(pair%point(i)%late) > 0.0_wp) cycle
+               do side = 1, 2
+                  associate (at => 3 * problem%node(side, n))
+                     if (at > 0) problem%free(at - 2:at) = problem%free(at - 2:at) &
+                        + pair%point(i)%late * problem%row(:, side, along_tangent, n) / problem%mass(at - 2:at)
+                  end associate
+               end do
             end do
             call share_friction(pair, now, model%number(:, k), problem)
          end associate
@@ -208,20 +220,23 @@ contains
       type(overlap) :: now
       type(point_frame) :: frame
       type(point_force) :: force
-      real(wp) :: u_n, u_t
+      real(wp) :: u_n, u_t, late(2)
       integer :: i
 
       associate (problem => model%rigid%problem)
          associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
             call measure_overlap(pair, a, b, now)
+            late = find_late(model, pair, point)
             do i = 1, 2
                force = point_force()
                if (point(i) > 0) then
                   force%normal = problem%impulse(along_normal, point(i)) / model%kick
-                  force%shear = problem%impulse(along_tangent, point(i)) / model%kick
+                  force%shear = (problem%impulse(along_tangent, point(i)) + pair%point(i)%late) / model%kick
                end if
+               pair%point(i)%late = late(i)
+               if (pair%point(i)%bonded) pair%point(i)%bonded = is_held(model, point(i))
                associate (was => pair%point(i))
-                  if (.not. (was%closed .or. force%normal > 0.0_wp .or. abs(force%shear) > 0.0_wp)) cycle
+                  if (.not. (was%closed .or. max(abs(force%normal), abs(force%shear)) > 0.0_wp)) cycle
                   frame = frame_of(now, i, a, b)
                   call find_relative_velocity(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
                   was%damping_loss = was%damping_loss - 0.5_wp * model%drift * (was%spring_n + force%normal) * u_n
@@ -229,11 +244,58 @@ contains
                   call hand_over(model%kick, model%drift, frame, was, force, a, b, pair%support_work)
                   was%spring_n = force%normal
                   was%spring_s = force%shear
-                  was%closed = force%normal > 0.0_wp .or. abs(force%shear) > 0.0_wp
+                  was%closed = max(abs(force%normal), abs(force%shear)) > 0.0_wp
                end associate
             end do
          end associate
       end associate
    end subroutine apply_impulses
+
+   !> Shear impulses that are due to the points of a pair in the next step, as sliding has reversed; keeps the sliding velocities
+   function find_late(model, pair, point) result(late)
+      type(block_model), intent(in) :: model
+      type(contact_pair), intent(inout) :: pair
+      integer, intent(in) :: point(2)               !! in the problem, 0: it cannot press
+      real(wp) :: late(2)
+      real(wp) :: w(3), old(2), older(2), held, bound, share
+      logical :: turns(2), reverses
+      integer :: i
+      late = 0.0_wp
+      held = 0.0_wp
+      bound = 0.0_wp
+      do i = 1, 2
+         old(i) = pair%point(i)%slip(1)
+         older(i) = pair%point(i)%slip(2)
+         w = 0.0_wp
+         if (.not. is_held(model, point(i)) .and. point(i) > 0) w = find_point_rate(model%rigid%problem, point(i))
+         pair%point(i)%slip = [w(along_tangent), merge(old(i), 0.0_wp, w(along_tangent) * old(i) > 0.0_wp)]
+         turns(i) = point(i) > 0 .and. abs(old(i)) > 0.0_wp .and. w(along_tangent) * old(i) <= 0.0_wp &
+            .and. .not. pair%point(i)%bonded
+         if (.not. turns(i)) cycle
+         associate (p => model%rigid%problem%impulse(:, point(i)))
+            turns(i) = abs(p(along_normal) - model%kick * pair%point(i)%spring_n) &
+               < steady * p(along_normal)
+            held = held + sign(p(along_tangent), old(i) * p(along_tangent))
+            bound = bound + model%rigid%problem%friction(point(i)) * p(along_normal)
+         end associate
+      end do
+      do i = 1, 2
+         if (.not. turns(i)) cycle
+         associate (p => model%rigid%problem%impulse(:, point(i)))
+            call find_reversal(sign(1.0_wp, old(i)) * older(i), abs(old(i)), held, bound, reverses, share)
+            if (reverses) late(i) = sign(1.0_wp, old(i)) * share * model%rigid%problem%friction(point(i)) &
+               * p(along_normal) - p(along_tangent)
+         end associate
+      end do
+   end function find_late
+
+   !> Whether mortar holds a point in this step
+   pure function is_held(model, point) result(held)
+      type(block_model), intent(in) :: model
+      integer, intent(in) :: point                  !! in the problem, 0: it cannot press
+      logical :: held
+      held = point > 0
+      if (held) held = .not. gives_way(model%rigid, model%model_clock, point)
+   end function is_held
 
 end module dem_moreau

@@ -13,6 +13,14 @@
 !> closes faster than gravity would in a few steps leaves with e times its speed instead. An overlap that is there
 !> already is undone slowly.
 !>
+!> Mortar: a contact point that is bonded keeps its gap, with |S| <= c l + mu N and N >= -f_t l, and f_t at most c / mu. The impulses
+!> are any within these limits, so that mortar holds as long as some forces in equilibrium do, as in limit analysis. Where a
+!> bonded point moves at a limit, its mortar is lost for good.
+!>
+!> Reversals: where sliding stops within a step and starts again in the opposite direction, the impulses of the step hold the contact
+!> at its end. Friction would have acted against the first direction for a share theta of the step, and against the second for the
+!> rest: mu N h (1 - 2 theta) in sum. The difference acts in the next step, so that the slip is of second order, too.
+!>
 !> Quasi-static: every step starts from rest, so that nothing moves but what is moved or cannot stand, and time waits
 !> until what moves has come to rest.
 module dem_rigid
@@ -20,12 +28,13 @@ module dem_rigid
    use common_status, only : status_ok, status_not_finite, status_out_of_memory
    use dem_clock, only : model_clock
    use dem_tape, only : tape
-   use nonsmooth_impulses, only : impulse_effort, impulse_problem, problem_new, solve_impulses
+   use dem_joint, only : joint_law
+   use nonsmooth_impulses, only : find_point_rate, impulse_effort, impulse_problem, problem_new, solve_impulses
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: rigid_solver, rigid_setting, set_rigid, forget_effort, walk_effort, suitable_step, number_bodies, &
-      solve_step, parting, wait_for_rest
+      solve_step, parting, has_mortar, bear_mortar, gives_way, find_reversal, wait_for_rest
 
    real(wp), parameter :: natural = 0.002_wp       !! of the time in which a block falls by its own size
    real(wp), parameter :: unhurried = 0.1_wp       !! the same without inertia
@@ -33,6 +42,8 @@ module dem_rigid
    integer, parameter :: most_rounds = 200
    real(wp), parameter :: at_rest = 1.0e-4_wp      !! of that velocity
    integer, parameter :: most_waits = 5000
+   !> Of a normal impulse: no impact where it changes by less in a step
+   real(wp), parameter, public :: steady = 0.5_wp
    real(wp), parameter :: recovery = 2.0_wp        !! steps of gravity: velocity at which overlaps are undone
    real(wp), parameter :: gentle = 5.0_wp          !! steps of gravity: slower contacts do not rebound
    real(wp), parameter :: least_gravity = 1.0e-3_wp   !! by which velocities are measured where there is less [m/s^2]
@@ -167,15 +178,21 @@ contains
    end subroutine solve_step
 
    !> What is added to the parting velocity of a contact: what remains must not be negative [m/s]
-   pure function parting(solver, step, gap, next_gap, u_n) result(shift)
+   pure function parting(solver, step, gap, next_gap, u_n, bonded) result(shift)
       class(rigid_solver), intent(in) :: solver
       real(wp), intent(in) :: step                  !! [s]
       real(wp), intent(in) :: gap                   !! at the start of the step [m]
       real(wp), intent(in) :: next_gap              !! at the place that the old velocities lead to [m]
       real(wp), intent(in) :: u_n                   !! parting velocity of the last step [m/s]
+      logical, intent(in) :: bonded                 !! mortar keeps the gap, even one above 0
       real(wp) :: shift
       real(wp) :: speed
       speed = step * solver%gravity
+      if (bonded) then
+         shift = (next_gap - max(gap, 0.0_wp)) / step - u_n
+         if (gap < -recovery * speed * step) shift = shift - gap / step - recovery * speed
+         return
+      end if
       if (solver%setting%rebound > 0.0_wp .and. next_gap < 0.0_wp .and. u_n < -gentle * speed) then
          shift = solver%setting%rebound * u_n
          return
@@ -183,6 +200,57 @@ contains
       shift = next_gap / step - u_n
       if (gap < -recovery * speed * step) shift = shift - gap / step - recovery * speed
    end function parting
+
+   !> Whether a joint has mortar at all
+   elemental function has_mortar(law) result(has)
+      type(joint_law), intent(in) :: law
+      logical :: has
+      has = max(law%cohesion, law%tension) > 0.0_wp
+   end function has_mortar
+
+   !> Strength of the mortar at a contact point, as impulses of a step
+   pure subroutine bear_mortar(solver, law, k, share)
+      class(rigid_solver), intent(inout) :: solver
+      type(joint_law), intent(in) :: law
+      integer, intent(in) :: k                      !! point
+      real(wp), intent(in) :: share                 !! length [m] or area [m^2] of the point times the step of velocities [s]
+      associate (problem => solver%problem)
+         problem%cohesion(k) = law%cohesion * share
+         problem%tension(k) = law%tension * share
+         if (law%friction * problem%tension(k) > problem%cohesion(k)) then
+            problem%tension(k) = problem%cohesion(k) / law%friction
+         end if
+      end associate
+   end subroutine bear_mortar
+
+   !> Whether a point moves relative to where its mortar holds it
+   pure function gives_way(solver, clock, k) result(moves)
+      class(rigid_solver), intent(in) :: solver
+      class(model_clock), intent(in) :: clock
+      integer, intent(in) :: k
+      logical :: moves
+      moves = norm2(find_point_rate(solver%problem, k)) > at_rest * clock%step * solver%gravity
+   end function gives_way
+
+   !> Whether sliding stops within a step and starts again in the opposite direction, from the speeds in the last two steps and from
+   !> the friction that holds the contact. Over the weight of the step the load is rho, with old = theta (1 + rho) and
+   !> held = rho - theta (1 + rho) of the friction; it starts again where rho > 1
+   pure subroutine find_reversal(older, old, held, bound, reverses, share)
+      real(wp), intent(in) :: older                 !! speed in the step before the last [m/s]
+      real(wp), intent(in) :: old                   !! speed in the last step [m/s]
+      real(wp), intent(in) :: held                  !! impulse along that motion that holds the contact [N s]
+      real(wp), intent(in) :: bound                 !! greatest friction impulse [N s]
+      logical, intent(out) :: reverses
+      real(wp), intent(out) :: share                !! friction impulse of the step along that motion, over its bound: 1 - 2 theta
+      real(wp) :: fall, brake
+      share = 0.0_wp
+      fall = older - old
+      reverses = old > 0.0_wp .and. fall >= old .and. bound > 0.0_wp .and. held > -bound
+      if (.not. reverses) return
+      brake = (fall - old) / (1.0_wp + held / bound)
+      reverses = fall - brake > brake
+      share = 1.0_wp - 2.0_wp * old / fall
+   end subroutine find_reversal
 
    !> Without inertia time stands still until all has come to rest, or fallen
    pure subroutine wait_for_rest(solver, clock, speed)

@@ -7,6 +7,7 @@
 !>
 !> on body 2, the opposite on body 1, both at the place in body 2. What goes beyond F is slip s, which stays: a ductile
 !> dowel, as limit analysis takes it. Once the bodies part along n by more than the dowel reaches it is out for good.
+!> On rigid contacts (dem3_moreau) P d = s holds at the end of every step, with |S| <= F, and no spring.
 !> The force has a potential, and its dashpot is taken implicitly, as that of the shear springs is (dem3_law).
 module dem3_dowels
    use common_kinds, only : wp
@@ -14,7 +15,7 @@ module dem3_dowels
    use dem3_law, only : answers, bounded, push_body, length_of
    implicit none
    private
-   public :: dowel, act_dowel, dowel_energy
+   public :: dowel, act_dowel, dowel_energy, place_dowel
 
    type :: dowel
       integer :: body(2) = 0
@@ -48,9 +49,7 @@ contains
       if (one%is_out) return
       before = one%spring + one%dash
       old_dash = one%dash
-      at = b%x + matmul(b%turn, one%place(:, 2))
-      away = at - a%x - matmul(a%turn, one%place(:, 1))
-      normal = matmul(a%turn, one%axis)
+      call place_dowel(one, a, b, at, away, normal)
       arm_a = at - a%x
       arm_b = at - b%x
       u = b%v - a%v + cross(b%spin, arm_b) - cross(a%spin, arm_a)
@@ -73,6 +72,19 @@ contains
       call push_body(a, -force, -kick * (force - before), arm_a)
       call push_body(b, force, kick * (force - before), arm_b)
    end subroutine act_dowel
+
+   !> Where a dowel is: its place in the second body, the way to there from its place in the first, and its axis
+   pure subroutine place_dowel(one, a, b, at, away, axis)
+      type(dowel), intent(in) :: one
+      type(body), intent(in) :: a               !! the first
+      type(body), intent(in) :: b               !! the second
+      real(wp), intent(out) :: at(3)            !! [m]
+      real(wp), intent(out) :: away(3)          !! [m]
+      real(wp), intent(out) :: axis(3)
+      at = b%x + matmul(b%turn, one%place(:, 2))
+      away = at - a%x - matmul(a%turn, one%place(:, 1))
+      axis = matmul(a%turn, one%axis)
+   end subroutine place_dowel
 
    !> Spring and dashpot of a dowel that is in
    pure subroutine load_dowel(kick, offset, normal, arm_a, arm_b, a, b, one)

@@ -35,6 +35,9 @@ module dem3_law
       real(wp) :: spring_s(3) = 0.0_wp, dash_s(3) = 0.0_wp !! on the second body [N]
       real(wp) :: force(3) = 0.0_wp                        !! all of it, in the step before [N]
       real(wp) :: dash(3) = 0.0_wp                         !! of the dashpots [N]
+      !> On rigid contacts: sliding velocities of the last step and of the one before [m/s]
+      real(wp) :: slip(3, 2) = 0.0_wp
+      real(wp) :: late(3) = 0.0_wp                         !! shear impulse that acts in the next step, see dem_rigid [N s]
    end type contact_point
 
    !> Two parts of different bodies that are near each other

@@ -567,7 +567,7 @@ contains
                stiffness(:, :, who))
          end associate
       end do
-      do k = 1, size(model%dowels)
+      do k = 1, merge(0, size(model%dowels), model%rigid%setting%used)
          associate (one => model%dowels(k))
             share = merge(1.0_wp, 2.0_wp, any(model%set%item(one%body)%fixed))
             spring = joint_law(normal_stiffness=0.0_wp, shear_stiffness=one%stiffness)
@@ -700,7 +700,7 @@ contains
       end do
       do k = 1, size(model%dowels)
          associate (one => model%dowels(k))
-            now%elastic = now%elastic + dowel_energy(one)
+            if (.not. model%rigid%setting%used) now%elastic = now%elastic + dowel_energy(one)
             now%friction = now%friction + one%friction_loss
             now%damping = now%damping + one%damping_loss
             now%work = now%work + one%support_work

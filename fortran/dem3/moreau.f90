@@ -7,12 +7,14 @@
 module dem3_moreau
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_rigid, only : number_bodies, parting, solve_step
+   use dem_rigid, only : bear_mortar, find_reversal, gives_way, has_mortar, number_bodies, parting, solve_step, steady
    use dem3_bodies, only : body, cross, turn_freely
+   use dem3_dowels, only : place_dowel
    use dem3_law, only : contact_pair, contact_point
    use dem3_model, only : look_anew, predict_velocity, prepare_step, pull_ties, solid_model
    use dem3_patch, only : measure_feature
-   use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_space, problem_room
+   use nonsmooth_impulses, only : along_normal, along_tangent, find_point_rate, impulse_problem, in_space, &
+      problem_room
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -49,7 +51,7 @@ contains
             allocate (model%ahead(size(item)), stat=failed)
             if (failed /= 0) return
          end if
-         allocate (bodies(2, model%pairs), fixed(size(item)), stat=failed)
+         allocate (bodies(2, model%pairs + size(model%dowels)), fixed(size(item)), stat=failed)
          if (failed /= 0) return
          do k = 1, size(fixed)
             fixed(k) = item(k)%fixed
@@ -57,8 +59,12 @@ contains
          do k = 1, model%pairs
             bodies(:, k) = model%set%parts(model%pair(k)%part)%owner
          end do
+         do k = 1, size(model%dowels)
+            bodies(:, model%pairs + k) = model%dowels(k)%body
+         end do
          call number_bodies(rigid, in_space, fixed, bodies, status)
          if (status /= status_ok) return
+         rigid%pairs = model%pairs
          do k = 1, size(item)
             if (rigid%node(k) == 0) cycle
             associate (at => freedoms * rigid%node(k))
@@ -85,7 +91,8 @@ contains
          if (allocated(model%number)) deallocate (model%number)
          allocate (model%number(room), stat=failed)
          status = merge(status_ok, status_out_of_memory, failed == 0)
-         if (status == status_ok) call problem_room(rigid%problem, room, model%pairs, status)
+         if (status == status_ok) call problem_room(rigid%problem, room, model%pairs + size(model%dowels), &
+            status)
       end associate
    end subroutine make_problem_room
 
@@ -121,7 +128,7 @@ contains
             if (model%pair(k)%lacks_memory) status = status_out_of_memory
             if (model%pair(k)%lacks_memory) return
          end do
-         call make_problem_room(model, sum(model%pair(:model%pairs)%points), status)
+         call make_problem_room(model, sum(model%pair(:model%pairs)%points) + size(model%dowels), status)
          if (status /= status_ok) return
          problem%points = 0
          first = 1
@@ -131,7 +138,10 @@ contains
             end associate
             first = first + model%pair(k)%points
          end do
+         first = problem%points
+         call gather_dowels(model)
          call solve_step(rigid, model%model_clock, status)
+         call apply_dowels(model, first)
          first = 1
          do k = 1, model%pairs
             associate (last => first + model%pair(k)%points - 1)
@@ -175,8 +185,9 @@ contains
       type(solid_model), intent(inout) :: model
       type(contact_pair), intent(in) :: pair
       integer, intent(out) :: number(:)             !! (points) of each in the problem, 0 where it cannot press
-      real(wp) :: normal(3), frame(3, in_space), gap, next_gap, at(3), next_at(3), arm(3, 2), lever(3), u_n, still(3)
-      integer :: i, n, d, side, who(2)
+      real(wp) :: normal(3), frame(3, in_space), gap, next_gap, at(3), next_at(3), u(3), still(3), filled
+      integer :: i, n, side, who(2)
+      logical :: bonded
 
       number = 0
       who = model%set%parts(pair%part)%owner
@@ -187,50 +198,235 @@ contains
                next_at)
             call measure_feature(pair%point(i)%what, a, b, normal, gap, at)
             if (min(gap, next_gap) > model%margin) cycle
+            bonded = pair%point(i)%bonded .and. has_mortar(model%law(pair%law))
+            filled = max(pair%point(i)%filled, 0.0_wp)
             n = problem%points + 1
             problem%points = n
             number(i) = n
             frame = frame_of(normal)
-            arm(:, 1) = at - a%x
-            arm(:, 2) = at - b%x
             problem%node(:, n) = rigid%node(who)
-            u_n = 0.0_wp
-            still = 0.0_wp
-            do side = 1, 2
-               associate (c => model%set%item(who(side)), sense => merge(-1.0_wp, 1.0_wp, side == 1))
-                  do d = 1, in_space
-                     lever = cross(arm(:, side), frame(:, d))
-                     problem%row(1:3, side, d, n) = sense * frame(:, d)
-                     problem%row(4:6, side, d, n) = sense * matmul(lever, c%turn)
-                  end do
-                  if (c%fixed) then   ! supports move as in the next step
-                     still = still + sense * c%p
-                     cycle
-                  end if
-                  lever = cross(arm(:, side), normal)
-                  u_n = u_n + sense * (dot_product(normal, c%v) + dot_product(lever, c%spin))
-               end associate
-            end do
-            still = matmul(still, frame)
-            problem%shift(along_normal, n) = still(along_normal) &
-               + parting(rigid, model%step, gap, next_gap, u_n + still(along_normal))
+            call set_rows(a, b, at, frame, problem%row(:, :, :, n), u, still)
+            problem%shift(along_normal, n) = still(along_normal) + parting(rigid, model%step, gap - filled, &
+               next_gap - filled, u(along_normal) + still(along_normal), bonded)
             problem%shift(along_tangent:, n) = still(along_tangent:)
             problem%friction(n) = model%law(pair%law)%friction
+            call bear_mortar(rigid, model%law(pair%law), n, merge(pair%point(i)%what%area * model%kick, 0.0_wp, bonded))
             problem%impulse(:, n) = model%kick * matmul(pair%point(i)%force, frame)
+            if (.not. any(abs(pair%point(i)%late) > 0.0_wp)) cycle
+            do side = 1, 2
+               associate (at => freedoms * problem%node(side, n))
+                  if (at > 0) problem%free(at - 5:at) = problem%free(at - 5:at) &
+                     + (dot_product(pair%point(i)%late, frame(:, 2)) * problem%row(:, side, 2, n) &
+                     + dot_product(pair%point(i)%late, frame(:, 3)) * problem%row(:, side, 3, n)) / problem%mass(at - 5:at)
+               end associate
+            end do
          end do
       end associate
    end subroutine gather_points
+
+   !> Rows of a point for the velocities of both bodies, and its relative velocities in the last step
+   pure subroutine set_rows(a, b, at, frame, row, u, still)
+      type(body), intent(in) :: a
+      type(body), intent(in) :: b
+      real(wp), intent(in) :: at(3)                 !! [m]
+      real(wp), intent(in) :: frame(3, in_space)    !! directions
+      real(wp), intent(out) :: row(freedoms, 2, in_space)
+      real(wp), intent(out) :: u(in_space)          !! by the mobile bodies, along the directions [m/s]
+      real(wp), intent(out) :: still(in_space)      !! by supports, which move as in the next step [m/s]
+      u = 0.0_wp
+      still = 0.0_wp
+      call add_side(a, -1.0_wp, at, frame, row(:, 1, :), u, still)
+      call add_side(b, 1.0_wp, at, frame, row(:, 2, :), u, still)
+   end subroutine set_rows
+
+   !> The part of one body
+   pure subroutine add_side(c, sense, at, frame, row, u, still)
+      type(body), intent(in) :: c
+      real(wp), intent(in) :: sense                 !! -1 for the first body, 1 for the second
+      real(wp), intent(in) :: at(3)                 !! [m]
+      real(wp), intent(in) :: frame(3, in_space)
+      real(wp), intent(out) :: row(:, :)            !! (freedoms, direction)
+      real(wp), intent(inout) :: u(in_space)        !! [m/s]
+      real(wp), intent(inout) :: still(in_space)    !! [m/s]
+      real(wp) :: arm(3), lever(3)
+      integer :: d
+      arm = at - c%x
+      do d = 1, in_space
+         lever = cross(arm, frame(:, d))
+         row(1:3, d) = sense * frame(:, d)
+         row(4:6, d) = sense * matmul(lever, c%turn)
+         if (c%fixed) then
+            still(d) = still(d) + sense * dot_product(frame(:, d), c%p)
+         else
+            u(d) = u(d) + sense * (dot_product(frame(:, d), c%v) + dot_product(lever, c%spin))
+         end if
+      end do
+   end subroutine add_side
+
+   !> Dowels that are in, as points without a normal whose shear is bounded by the strength
+   pure subroutine gather_dowels(model)
+      type(solid_model), intent(inout) :: model
+      real(wp) :: at(3), next_at(3), away(3), next_away(3), axis(3), next_axis(3), frame(3, in_space), u(3), still(3)
+      real(wp) :: offset(3)
+      integer :: k, n
+      associate (rigid => model%rigid, problem => model%rigid%problem)
+         do k = 1, size(model%dowels)
+            associate (one => model%dowels(k), a => model%set%item(model%dowels(k)%body(1)), &
+                       b => model%set%item(model%dowels(k)%body(2)))
+               call place_dowel(one, a, b, at, away, axis)
+               one%is_out = one%is_out .or. dot_product(away, axis) > one%reach
+               if (one%is_out) cycle
+               call place_dowel(one, model%ahead(one%body(1)), model%ahead(one%body(2)), next_at, next_away, next_axis)
+               frame = frame_of(axis)
+               n = problem%points + 1
+               problem%points = n
+               problem%node(:, n) = rigid%node(one%body)
+               call set_rows(a, b, at, frame, problem%row(:, :, :, n), u, still)
+               problem%row(:, :, along_normal, n) = 0.0_wp
+               ! The offset from where it slipped to is none at the end of the step, seen from the first body
+               offset = matmul(next_away, model%ahead(one%body(1))%turn) - one%slip
+               offset = matmul(a%turn, offset)
+               problem%shift(:, n) = matmul(offset, frame) / model%step - u
+               problem%shift(along_normal, n) = 0.0_wp
+               problem%friction(n) = 0.0_wp
+               problem%cohesion(n) = one%strength * model%kick
+               problem%tension(n) = 0.0_wp
+               problem%impulse(:, n) = model%kick * matmul(one%spring, frame)
+               problem%impulse(along_normal, n) = 0.0_wp
+            end associate
+         end do
+      end associate
+   end subroutine gather_dowels
+
+   !> The impulses of the dowels as forces on their bodies; beyond their strength they slip
+   pure subroutine apply_dowels(model, first)
+      type(solid_model), intent(inout) :: model
+      integer, intent(in) :: first                  !! points before them in the problem
+      real(wp), parameter :: yields = 1.0_wp - 1.0e-9_wp   !! of the strength
+      real(wp) :: at(3), away(3), axis(3), frame(3, in_space), force(3), both(3), u(3)
+      integer :: k, n
+      n = first
+      do k = 1, size(model%dowels)
+         associate (one => model%dowels(k), a => model%set%item(model%dowels(k)%body(1)), &
+                    b => model%set%item(model%dowels(k)%body(2)), problem => model%rigid%problem)
+            call place_dowel(one, a, b, at, away, axis)
+            force = 0.0_wp
+            if (.not. one%is_out) then
+               n = n + 1
+               frame = frame_of(axis)
+               force = (problem%impulse(2, n) * frame(:, 2) + problem%impulse(3, n) * frame(:, 3)) / model%kick
+               if (norm2(force) > yields * one%strength) then
+                  u = find_point_rate(problem, n)
+                  u = model%step * (u(2) * frame(:, 2) + u(3) * frame(:, 3))
+                  one%slip = one%slip + matmul(u, a%turn)
+                  one%most_slip = max(one%most_slip, norm2(one%slip))
+               end if
+            end if
+            both = one%spring + force
+            u = velocity(b, at) - velocity(a, at)
+            one%friction_loss = one%friction_loss - 0.5_wp * model%drift * dot_product(both, u)
+            if (a%fixed) one%support_work = one%support_work + 0.5_wp * model%drift * dot_product(both, a%v)
+            if (b%fixed) one%support_work = one%support_work - 0.5_wp * model%drift * dot_product(both, b%v)
+            one%spring = force
+            call push_body(a, -force, at)
+            call push_body(b, force, at)
+         end associate
+      end do
+   end subroutine apply_dowels
+
+   !> Shear impulses that are due to the points of a pair in the next step, as sliding has reversed; keeps the sliding velocities.
+   !> Those that were due in this step are added to the impulses
+   pure subroutine find_late(model, pair, number)
+      type(solid_model), intent(inout) :: model
+      type(contact_pair), intent(inout) :: pair
+      integer, intent(in) :: number(:)              !! (points) of each in the problem, 0 where it cannot press
+      real(wp) :: w(3), old(3), due(3), held, bound, share
+      logical :: reverses
+      integer :: i, d
+      held = 0.0_wp
+      bound = 0.0_wp
+      do i = 1, pair%points
+         if (.not. is_turning(model, pair%point(i), number(i))) cycle
+         old = pair%point(i)%slip(:, 1)
+         associate (problem => model%rigid%problem, p => model%rigid%problem%impulse(:, number(i)))
+            held = held + dot_product(old, shear_of(problem, number(i), p)) / norm2(old)
+            bound = bound + problem%friction(number(i)) * p(along_normal)
+         end associate
+      end do
+      do i = 1, pair%points
+         associate (point => pair%point(i), problem => model%rigid%problem)
+            old = point%slip(:, 1)
+            due = 0.0_wp
+            if (is_turning(model, point, number(i))) then
+               call find_reversal(dot_product(point%slip(:, 2), old) / norm2(old), norm2(old), held, bound, reverses, share)
+               if (reverses) due = share * problem%friction(number(i)) * problem%impulse(along_normal, number(i)) &
+                  * old / norm2(old) - shear_of(problem, number(i), problem%impulse(:, number(i)))
+            end if
+            w = 0.0_wp
+            if (number(i) > 0) then
+               if (gives_way(model%rigid, model%model_clock, number(i))) w = shear_of(problem, number(i), &
+                  find_point_rate(problem, number(i)))
+               do d = along_tangent, in_space
+                  problem%impulse(d, number(i)) = problem%impulse(d, number(i)) &
+                     + dot_product(point%late, problem%row(1:3, 2, d, number(i)))
+               end do
+            end if
+            point%slip(:, 2) = merge(old, 0.0_wp, dot_product(w, old) > 0.0_wp)
+            point%slip(:, 1) = w
+            point%late = due
+         end associate
+      end do
+   end subroutine find_late
+
+   !> Whether a dry point that slid does not slide on, without an impact
+   pure function is_turning(model, point, k) result(turns)
+      type(solid_model), intent(in) :: model
+      type(contact_point), intent(in) :: point
+      integer, intent(in) :: k                      !! in the problem, 0: it cannot press
+      logical :: turns
+      turns = k > 0 .and. any(abs(point%slip(:, 1)) > 0.0_wp) .and. .not. point%bonded
+      if (.not. turns) return
+      associate (problem => model%rigid%problem, p => model%rigid%problem%impulse(along_normal, k))
+         turns = dot_product(shear_of(problem, k, find_point_rate(problem, k)), point%slip(:, 1)) &
+            <= 0.0_wp .or. .not. gives_way(model%rigid, model%model_clock, k)
+         if (turns) turns = abs(p - model%kick * dot_product(point%force, problem%row(1:3, 2, along_normal, k))) &
+            < steady * p
+      end associate
+   end function is_turning
+
+   !> The part along the tangents of values along the normal and the tangents of a point
+   pure function shear_of(problem, k, value) result(shear)
+      type(impulse_problem), intent(in) :: problem
+      integer, intent(in) :: k
+      real(wp), intent(in) :: value(in_space)
+      real(wp) :: shear(3)
+      shear = value(2) * problem%row(1:3, 2, 2, k) + value(3) * problem%row(1:3, 2, 3, k)
+   end function shear_of
+
+   !> A force at a place, added to a body unless it is a support
+   pure subroutine push_body(b, force, at)
+      type(body), intent(inout) :: b
+      real(wp), intent(in) :: force(3)              !! [N]
+      real(wp), intent(in) :: at(3)                 !! [m]
+      real(wp) :: lever(3)
+      if (b%fixed) return
+      b%force = b%force + force
+      lever = cross(at - b%x, force)
+      b%moment = b%moment + lever
+      b%touched = .true.
+   end subroutine push_body
 
    !> The impulses of a pair as forces on its bodies, and what they took
    pure subroutine apply_impulses(model, pair, number)
       type(solid_model), intent(inout) :: model
       type(contact_pair), intent(inout) :: pair
       integer, intent(in) :: number(:)              !! (points) of each in the problem, 0 where it cannot press
-      real(wp) :: frame(3, in_space), normal(3), gap, at(3), force(3), both(3), u(3), by_normal, lever(3)
+      real(wp) :: frame(3, in_space), normal(3), gap, at(3), force(3), both(3), u(3), by_normal
       integer :: i, who(2)
 
       who = model%set%parts(pair%part)%owner
       associate (a => model%set%item(who(1)), b => model%set%item(who(2)))
+         call find_late(model, pair, number)
          do i = 1, pair%points
             associate (point => pair%point(i))
                if (number(i) == 0 .and. .not. point%closed) cycle
@@ -239,6 +435,9 @@ contains
                if (number(i) > 0) then
                   frame = frame_of(normal)
                   force = matmul(frame, model%rigid%problem%impulse(:, number(i))) / model%kick
+               end if
+               if (point%bonded .and. number(i) > 0) then
+                  point%bonded = .not. gives_way(model%rigid, model%model_clock, number(i))
                end if
                point%closed = any(abs(force) > 0.0_wp)
                ! Mean force over the position step before, times the velocity that led through it.
@@ -251,18 +450,8 @@ contains
                if (b%fixed) pair%support_work = pair%support_work - 0.5_wp * model%drift * dot_product(both, b%v)
                point%force = force
                if (.not. point%closed) cycle
-               if (.not. a%fixed) then
-                  a%force = a%force - force
-                  lever = cross(at - a%x, force)
-                  a%moment = a%moment - lever
-                  a%touched = .true.
-               end if
-               if (.not. b%fixed) then
-                  b%force = b%force + force
-                  lever = cross(at - b%x, force)
-                  b%moment = b%moment + lever
-                  b%touched = .true.
-               end if
+               call push_body(a, -force, at)
+               call push_body(b, force, at)
             end associate
          end do
       end associate

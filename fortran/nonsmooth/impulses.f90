@@ -20,6 +20,10 @@
 !> round. Then p and c follow together; few rounds are needed, since the weights are large. Where more impulses than
 !> velocities are unknown (two points of a joint, arches), those nearest to the ones at the start are found.
 !>
+!> A point may have strength of its own: |p_t| <= C + mu p_n and p_n >= -T, with T at most C / mu. At the limit of T the
+!> point opens, with w_t = 0 or |p_t| = C - mu T, and at the other limit the point slides; the law of motion is the same. Without
+!> friction and T, and with a row of zeros along the normal, a point is a dowel of strength C.
+!>
 !> Points that never slide (`no_sliding`) have c = 0 and the half space p_n >= 0 for a cone: the problem is convex as it
 !> is, and the velocities are those nearest to f, in kinetic energy, at which nothing overlaps or slides.
 module nonsmooth_impulses
@@ -29,7 +33,7 @@ module nonsmooth_impulses
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: impulse_problem, impulse_effort, problem_new, problem_room, solve_impulses
+   public :: impulse_problem, impulse_effort, problem_new, problem_room, solve_impulses, find_point_rate
 
    !> Directions at a contact point: the normal, then those of sliding
    integer, parameter, public :: along_normal = 1, along_tangent = 2
@@ -46,8 +50,9 @@ module nonsmooth_impulses
    integer, parameter :: now = 1, before = 2     !! round
    integer, parameter :: most_tries = 30
    real(wp), parameter :: close = 0.01_wp        !! of the violation that is let pass: to that Newton's method goes on
-   !> What a point does. A cone in the plane has two edges; on the round one in space that is one state
-   integer, parameter :: parts = 0, sticks = 1, slides = 2, slides_back = 3
+   !> What a point does. A cone in the plane has two edges; on the round one in space that is one state. Points with strength
+   !> may also open at the limit T: without slip (tears), or on the edge of both limits (shears)
+   integer, parameter :: parts = 0, sticks = 1, slides = 2, slides_back = 3, tears = 4, shears = 5
 
    type :: impulse_problem
       integer :: directions = 0                     !! in_plane or in_space
@@ -62,6 +67,8 @@ module nonsmooth_impulses
       real(wp), allocatable :: row(:, :, :, :)      !! (freedoms, side, direction, points): w = sum of row.v + shift
       real(wp), allocatable :: shift(:, :)          !! (direction, points) [m/s]
       real(wp), allocatable :: friction(:)          !! (points) coefficient
+      real(wp), allocatable :: cohesion(:)          !! (points) C [N s]; 0 unless set
+      real(wp), allocatable :: tension(:)           !! (points) T [N s]; 0 unless set
       real(wp), allocatable :: impulse(:, :)        !! (direction, points): a guess in, the answer out [N s]
       real(wp), allocatable :: best(:, :)           !! (direction, points) impulses of the round of least violation
       type(skyline) :: matrix
@@ -116,16 +123,20 @@ contains
       integer(c_int), intent(out) :: status
       integer :: failed
       if (allocated(problem%node)) deallocate (problem%node, problem%row, problem%shift, problem%friction, &
-         problem%impulse, problem%best, problem%weight, problem%raised, problem%asked, problem%change, &
-         problem%rate_at, problem%trial, problem%near, problem%block, problem%state, problem%was)
+         problem%cohesion, problem%tension, problem%impulse, problem%best, problem%weight, problem%raised, &
+         problem%asked, problem%change, problem%rate_at, problem%trial, problem%near, problem%block, problem%state, problem%was)
       allocate (problem%node(2, points), problem%row(problem%freedoms, 2, problem%directions, points), &
-         problem%shift(problem%directions, points), problem%friction(points), &
+         problem%shift(problem%directions, points), problem%friction(points), problem%cohesion(points), &
+         problem%tension(points), &
          problem%impulse(problem%directions, points), problem%best(problem%directions, points), &
          problem%weight(points), problem%raised(points), problem%asked(points, 2), problem%change(points, 2), &
          problem%rate_at(problem%directions, points), problem%trial(problem%directions, points), &
          problem%near(problem%directions, points), problem%block((2 * problem%freedoms)**2, pairs), &
          problem%state(points), problem%was(points), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      problem%cohesion(:) = 0.0_wp
+      problem%tension(:) = 0.0_wp
    end subroutine problem_room
 
    !> Impulses and velocities
@@ -217,14 +228,14 @@ contains
          end if
          associate (row => problem%row(:, :, :, k), shift => problem%shift(:, k), w => problem%rate_at(:, k), &
                     weight => problem%weight(k), raised => problem%raised(k), impulse => problem%impulse(:, k), &
-                    trial => problem%trial(:, k), near => problem%near(:, k), friction => problem%friction(k))
+                    trial => problem%trial(:, k), near => problem%near(:, k), state => problem%state(k))
             ! Constant sizes let the compiler unroll the loops.
             if (problem%directions == in_plane) then
                call try_impulse(6, 2, row, both, shift, weight, raised, impulse, w, trial)
-               call project_on_cone(2, friction, trial, problem%state(k), near)
+               call project_on_cone(2, problem%friction(k), problem%cohesion(k), problem%tension(k), trial, state, near)
             else
                call try_impulse(12, 3, row, both, shift, weight, raised, impulse, w, trial)
-               call project_on_cone(3, friction, trial, problem%state(k), near)
+               call project_on_cone(3, problem%friction(k), problem%cohesion(k), problem%tension(k), trial, state, near)
             end if
          end associate
       end do
@@ -264,28 +275,43 @@ contains
       end if
    end function length
 
-   !> The point of the friction cone nearest to a trial impulse: itself where it lies in the cone, the apex where it
-   !> lies in the polar cone, else a point of the edge beside it
-   pure subroutine project_on_cone(m, friction, trial, state, near)
+   !> The admissible impulse nearest to a trial one: itself where it is admissible, else a point of the edge of the cone, of the
+   !> limit of tension, or of both. Without strength the last is the apex of the cone
+   pure subroutine project_on_cone(m, friction, cohesion, tension, trial, state, near)
       integer, value :: m                           !! directions
       real(wp), intent(in) :: friction
+      real(wp), intent(in) :: cohesion              !! C [N s]
+      real(wp), intent(in) :: tension               !! T [N s], at most C / friction
       real(wp), intent(in) :: trial(m)
       integer, intent(out) :: state
       real(wp), intent(out) :: near(m)
-      real(wp) :: across, push
+      real(wp) :: across, push, held
       across = length(trial(along_tangent:))
-      if (trial(along_normal) >= 0.0_wp .and. across <= friction * trial(along_normal)) then
+      if (trial(along_normal) >= -tension .and. across <= cohesion + friction * trial(along_normal)) then
          state = sticks
          near = trial
-      else if (friction * across <= -trial(along_normal)) then
-         state = parts
-         near = 0.0_wp
-      else
+         return
+      end if
+      push = (trial(along_normal) + friction * (across - cohesion)) / (1.0_wp + friction**2)
+      if (push > -tension) then
          state = slides
          if (m == in_plane .and. trial(along_tangent) < 0.0_wp) state = slides_back
-         push = (trial(along_normal) + friction * across) / (1.0_wp + friction**2)
          near(along_normal) = push
-         near(along_tangent:) = (friction * push / across) * trial(along_tangent:)
+         near(along_tangent:) = ((cohesion + friction * push) / across) * trial(along_tangent:)
+         return
+      end if
+      held = 0.0_wp
+      if (cohesion > 0.0_wp) held = max(0.0_wp, cohesion - friction * tension)
+      near(along_normal) = -tension
+      if (.not. held > 0.0_wp) then
+         state = parts
+         near(along_tangent:) = 0.0_wp
+      else if (across <= held) then
+         state = tears
+         near(along_tangent:) = trial(along_tangent:)
+      else
+         state = shears
+         near(along_tangent:) = (held / across) * trial(along_tangent:)
       end if
    end subroutine project_on_cone
 
@@ -386,7 +412,7 @@ contains
       logical :: same
       associate (state => problem%state(:problem%points), was => problem%was(:problem%points))
          same = .not. any(state /= was)
-         if (same .and. problem%directions == in_space) same = .not. any(state == slides)
+         if (same .and. problem%directions == in_space) same = .not. any(state == slides .or. state == shears)
       end associate
    end function unchanged
 
@@ -422,7 +448,8 @@ contains
       same = .true.
       do k = first, last
          same = same .and. problem%state(k) == problem%was(k)
-         if (problem%directions == in_space) same = same .and. problem%state(k) /= slides
+         if (problem%directions == in_space) same = same .and. problem%state(k) /= slides &
+            .and. problem%state(k) /= shears
       end do
       if (same) return
       problem%block(:, pair) = 0.0_wp
@@ -430,25 +457,26 @@ contains
          if (problem%state(k) == parts) cycle
          if (problem%directions == in_plane) then
             call add_resistance(6, 2, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
-               problem%row(:, :, :, k), problem%block(:, pair))
+               problem%near(:, k), problem%row(:, :, :, k), problem%block(:, pair))
          else
             call add_resistance(12, 3, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
-               problem%row(:, :, :, k), problem%block(:, pair))
+               problem%near(:, k), problem%row(:, :, :, k), problem%block(:, pair))
          end if
       end do
    end subroutine assemble_pair
 
    !> Add to a block what a point resists with, in velocities of both bodies
-   pure subroutine add_resistance(n, m, state, friction, weight, trial, row, block)
+   pure subroutine add_resistance(n, m, state, friction, weight, trial, near, row, block)
       integer, value :: n                           !! freedoms of both
       integer, value :: m                           !! directions
       integer, intent(in) :: state
       real(wp), intent(in) :: friction
       real(wp), intent(in) :: weight
       real(wp), intent(in) :: trial(m)
+      real(wp), intent(in) :: near(m)               !! the admissible impulse nearest to the trial one
       real(wp), intent(in) :: row(n, m)
       real(wp), intent(inout) :: block(n, n)
-      real(wp) :: way(24)                           ! (n, 2): of changing size the compiler would take it from the heap
+      real(wp) :: way(12)                           ! of changing size the compiler would take it from the heap
       real(wp) :: edge(3), turning, root, across
       if (state == sticks) then
          if (m == in_plane) then
@@ -458,20 +486,23 @@ contains
          end if
          return
       end if
-      ! On the edge of the cone; and as far as the edge turns with the trial impulse, at a right angle to it
+      if (state == tears .and. m == in_plane) call add_outer(n, 1, [weight], row(:, 2:2), block)
+      if (state == tears .and. m == in_space) call add_outer(n, 2, [weight, weight], row(:, 2:m), block)
+      if (state == tears) return
+      ! As far as the impulse turns with the trial impulse, at a right angle to it; and on the edge of the cone
       across = length(trial(along_tangent:))
+      if (m == in_space) then
+         turning = length(near(along_tangent:)) / across
+         way(:n) = (trial(2) * row(:, m) - trial(m) * row(:, 2)) / across
+         call add_outer(n, 1, [turning * weight], way, block)
+      end if
+      if (state == shears) return
       root = sqrt(1.0_wp + friction**2)
       edge(along_normal) = 1.0_wp / root
       edge(along_tangent:m) = (friction / (root * across)) * trial(along_tangent:)
       way(:n) = edge(1) * row(:, 1) + edge(2) * row(:, 2)
-      if (m == in_plane) then
-         call add_outer(n, 1, [weight], way, block)
-      else
-         turning = friction / (1.0_wp + friction**2) * (trial(along_normal) / across + friction)
-         way(:n) = way(:n) + edge(m) * row(:, m)
-         way(n + 1:2 * n) = (trial(2) * row(:, m) - trial(m) * row(:, 2)) / across
-         call add_outer(n, 2, [weight, turning * weight], way, block)
-      end if
+      if (m == in_space) way(:n) = way(:n) + edge(m) * row(:, m)
+      call add_outer(n, 1, [weight], way, block)
    end subroutine add_resistance
 
    !> Add the sum of weight * row * row' to a block
@@ -548,7 +579,7 @@ contains
          raised = raising(problem%friction(k), problem%rate_at(along_tangent:, k))
          residual = max(residual, maxval(abs(problem%near(:, k) - problem%impulse(:, k))) / problem%weight(k))
          if (.not. exact) residual = max(residual, not_reached(problem, k) - rounding)
-         if (problem%state(k) == parts) then
+         if (problem%state(k) == parts .or. problem%state(k) >= tears) then
             residual = max(residual, -problem%rate_at(along_normal, k))
          else
             residual = max(residual, abs(raised - problem%raised(k)))
@@ -578,6 +609,23 @@ contains
          change = max(change, abs(w))
       end do
    end function not_reached
+
+   !> Velocities at a point that follow from the impulses found (normal, then tangents) [m/s]
+   pure function find_point_rate(problem, k) result(w)
+      type(impulse_problem), intent(in) :: problem
+      integer, intent(in) :: k
+      real(wp) :: w(in_space)
+      integer :: d, side, at
+      w = 0.0_wp
+      do d = 1, problem%directions
+         w(d) = problem%shift(d, k)
+         do side = 1, 2
+            at = problem%freedoms * (problem%node(side, k) - 1)
+            if (at < 0) cycle
+            w(d) = w(d) + dot_product(problem%row(:, side, d, k), problem%rate(at + 1:at + problem%freedoms))
+         end do
+      end do
+   end function find_point_rate
 
    !> c for the next round: as was found, and where that comes no nearer in space, as it would come to rest if
    !> every change were that share of the one before it that the last two show (Anderson 1965, of one round). In the

@@ -179,7 +179,7 @@ contains
       do k = 1, size(built)
          call build_body(bodies%item(k), built(k))
          if (built(k)%status /= status_ok .or. runs(k) < many_runs) cycle
-         if (allocated(built(k)%model)) call built(k)%model%bound_joints(built(k)%status)
+         if (allocated(built(k)%model)) call built(k)%model%bound_joints(runs(k), built(k)%status)
       end do
       !$omp end do
       !$omp do schedule(dynamic)

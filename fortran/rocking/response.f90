@@ -592,27 +592,55 @@ contains
    subroutine look_within(state, part)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: part  !! of the step
-      type(joint_demand) :: before
       real(wp) :: x, last
       integer :: k, count
+      logical :: slipped, left
       if (.not. allocated(state%problem%body%watch)) return
       count = max(1, min(1000, ceiling(part * state%step%h / state%look_every)))
+      if (count > 1) then
+         if (calm_step(state%problem, state%step, part, state%answer%joints)) return
+      end if
       x = 0.0_wp
       associate (found => state%answer%joints)
          do k = 1, count
             last = x
             x = part * real(k, wp) / real(count, wp)
-            before = found
+            slipped = found%slips_at >= 0.0_wp
+            left = found%leaves_at >= 0.0_wp
             call demand_within(state%problem, state%step, x, found)
-            if (before%slips_at < 0.0_wp .and. found%slips_at >= 0.0_wp) then
+            if (found%slips_at >= 0.0_wp .and. .not. slipped) then
               call first_failure(state%problem, state%step, last, x, .true., found%slips_at, found%slips)
             end if
-            if (before%leaves_at < 0.0_wp .and. found%leaves_at >= 0.0_wp) then
+            if (found%leaves_at >= 0.0_wp .and. .not. left) then
               call first_failure(state%problem, state%step, last, x, .false., found%leaves_at, found%leaves)
             end if
          end do
       end associate
    end subroutine look_within
+
+   !> Do the bounds of the joints show that nothing within the first part of a step changes a demand?
+   pure function calm_step(problem, step, part, demand) result(answer)
+      type(equation_of_motion), intent(in) :: problem
+      type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: part
+      type(joint_demand), intent(in) :: demand
+      logical :: answer
+      real(wp) :: q(2), v(2), horizontal(2), vertical(2)
+      answer = .false.
+      if (problem%ground%has_harmonics()) return
+      call problem%ground%value_at(problem%segment, step%t, horizontal(1), vertical(1))
+      call problem%ground%value_at(problem%segment, step%t + part * step%h, horizontal(2), vertical(2))
+      ! no polynomial leaves its first value by more than the sum of the sizes of its other coefficients
+      v = step%cv(0) + sum(abs(step%cv(1:step%degree))) * [-1.0_wp, 1.0_wp]
+      if (v(1) * v(2) > 0.0_wp) then
+         q = [min(step%cq(0), step%q), max(step%cq(0), step%q)]
+         v = [minval(abs(v)), maxval(abs(v))]
+      else
+         q = step%cq(0) + sum(abs(step%cq(1:step%degree))) * [-1.0_wp, 1.0_wp]
+         v = [0.0_wp, maxval(abs(v))]
+      end if
+      answer = problem%body%watch%changes_nothing_between(side_index(problem%side), q, v, horizontal, vertical, demand)
+   end function calm_step
 
    !> Time and joint at which a condition fails first between two fractions of a step: it holds at the first, and fails at the last
    subroutine first_failure(problem, step, first, last, slides, time, joint)
@@ -658,12 +686,19 @@ contains
       real(wp), intent(in) :: q  !! rotation [rad]
       real(wp), intent(in) :: v  !! its rate [rad/s]
       type(joint_demand), intent(inout) :: demand
-      real(wp) :: horizontal, vertical, pull(problem%body%watch%restraints)
+      real(wp) :: horizontal, vertical
       integer :: i
       i = side_index(problem%side)
       call problem%ground%value_at(problem%segment, t, horizontal, vertical)
-      if (size(pull) > 0) call problem%body%held%find_forces(i, q, v, problem%memory, pull)
-      call problem%body%watch%check_demand(i, q, v, horizontal, vertical, pull, t, demand)
+      if (problem%body%watch%restraints == 0) then
+         call problem%body%watch%check_demand(i, q, v, horizontal, vertical, [real(wp) ::], t, demand)
+         return
+      end if
+      block
+         real(wp) :: pull(problem%body%watch%restraints)
+         call problem%body%held%find_forces(i, q, v, problem%memory, pull)
+         call problem%body%watch%check_demand(i, q, v, horizontal, vertical, pull, t, demand)
+      end block
    end subroutine demand_at
 
    !> Does the resting structure slide, or open elsewhere, before a time? It does so as another mechanism would rise

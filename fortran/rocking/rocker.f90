@@ -136,8 +136,9 @@ contains
 
    !> Bounds of what the joints demand, for many runs: up to the rate that crosses the energy barrier from rest, and to twice the
    !> ground acceleration that lifts the structure
-   pure subroutine bound_joints(model, status)
+   pure subroutine bound_joints(model, runs, status)
       class(rocker), intent(inout) :: model
+      integer, intent(in) :: runs
       integer(c_int), intent(out) :: status
       real(wp) :: m, half_dm, dv, dh, drive(2)
       logical :: closed
@@ -148,7 +149,7 @@ contains
          call model%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, dv, dh, closed)
          drive(i) = 2.0_wp * dv / dh
       end do
-      call model%watch%bound_demand(drive, (1.0e3_wp * model%rest_rate)**2, status)
+      call model%watch%bound_demand(runs, drive, (1.0e3_wp * model%rest_rate)**2, status)
    end subroutine bound_joints
 
 end module rocking_rocker

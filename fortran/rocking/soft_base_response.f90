@@ -49,6 +49,9 @@ module rocking_soft_base_response
 
    !> A base that presses with less than this share of the weight lets the block fly
    real(wp), parameter :: flies = 0.01_wp
+   !> Over sqrt(height of the centre / g): friction that fails no longer before the base lifts off fails as the force vanishes. The
+   !> block slides by about half the square of this share of that height before
+   real(wp), parameter :: at_once = 0.01_wp
 
 contains
 
@@ -101,6 +104,12 @@ contains
       answer%steps = record%steps
       answer%settled = record%settled
       answer%joints = rocker%demand
+      associate (found => answer%joints)
+         if (found%leaves_at >= 0.0_wp .and. found%slips_at >= found%leaves_at - at_once * sqrt(body%block%height / gravity)) then
+            found%slips_at = -1.0_wp
+            found%slips = 0
+         end if
+      end associate
    end subroutine soft_base_respond
 
    !> Rock the block from a state until the end time or collapse

@@ -24,7 +24,9 @@ module rocking_watch
    !> Room for the same in a bound
    real(wp), parameter :: slack = 1.0e-9_wp
    !> Cells of the bounds over h/w, over q'^2/w
-   integer, parameter :: drives = 12, rates = 4
+   integer, parameter :: drives = 16, rates = 4
+   !> Runs that repay the bounds over a panel
+   integer, parameter :: runs_per_panel = 16
 
    type :: joint_watch
       real(wp) :: tolerance = 0.0_wp       !! how far the resultant may leave a joint, over its length
@@ -34,14 +36,17 @@ module rocking_watch
       real(wp) :: opens(2) = huge(1.0_wp)
       integer :: joints = 0
       integer :: panels = 0                !! between rest and the critical rotation
+      integer :: bounded = 0               !! of them, from rest
       real(wp) :: critical(2) = 0.0_wp     !! [rad]
       integer :: restraints = 0
       real(wp), allocatable :: friction(:) !! (joints) coefficient that they have
       real(wp) :: least_friction = 0.0_wp  !! of them
       !> (joint and quantity N T E, input w h q'^2 and force of each restraint, 0 to panels, side)
       real(wp), allocatable :: value(:, :, :, :)
-      !> (friction needed and how far outside, q'^2/w, h/w, panel, side) what no joint exceeds in a cell
-      real(wp), allocatable :: bound(:, :, :, :, :)
+      !> (joint, friction needed and how far outside, q'^2/w, h/w, panel, side) what a joint does not exceed in a cell
+      real(wp), allocatable :: bound(:, :, :, :, :, :)
+      !> (friction needed and how far outside, q'^2/w, h/w, panel, side) the greatest bound of all joints
+      real(wp), allocatable :: most(:, :, :, :, :)
       real(wp) :: per_rotation(2) = 0.0_wp !! panels for one rad
       real(wp) :: per_drive(2) = 0.0_wp    !! cells for one m/s^2 to +x, over w
       real(wp) :: per_rate(2) = 0.0_wp     !! cells for one rad^2/s^2 of q'^2/w
@@ -49,6 +54,7 @@ module rocking_watch
       procedure :: bound_demand
       procedure :: check_demand
       procedure :: changes_nothing
+      procedure :: changes_nothing_between
    end type joint_watch
 
    !> What a run demanded of the joints, up to the critical rotation
@@ -111,12 +117,21 @@ contains
       real(wp), intent(in) :: time           !! [s]
       type(joint_demand), intent(inout) :: demand
       real(wp) :: x, input(3)
+      integer :: cell(3)
+      logical :: bounded
 
-      if (watch%changes_nothing(i, q, v, horizontal, vertical, demand)) return
+      call find_cell(watch, i, q, v, horizontal, vertical, cell, bounded)
+      if (bounded) then
+         if (cell_changes_nothing(watch, i, cell, demand)) return
+      end if
       x = max(q, 0.0_wp) / watch%critical(i)
       if (x > 1.0_wp) return
       input = [1.0_wp + vertical / gravity, real(3 - 2 * i, wp) * horizontal, v**2]
-      call enter_forces(watch, i, x * real(watch%panels, wp), input, pull, time, demand)
+      if (bounded) then
+         call enter_some(watch, i, x * real(watch%panels, wp), input, cell, time, demand)
+      else
+         call enter_forces(watch, i, x * real(watch%panels, wp), input, pull, time, demand)
+      end if
    end subroutine check_demand
 
    !> Do the bounds show that a state changes nothing in a demand? See check_demand
@@ -129,42 +144,116 @@ contains
       real(wp), intent(in) :: vertical       !! [m/s^2]
       type(joint_demand), intent(in) :: demand
       logical :: answer
-      real(wp) :: weight, x, drive, rate, friction, outside
-      answer = .false.
-      if (.not. allocated(watch%bound)) return
-      weight = 1.0_wp + vertical / gravity
+      integer :: cell(3)
+      call find_cell(watch, i, q, v, horizontal, vertical, cell, answer)
+      if (answer) answer = cell_changes_nothing(watch, i, cell, demand)
+   end function changes_nothing
+
+   !> The cell of the bounds in which a state lies, see check_demand
+   pure subroutine find_cell(watch, i, q, v, horizontal, vertical, cell, found)
+      class(joint_watch), intent(in) :: watch
+      integer, intent(in) :: i               !! of the side
+      real(wp), intent(in) :: q              !! [rad]
+      real(wp), intent(in) :: v              !! [rad/s]
+      real(wp), intent(in) :: horizontal     !! [m/s^2]
+      real(wp), intent(in) :: vertical       !! [m/s^2]
+      integer, intent(out) :: cell(3)        !! of q'^2/w, of h/w, panel
+      logical, intent(out) :: found          !! false beyond the cells, and where nothing is bounded
+      real(wp) :: weight, x, drive, rate
+      found = .false.
+      cell = 0
+      if (.not. allocated(watch%most)) return
+      weight = 1.0_wp
+      if (abs(vertical) > 0.0_wp) weight = 1.0_wp + vertical / gravity
       if (.not. weight > 0.0_wp) return
-      weight = 1.0_wp / weight
+      if (abs(vertical) > 0.0_wp) weight = 1.0_wp / weight
       x = max(q, 0.0_wp) * watch%per_rotation(i)
       drive = horizontal * weight * watch%per_drive(i) + 0.5_wp * real(drives, wp)
       rate = v**2 * weight * watch%per_rate(i)
-      if (.not. (x < real(watch%panels, wp) .and. drive >= 0.0_wp .and. drive < real(drives, wp) &
-         .and. rate < real(rates, wp))) return
-      friction = demand%friction
-      if (demand%slips_at < 0.0_wp) friction = min(friction, watch%least_friction)
-      outside = demand%outside
-      if (demand%leaves_at < 0.0_wp) outside = min(outside, watch%tolerance)
-      associate (bound => watch%bound(:, int(rate) + 1, int(drive) + 1, int(x) + 1, i))
-         answer = bound(1) <= friction .and. bound(2) <= outside
+      found = x < real(watch%bounded, wp) .and. drive >= 0.0_wp .and. drive < real(drives, wp) &
+         .and. rate < real(rates, wp)
+      if (found) cell = [int(rate) + 1, int(drive) + 1, int(x) + 1]
+   end subroutine find_cell
+
+   !> Does no joint change anything in a demand, wherever in a cell the state lies?
+   pure function cell_changes_nothing(watch, i, cell, demand) result(answer)
+      class(joint_watch), intent(in) :: watch
+      integer, intent(in) :: i               !! of the side
+      integer, intent(in) :: cell(3)         !! see find_cell
+      type(joint_demand), intent(in) :: demand
+      logical :: answer
+      associate (most => watch%most(:, cell(1), cell(2), cell(3), i))
+         answer = most(1) <= unchanged(demand%friction, demand%slips_at, watch%least_friction) &
+            .and. most(2) <= unchanged(demand%outside, demand%leaves_at, watch%tolerance)
       end associate
-   end function changes_nothing
+   end function cell_changes_nothing
+
+   !> Up to where a value changes neither a greatest one, nor a limit that was not exceeded yet
+   pure function unchanged(greatest, failed_at, limit) result(value)
+      real(wp), intent(in) :: greatest
+      real(wp), intent(in) :: failed_at  !! first time above the limit [s]; below 0: never
+      real(wp), intent(in) :: limit
+      real(wp) :: value
+      value = greatest
+      if (failed_at < 0.0_wp) value = min(value, limit)
+   end function unchanged
+
+   !> Do the bounds show that no state between two changes anything in a demand, while the ground goes in straight lines?
+   pure function changes_nothing_between(watch, i, q, v, horizontal, vertical, demand) result(answer)
+      class(joint_watch), intent(in) :: watch
+      integer, intent(in) :: i               !! of the side
+      real(wp), intent(in) :: q(2)           !! least and greatest rotation [rad]
+      real(wp), intent(in) :: v(2)           !! the same of the size of the rate [rad/s]
+      real(wp), intent(in) :: horizontal(2)  !! at the beginning and at the end [m/s^2]
+      real(wp), intent(in) :: vertical(2)    !! [m/s^2]
+      type(joint_demand), intent(in) :: demand
+      logical :: answer
+      real(wp) :: weight(2), x(2), drive(2), rate(2), friction, outside
+      integer :: first(3), last(3), k, n, panel
+      answer = .false.
+      if (.not. allocated(watch%most)) return
+      weight = 1.0_wp + vertical / gravity
+      if (.not. all(weight > 0.0_wp)) return
+      x = max(q, 0.0_wp) * watch%per_rotation(i)
+      drive = horizontal / weight * watch%per_drive(i) + 0.5_wp * real(drives, wp)
+      rate = v**2 / [maxval(weight), minval(weight)] * watch%per_rate(i)
+      if (.not. (x(2) < real(watch%bounded, wp) .and. all(drive >= 0.0_wp .and. drive < real(drives, wp)) &
+         .and. rate(2) < real(rates, wp))) return
+      first = [int(rate(1)), int(minval(drive)), int(x(1))] + 1
+      last = [int(rate(2)), int(maxval(drive)), int(x(2))] + 1
+      friction = unchanged(demand%friction, demand%slips_at, watch%least_friction)
+      outside = unchanged(demand%outside, demand%leaves_at, watch%tolerance)
+      do panel = first(3), last(3)
+         do n = first(2), last(2)
+            do k = first(1), last(1)
+               if (watch%most(1, k, n, panel, i) > friction .or. watch%most(2, k, n, panel, i) > outside) return
+            end do
+         end do
+      end do
+      answer = .true.
+   end function changes_nothing_between
 
    !> Bounds of what the joints demand, for `changes_nothing`; none where restraints act.
    !>
    !> Over a panel the coefficients lie within the convex hull of the four control points of their cubic (Bernstein). That
    !> |T| <= m N, and that E >= -b N and E <= (1 + b) N, are linear in (w, h, q'^2)/w at each of them: they hold over a cell if
    !> they hold at its corners.
-   pure subroutine bound_demand(watch, drive, rate, status)
+   pure subroutine bound_demand(watch, runs, drive, rate, status)
       class(joint_watch), intent(inout) :: watch
+      integer, intent(in) :: runs            !! few do not repay the bounds of great rotations
       real(wp), intent(in) :: drive(2)       !! greatest |h/w|, of both sides [m/s^2]
       real(wp), intent(in) :: rate(2)        !! greatest q'^2/w [rad^2/s^2]
       integer(c_int), intent(out) :: status
-      real(wp) :: most(2, 0:rates, 0:drives), here(2, 0:rates, 0:drives)
+      real(wp), allocatable :: most(:, :, :, :), here(:, :, :, :)
       integer :: i, k, n, panel, stat
 
       status = status_ok
       if (watch%restraints > 0 .or. any(drive <= 0.0_wp) .or. any(rate <= 0.0_wp)) return
-      allocate (watch%bound(2, rates, drives, watch%panels, 2), stat=stat)
+      watch%bounded = min(watch%panels, max(4, runs / runs_per_panel))
+      allocate (watch%bound(watch%joints, 2, rates, drives, watch%bounded, 2), &
+         most(watch%joints, 2, 0:rates, 0:drives), &
+         here(watch%joints, 2, 0:rates, 0:drives), stat=stat)
+      if (stat == 0) allocate (watch%most(2, rates, drives, watch%bounded, 2), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
       watch%per_rotation = real(watch%panels, wp) / watch%critical
@@ -172,30 +261,33 @@ contains
       watch%per_rate = real(rates, wp) / rate
       do i = 1, 2
          call bound_corners(watch, i, 0, 1, here)
-         do panel = 0, watch%panels - 1
-            most = here
+         do panel = 0, watch%bounded - 1
+            most(:, :, :, :) = here
             do k = 2, 4
                call bound_corners(watch, i, panel, k, here)
-               most = max(most, here)
+               most(:, :, :, :) = max(most, here)
             end do
             do n = 1, drives
-               watch%bound(:, :, n, panel + 1, i) = max(max(most(:, :rates - 1, n - 1), most(:, 1:, n - 1)), &
-                  max(most(:, :rates - 1, n), most(:, 1:, n)))
+               do k = 1, rates
+                  watch%bound(:, :, k, n, panel + 1, i) = max(max(most(:, :, k - 1, n - 1), most(:, :, k, n - 1)), &
+                     max(most(:, :, k - 1, n), most(:, :, k, n)))
+                  watch%most(:, k, n, panel + 1, i) = maxval(watch%bound(:, :, k, n, panel + 1, i), dim=1)
+               end do
             end do
          end do
       end do
    end subroutine bound_demand
 
-   !> What the joints demand at all corners of the cells, by a control point of the coefficients over a panel
+   !> What each joint demands at all corners of the cells, by a control point of the coefficients over a panel
    pure subroutine bound_corners(watch, i, panel, point, most)
       class(joint_watch), intent(in) :: watch
       integer, intent(in) :: i               !! of the side
       integer, intent(in) :: panel           !! from 0
       integer, intent(in) :: point           !! 1 to 4
-      real(wp), intent(out) :: most(2, 0:rates, 0:drives)
-      real(wp) :: weight(4), t, drive, rate, normal, shear, moment, beyond, coefficient(3 * watch%joints, 3)
+      real(wp), intent(out), contiguous :: most(:, :, 0:, 0:)  !! (joints, friction needed and how far outside, rates, drives)
+      real(wp) :: weight(4), t, drive, rate, normal, shear, moment, beyond
+      real(wp) :: coefficient(watch%joints, 3, 3), share(watch%joints)
       integer :: first, j, k, n, joints
-      logical :: exact(watch%joints)
 
       joints = watch%joints
       first = min(max(panel - 1, 0), watch%panels - 3)
@@ -205,35 +297,30 @@ contains
       if (point == 3) weight = weight - slopes(t) / 3.0_wp
       coefficient = 0.0_wp
       do k = 1, 4
-         coefficient = coefficient + weight(k) * watch%value(:, :3, first + k - 1, i)
+         coefficient = coefficient + weight(k) * reshape(watch%value(:, :3, first + k - 1, i), shape(coefficient))
       end do
       ! A hinge, at one end of its joint whatever acts: without rounding
       do j = 1, joints
          associate (e => watch%value(2 * joints + j, :, :, i))
-            exact(j) = all(abs(e) <= 0.0_wp) .or. all(abs(e - watch%value(j, :, :, i)) <= 0.0_wp)
+            share(j) = merge(0.0_wp, 1.0_wp, all(abs(e) <= 0.0_wp) .or. all(abs(e - watch%value(j, :, :, i)) <= 0.0_wp))
          end associate
       end do
-      most(1, :, :) = 0.0_wp
-      most(2, :, :) = -1.0_wp
-      do n = 0, drives
-         drive = (real(n, wp) - 0.5_wp * real(drives, wp)) / abs(watch%per_drive(i))
-         do k = 0, rates
-            rate = real(k, wp) / watch%per_rate(i)
-            do j = 1, joints
-               associate (c => coefficient)
-                  normal = c(j, 1) + drive * c(j, 2) + rate * c(j, 3)
-                  shear = c(joints + j, 1) + drive * c(joints + j, 2) + rate * c(joints + j, 3)
-                  moment = c(2 * joints + j, 1) + drive * c(2 * joints + j, 2) + rate * c(2 * joints + j, 3)
-               end associate
-               if (.not. normal > 0.0_wp) then
-                  most(:, k, n) = huge(1.0_wp)
-                  exit
-               end if
-               beyond = merge(0.0_wp, max(-moment / normal, moment / normal - 1.0_wp) + slack, exact(j))
-               most(:, k, n) = max(most(:, k, n), [(1.0_wp + slack) * abs(shear) / normal, beyond])
+      associate (c => coefficient)
+         do n = 0, drives
+            drive = (real(n, wp) - 0.5_wp * real(drives, wp)) / abs(watch%per_drive(i))
+            do k = 0, rates
+               rate = real(k, wp) / watch%per_rate(i)
+               do j = 1, joints
+                  normal = c(j, 1, 1) + drive * c(j, 1, 2) + rate * c(j, 1, 3)
+                  shear = c(j, 2, 1) + drive * c(j, 2, 2) + rate * c(j, 2, 3)
+                  moment = c(j, 3, 1) + drive * c(j, 3, 2) + rate * c(j, 3, 3)
+                  beyond = share(j) * (max(-moment, moment - normal) / normal + slack)
+                  most(j, 1, k, n) = merge((1.0_wp + slack) * abs(shear) / normal, huge(1.0_wp), normal > 0.0_wp)
+                  most(j, 2, k, n) = merge(beyond, huge(1.0_wp), normal > 0.0_wp)
+               end do
             end do
          end do
-      end do
+      end associate
    end subroutine bound_corners
 
    !> Of the cubic through values at 0, 1, 2, 3, at t
@@ -280,11 +367,8 @@ contains
          end associate
       end do
       ! What changes nothing, by products; the rounding of a quotient is left to the joints one by one
-      friction = demand%friction
-      if (demand%slips_at < 0.0_wp) friction = min(friction, watch%least_friction)
-      friction = friction * (1.0_wp - rounding)
-      outside = demand%outside
-      if (demand%leaves_at < 0.0_wp) outside = min(outside, watch%tolerance)
+      friction = (1.0_wp - rounding) * unchanged(demand%friction, demand%slips_at, watch%least_friction)
+      outside = unchanged(demand%outside, demand%leaves_at, watch%tolerance)
       outside = outside - rounding * (1.0_wp + abs(outside))
       critical = 0
       associate (normal => force(:watch%joints), shear => force(watch%joints + 1:2 * watch%joints), &
@@ -294,39 +378,75 @@ contains
                .and. -moment(j) <= outside * normal(j) .and. moment(j) - normal(j) <= outside * normal(j))
          end do
       end associate
-      if (critical > 0) call judge_joints(watch, force, time, demand)
+      if (critical == 0) return
+      do j = 1, watch%joints
+         call judge_joint(watch, j, [force(j), force(watch%joints + j), force(2 * watch%joints + j)], time, demand)
+      end do
    end subroutine enter_forces
 
-   !> Enter the forces at the joints one by one
-   pure subroutine judge_joints(watch, force, time, demand)
+   !> Enter the forces of the joints whose bounds in a cell could change the demand, where no restraint acts; see enter_forces
+   pure subroutine enter_some(watch, i, x, input, cell, time, demand)
       class(joint_watch), intent(in) :: watch
-      real(wp), intent(in) :: force(:)       !! (joints of N, of T, of E) [N]
+      integer, intent(in) :: i               !! of the side
+      real(wp), intent(in) :: x              !! rotation in panels
+      real(wp), intent(in) :: input(3)       !! w, h, q'^2
+      integer, intent(in) :: cell(3)         !! see find_cell
+      real(wp), intent(in) :: time           !! [s]
+      type(joint_demand), intent(inout) :: demand
+      real(wp) :: weight(4), load(3), force(3), friction, outside
+      integer :: first, j, k, l
+
+      first = min(max(int(x) - 1, 0), watch%panels - 3)
+      weight = weights(x - real(first, wp))
+      friction = unchanged(demand%friction, demand%slips_at, watch%least_friction)
+      outside = unchanged(demand%outside, demand%leaves_at, watch%tolerance)
+      do j = 1, watch%joints
+         if (watch%bound(j, 1, cell(1), cell(2), cell(3), i) <= friction .and. &
+            watch%bound(j, 2, cell(1), cell(2), cell(3), i) <= outside) cycle
+         force = 0.0_wp
+         do k = 1, 4
+            load = weight(k) * input
+            associate (value => watch%value(:, :, first + k - 1, i))
+               do l = 1, 3
+                  force(l) = force(l) + load(1) * value((l - 1) * watch%joints + j, 1) &
+                     + load(2) * value((l - 1) * watch%joints + j, 2) + load(3) * value((l - 1) * watch%joints + j, 3)
+               end do
+            end associate
+         end do
+         call judge_joint(watch, j, force, time, demand)
+         friction = unchanged(demand%friction, demand%slips_at, watch%least_friction)
+         outside = unchanged(demand%outside, demand%leaves_at, watch%tolerance)
+      end do
+   end subroutine enter_some
+
+   !> Enter the forces at a joint
+   pure subroutine judge_joint(watch, j, force, time, demand)
+      class(joint_watch), intent(in) :: watch
+      integer, intent(in) :: j
+      real(wp), intent(in) :: force(3)       !! N, T, E [N]
       real(wp), intent(in) :: time           !! [s]
       type(joint_demand), intent(inout) :: demand
       real(wp) :: needed, beyond
-      integer :: j
-      do j = 1, watch%joints
-         associate (normal => force(j), shear => force(watch%joints + j), moment => force(2 * watch%joints + j))
-            if (normal > 0.0_wp) then
-               needed = abs(shear) / normal
-               beyond = max(-moment / normal, moment / normal - 1.0_wp)
-            else
-               needed = huge(needed)
-               beyond = huge(beyond)
-            end if
-         end associate
-         if (needed > watch%friction(j) .and. demand%slips_at < 0.0_wp) then
-            demand%slips_at = time
-            demand%slips = j
+      associate (normal => force(1), shear => force(2), moment => force(3))
+         if (normal > 0.0_wp) then
+            needed = abs(shear) / normal
+            beyond = max(-moment / normal, moment / normal - 1.0_wp)
+         else
+            needed = huge(needed)
+            beyond = huge(beyond)
          end if
-         if (beyond > watch%tolerance .and. demand%leaves_at < 0.0_wp) then
-            demand%leaves_at = time
-            demand%leaves = j
-         end if
-         demand%friction = max(demand%friction, needed)
-         demand%outside = max(demand%outside, beyond)
-      end do
-   end subroutine judge_joints
+      end associate
+      if (needed > watch%friction(j) .and. demand%slips_at < 0.0_wp) then
+         demand%slips_at = time
+         demand%slips = j
+      end if
+      if (beyond > watch%tolerance .and. demand%leaves_at < 0.0_wp) then
+         demand%leaves_at = time
+         demand%leaves = j
+      end if
+      demand%friction = max(demand%friction, needed)
+      demand%outside = max(demand%outside, beyond)
+   end subroutine judge_joint
 
    !> Friction, outside, both times, both joints
    pure function flat(demand) result(list)

@@ -21,7 +21,7 @@ module shell_group
    use sla_element, only : most_points
    use sla_group, only : event_vectors, material_options, most_entries
    use sla_plane_damage, only : plane_damage, damage_point
-   use sla_plane_history, only : begin_plane, respond_plane, show_plane, update_plane
+   use sla_plane_history, only : begin_plane, respond_elastic, respond_plane, set_elastic, show_plane, update_plane
    use sla_plane_points, only : points_new, points_ready, direction_modulus, refresh_plane, axis_joint
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
@@ -490,11 +490,12 @@ contains
       integer(c_int), intent(out) :: status
       integer :: p
       call begin_plane(group, u, merge(all_rows, 2, group%section%bends), status)
-      if (status /= status_ok .or. .not. group%section%bends) return
-      do p = 1, group%points
+      if (status /= status_ok) return
+      do p = 1, merge(group%points, 0, group%section%bends)
          call set_shear(group, p, [0.0_wp, 0.0_wp])
       end do
       group%kept(:, :) = group%history
+      call set_elastic(group, status)
    end subroutine begin
 
    !> As of plane points; slip and transverse shear moduli are those of the last state
@@ -514,59 +515,88 @@ contains
       real(wp), intent(out) :: f(:)
       real(wp), intent(out) :: k(:, :)
       real(wp), intent(out) :: energy
-      real(wp) :: one(most_entries), column(most_entries), sheared, none
+      real(wp) :: one(most_entries), column(most_entries), g(2, 2, most_points), held(2, most_points), sheared
       integer :: i, n
+      logical :: found
+      call respond_elastic(group, e, local, how, f, k, energy, found)
+      if (found) return
       call respond_plane(group, e, local, how, f, k, energy)
       if (.not. group%section%bends) return
       n = group%freedoms
-      call respond_across(group, e, local, .true., column, sheared)
+      call respond_across(group, e, local, column, sheared)
       f(1:n) = f(1:n) + column(1:n)
       energy = energy + sheared
       if (size(k) == 0) return
+      call sum_shear(group, e, g, held, sheared)
+      held = 0.0_wp
       do i = 1, n
          one = 0.0_wp
          one(i) = 1.0_wp
-         call respond_across(group, e, one, .false., column, none)
+         call add_across(group, e, one, g, held, column, sheared)
          k(1:n, i) = k(1:n, i) + column(1:n)
       end do
    end subroutine respond
 
-   !> Nodal forces and energy of an element's transverse shear and of the rotations about the normal
-   pure subroutine respond_across(group, e, local, slips, column, energy)
+   !> Nodal forces and energy of an element's transverse shear from its slip on, and of the rotations about the normal
+   pure subroutine respond_across(group, e, local, column, energy)
       class(shell_points), intent(in) :: group
       integer, intent(in) :: e
       real(wp), intent(in) :: local(:)
-      logical, intent(in) :: slips                   !! from the slip on, else from none
       real(wp), intent(out) :: column(most_entries)
       real(wp), intent(out) :: energy                !! [J]
-      real(wp) :: v(6, most_corners), part(6, most_corners), none(3, 3, most_points), g(2, 2, most_points)
-      real(wp) :: held(2, most_points), a(2, 2), slip(2)
+      real(wp) :: g(2, 2, most_points), held(2, most_points), slipped
+      call sum_shear(group, e, g, held, slipped)
+      call add_across(group, e, local, g, held, column, energy)
+      energy = energy + slipped
+   end subroutine respond_across
+
+   !> Transverse shear stiffness over the layers, the forces that the slip takes off, and the energy of the slip alone
+   pure subroutine sum_shear(group, e, g, held, energy)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(out) :: g(2, 2, most_points)  !! [N m]
+      real(wp), intent(out) :: held(2, most_points)  !! [N m]
+      real(wp), intent(out) :: energy                !! [J]
+      real(wp) :: a(2, 2)
       integer :: k, l, p
-      none = 0.0_wp
-      part = 0.0_wp
       g = 0.0_wp
       held = 0.0_wp
       energy = 0.0_wp
-      call to_element(group, e, local, v)
       do k = 1, group%rule%points
          do l = 1, int(group%section%layers)
             p = (e - 1) * group%per + (k - 1) * int(group%section%layers) + l
             a = shear_share * group%weight(p) * shear_of(group, p)
-            slip = group%history(slip_x:slip_y, p)
-            if (.not. slips) slip = 0.0_wp
-            g(:, :, k) = g(:, :, k) + a
-            held(:, k) = held(:, k) + matmul(a, slip)
-            energy = energy + 0.5_wp * dot_product(slip, matmul(a, slip))
+            associate (slip => group%history(slip_x:slip_y, p))
+               g(:, :, k) = g(:, :, k) + a
+               held(:, k) = held(:, k) + matmul(a, slip)
+               energy = energy + 0.5_wp * dot_product(slip, matmul(a, slip))
+            end associate
          end do
-         energy = energy - dot_product(held(:, k), shearing(group, e, k, v))
       end do
+   end subroutine sum_shear
+
+   !> Nodal forces and energy of these sums at displacements
+   pure subroutine add_across(group, e, local, g, held, column, energy)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:)
+      real(wp), intent(in) :: g(2, 2, most_points)   !! [N m]
+      real(wp), intent(in) :: held(2, most_points)   !! [N m]
+      real(wp), intent(out) :: column(most_entries)
+      real(wp), intent(out) :: energy                !! [J]
+      real(wp) :: v(6, most_corners), part(6, most_corners), none(3, 3, most_points)
+      integer :: k
+      none = 0.0_wp
+      part = 0.0_wp
+      call to_element(group, e, local, v)
       call add_forces(group, e, none, none, none, g, v, part)
-      energy = energy + 0.5_wp * sum(part(:, 1:group%rule%nodes) * v(:, 1:group%rule%nodes))
+      energy = 0.5_wp * sum(part(:, 1:group%rule%nodes) * v(:, 1:group%rule%nodes))
       do k = 1, group%rule%points
+         energy = energy - dot_product(held(:, k), shearing(group, e, k, v))
          call add_product(group%shear(:, :, k, e), -held(:, k), part)
       end do
       call from_element(group, e, part, column)
-   end subroutine respond_across
+   end subroutine add_across
 
    !> Transverse shear moduli of a point's history as a matrix [Pa]
    pure function shear_of(group, p) result(a)
@@ -602,7 +632,7 @@ contains
       do e = 1, group%elements
          call group%gather(e, u, local)
          call to_element(group, e, local, v)
-         call respond_across(group, e, local, .true., column, before)
+         call respond_across(group, e, local, column, before)
          do p = (e - 1) * group%per + 1, e * group%per
             call place_of(group, p, k, l)
             g = shearing(group, e, k, v)
@@ -620,7 +650,7 @@ contains
             end do
             call set_shear(group, p, slip)
          end do
-         call respond_across(group, e, local, .true., column, after)
+         call respond_across(group, e, local, column, after)
          lost = lost + max(0.0_wp, before - after)
       end do
    end subroutine update

@@ -15,7 +15,7 @@ module sla_continuation
    use sla_bar, only : bar_group
    use sla_coaxial, only : by_secant
    use sla_group, only : friction_group, history_group, point_group, unbounded
-   use sla_iterations, only : evaluate, explicit_step, few, growth, implicit_step, is_driven, longest_step, &
+   use sla_iterations, only : evaluate, explicit_step, few, find_places, growth, implicit_step, is_driven, longest_step, &
       loads_run_away
    use sla_ledger, only : event_log, judge_fall
    use sla_model, only : element_model
@@ -99,7 +99,8 @@ contains
          path%lambda_now = path%lambda
          path%lambda_before = path%lambda
       end associate
-      call begin_histories(model, status)
+      call find_places(model, status)
+      if (status == status_ok) call begin_histories(model, status)
    end subroutine begin_path
 
    !> Those of all points by the teeth lost so far, at the path's displacements

@@ -27,7 +27,7 @@ module sla_iterations
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: implicit_step, explicit_step, evaluate, is_driven, longest_step, loads_run_away, few, growth
+   public :: find_places, implicit_step, explicit_step, evaluate, is_driven, longest_step, loads_run_away, few, growth
 
    !> Residual over the largest nodal force: of Newton's method, of staggered steps, which approach it slowly, of the
    !> convex problems
@@ -229,14 +229,14 @@ contains
                   force(group%equation(i, e)) = force(group%equation(i, e)) + f(i) * group%factor(i, e)
                   scale = max(scale, abs(f(i)))
                end do
-               if (whole) call add_matrix(model, group, e, k, .true.)
+               if (whole) call add_symmetric(model, g, e, k)
                if (.not. (whole .and. how == by_tangent)) cycle
                select type (group)
                class is (friction_group)
                   if (.not. group%slides) cycle
                   call group%couple(e, local, k, couples)
                   model%path%coupled = model%path%coupled .or. couples
-                  if (couples) call add_matrix(model, group, e, k, .false.)
+                  if (couples) call add_coupled(model, group, e, k)
                end select
             end do
          end associate
@@ -271,37 +271,96 @@ contains
    end subroutine respond
 
    !> An element's matrix into that of the unknowns, and the forces by which moved supports act on them
-   pure subroutine add_matrix(model, group, e, k, symmetric)
+   pure subroutine add_symmetric(model, g, e, k)
+      type(element_model), intent(inout) :: model
+      integer, intent(in) :: g, e
+      real(wp), intent(in) :: k(:, :)
+      integer :: i, j, n, pair, column
+      n = model%mesh%equations
+      pair = 0
+      associate (group => model%mesh%holders(g)%group, places => model%path%places(g)%at, push => model%path%push, &
+         value => model%stiffness%value)
+         do j = 1, group%freedoms
+            column = int(group%equation(j, e))
+            if (column > n) then
+               do i = 1, group%freedoms
+                  push(group%equation(i, e)) = push(group%equation(i, e)) + &
+                     k(i, j) * group%factor(i, e) * group%factor(j, e) * model%support%moved(column - n, 2)
+               end do
+            end if
+            do i = j, group%freedoms
+               pair = pair + 1
+               if (places(pair, e) == 0) cycle
+               value(places(pair, e)) = value(places(pair, e)) + k(i, j) * group%factor(i, e) * group%factor(j, e)
+               ! Two freedoms of one equation: both orders
+               if (i /= j .and. group%equation(i, e) == column) value(places(pair, e)) = value(places(pair, e)) + &
+                  k(i, j) * group%factor(i, e) * group%factor(j, e)
+            end do
+         end do
+      end associate
+   end subroutine add_symmetric
+
+   !> What sliding friction adds to an element's matrix, not symmetric, beside the matrix
+   pure subroutine add_coupled(model, group, e, k)
       type(element_model), intent(inout) :: model
       class(element_group), intent(in) :: group
       integer, intent(in) :: e
       real(wp), intent(in) :: k(:, :)
-      logical, intent(in) :: symmetric     !! else it goes beside the matrix
       integer :: i, j, n, row, column
       real(wp) :: value
       n = model%mesh%equations
-      do j = 1, group%freedoms
-         column = int(group%equation(j, e))
-         if (column == 0) cycle
-         do i = 1, group%freedoms
-            row = int(group%equation(i, e))
-            if (row == 0) cycle
-            value = k(i, j) * group%factor(i, e) * group%factor(j, e)
-            if (column > n) then
-               model%path%push(row) = model%path%push(row) + value * model%support%moved(column - n, 2)
-            else if (symmetric .and. row >= column .and. row <= n) then
-               associate (at => position(model%stiffness%start, model%stiffness%row, row, column))
-                  model%stiffness%value(at) = model%stiffness%value(at) + value
-               end associate
-            else if (.not. symmetric .and. row <= n) then
-               associate (at => position(model%stiffness%start, model%stiffness%row, max(row, column), &
-                  min(row, column)), beside => model%path%beside)
-                  beside(at, merge(1, 2, row >= column)) = beside(at, merge(1, 2, row >= column)) + value
-               end associate
-            end if
+      associate (beside => model%path%beside, push => model%path%push)
+         do j = 1, group%freedoms
+            column = int(group%equation(j, e))
+            if (column == 0) cycle
+            do i = 1, group%freedoms
+               row = int(group%equation(i, e))
+               if (row == 0) cycle
+               value = k(i, j) * group%factor(i, e) * group%factor(j, e)
+               if (column > n) then
+                  push(row) = push(row) + value * model%support%moved(column - n, 2)
+               else if (row <= n) then
+                  associate (at => position(model%stiffness%start, model%stiffness%row, max(row, column), min(row, column)))
+                     beside(at, merge(1, 2, row >= column)) = beside(at, merge(1, 2, row >= column)) + value
+                  end associate
+               end if
+            end do
          end do
+      end associate
+   end subroutine add_coupled
+
+   !> Where the pairs of an element's freedoms, by columns of the lower triangle, lie in the matrix; 0 where one is held or moved
+   subroutine find_places(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer :: g, e, i, j, n, pair, row, column, info
+      n = model%mesh%equations
+      status = status_ok
+      if (allocated(model%path%places)) return
+      allocate (model%path%places(size(model%mesh%holders)), stat=info)
+      do g = 1, merge(size(model%mesh%holders), 0, info == 0)
+         associate (group => model%mesh%holders(g)%group)
+            if (info == 0) allocate (model%path%places(g)%at(group%freedoms * (group%freedoms + 1) / 2, group%elements), stat=info)
+            if (info /= 0) exit
+            do e = 1, group%elements
+               pair = 0
+               do j = 1, group%freedoms
+                  do i = j, group%freedoms
+                     pair = pair + 1
+                     row = int(max(group%equation(i, e), group%equation(j, e)))
+                     column = int(min(group%equation(i, e), group%equation(j, e)))
+                     model%path%places(g)%at(pair, e) = 0
+                     if (column > 0 .and. row <= n) model%path%places(g)%at(pair, e) = &
+                        position(model%stiffness%start, model%stiffness%row, row, column)
+                  end do
+               end do
+            end do
+         end associate
       end do
-   end subroutine add_matrix
+      if (info == 0) return
+      if (allocated(model%path%places)) deallocate (model%path%places)
+      status = status_out_of_memory
+   end subroutine find_places
 
    !> Residual over the largest nodal force; the equations of supports have none
    pure function residual_of(model, scale) result(ratio)
@@ -442,11 +501,14 @@ contains
       integer(c_int), intent(out) :: status
       real(wp) :: energy, scale, ratio, trial, part
       integer :: secants, i
+      logical :: evaluated
       status = status_ok
       secants = 0
       found = .false.
+      evaluated = .false.
       do iterations = 0, most_newton
-         call evaluate(model, merge(by_secant, by_tangent, secants > 0), .true., energy, scale)
+         if (.not. evaluated) call evaluate(model, merge(by_secant, by_tangent, secants > 0), .true., energy, scale)
+         evaluated = .false.
          ratio = residual_of(model, scale)
          model%path%residual = ratio
          found = ratio < tolerance .and. iterations > 0
@@ -467,14 +529,16 @@ contains
          part = 1.0_wp
          call move(model, part)
          if (model%path%on_arc) cycle     ! a search on the forces alone would leave the dissipation
+         ! The whole step mostly serves: with its matrix, for the next iteration
          do i = 0, most_halvings
-            call evaluate(model, by_secant, .false., energy, scale)
+            call evaluate(model, merge(by_tangent, by_secant, i == 0), i == 0, energy, scale)
             trial = residual_of(model, scale)
             if (trial <= 0.9_wp * ratio .or. i == most_halvings) exit
             call move(model, -0.5_wp * part)
             part = 0.5_wp * part
          end do
          if (iterations > 0 .and. .not. trial <= 0.95_wp * ratio) secants = 3
+         evaluated = i == 0 .and. secants == 0
       end do
    end subroutine newton_step
 
@@ -553,10 +617,13 @@ contains
       integer(c_int), intent(out) :: status
       real(wp) :: energy, scale, before, slope, part, trial
       integer :: i, k, n
+      logical :: evaluated
       n = model%mesh%equations
       status = status_ok
+      evaluated = .false.
       do i = 0, most_inner
-         call evaluate(model, by_frozen, .true., energy, scale)
+         if (.not. evaluated) call evaluate(model, by_frozen, .true., energy, scale)
+         evaluated = .false.
          if (residual_of(model, scale) < inner_tolerance .and. i > 0) return
          before = energy - dot_product(model%load%fa, model%path%u(0:n))
          call correct(model, model%path%drive + length, status)
@@ -566,11 +633,14 @@ contains
          call move(model, part)
          if (i == 0) cycle          ! to the control's value
          do k = 1, 10
-            call evaluate(model, by_frozen, .false., trial, scale)
+            call evaluate(model, by_frozen, k == 1, trial, scale)
+            energy = trial
+            evaluated = k == 1
             trial = trial - dot_product(model%load%fa, model%path%u(0:n))
             if (trial <= before + 1.0e-4_wp * part * slope + 1.0e-12_wp * abs(before)) exit
             call move(model, -0.5_wp * part)
             part = 0.5_wp * part
+            evaluated = .false.
          end do
       end do
    end subroutine frozen_solution

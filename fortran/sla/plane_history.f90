@@ -3,16 +3,18 @@
 module sla_plane_history
    use common_kinds, only : wp
    use common_lists, only : law_yielding => sla_law_yielding, rotating => sla_cracking_rotating
-   use common_status, only : status_ok
+   use common_status, only : status_ok, status_out_of_memory
    use sla_coaxial, only : by_frozen, by_secant, by_tangent, coaxial_law, coaxial_response, coaxial_state
    use sla_group, only : most_entries
    use sla_plane_points, only : axis_free, is_bedded, most_per, plane_points, set_band
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: plane_history, begin_plane, respond_plane, update_plane, show_plane
+   public :: plane_history, begin_plane, respond_plane, update_plane, show_plane, set_elastic, respond_elastic
 
    type, abstract, extends(plane_points) :: plane_history
+      !> (freedoms, freedoms, elements) matrices of elements without damage [N/m]
+      real(wp), allocatable :: elastic(:, :, :)
    contains
       procedure :: continues
       procedure :: begin
@@ -60,6 +62,7 @@ contains
       real(wp), intent(in) :: u(0:)
       integer(c_int), intent(out) :: status
       call begin_plane(group, u, 2, status)
+      if (status == status_ok) call set_elastic(group, status)
    end subroutine begin
 
    !> Histories by the softer of both directions
@@ -86,6 +89,73 @@ contains
       group%rate(:, :) = 0.0_wp
    end subroutine begin_plane
 
+   !> Matrices of the elements without damage; the histories of the others stay away from them
+   subroutine set_elastic(group, status)
+      class(plane_history), intent(inout) :: group
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: elastic(:, :, :)
+      real(wp) :: none(most_entries), f(most_entries), energy
+      integer :: e, info
+      if (allocated(group%elastic)) deallocate (group%elastic)
+      allocate (elastic(group%freedoms, group%freedoms, group%elements), stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
+      none = 0.0_wp
+      do e = 1, group%elements
+         call group%respond(e, none, by_frozen, f, elastic(:, :, e), energy)
+      end do
+      call move_alloc(elastic, group%elastic)
+   end subroutine set_elastic
+
+   !> Response of an element that has no damage and comes to none by these displacements: linear
+   pure subroutine respond_elastic(group, e, local, how, f, k, energy, found)
+      class(plane_history), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:)
+      integer, intent(in) :: how
+      real(wp), intent(out) :: f(:)
+      real(wp), intent(out) :: k(:, :)
+      real(wp), intent(out) :: energy
+      logical, intent(out) :: found            !! else there is no response here
+      integer :: j, n
+      f = 0.0_wp
+      energy = 0.0_wp
+      found = stays_elastic(group, e, local, how)
+      if (.not. found) return
+      n = group%freedoms
+      do j = 1, n
+         f(1:n) = f(1:n) + group%elastic(:, j, e) * local(j)
+      end do
+      energy = 0.5_wp * dot_product(f(1:n), local(1:n))
+      if (size(k) > 0) k(1:n, 1:n) = group%elastic(:, :, e)
+   end subroutine respond_elastic
+
+   !> Are an element's histories, and its strains where histories follow them, below all peaks?
+   pure function stays_elastic(group, e, local, how) result(yes)
+      class(plane_history), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:)
+      integer, intent(in) :: how
+      logical :: yes
+      real(wp) :: eps(3, most_per), most(2), mean, radius
+      integer :: j, p
+      yes = allocated(group%elastic)
+      if (.not. yes) return
+      most = huge(1.0_wp)
+      if (group%table(e) /= 0) most(1) = group%teeth%law(group%table(e))%peak
+      if (group%crush_table(e) /= 0) most(2) = group%teeth%law(group%crush_table(e))%peak
+      do p = (e - 1) * group%per + 1, e * group%per
+         yes = yes .and. group%cracked(p) == 0 .and. all(group%history(1:2, p) <= most)
+      end do
+      if (.not. yes .or. how == by_frozen) return
+      call group%strains(e, local, eps)
+      do j = 1, group%per
+         mean = 0.5_wp * (eps(1, j) + eps(2, j)) / (1.0_wp - group%nu(e))
+         radius = 0.5_wp * hypot(eps(1, j) - eps(2, j), eps(3, j)) / (1.0_wp + group%nu(e))
+         yes = yes .and. mean + radius <= most(1) .and. radius - mean <= most(2)
+      end do
+   end function stays_elastic
+
    pure subroutine respond_plane(group, e, local, how, f, k, energy)
       class(plane_history), intent(in) :: group
       integer, intent(in) :: e
@@ -97,10 +167,11 @@ contains
       real(wp) :: eps(3, most_per), b(most_entries, 3), db(most_entries, 3)
       type(coaxial_state) :: state
       integer :: p, i, n
+      logical :: found
+      call respond_elastic(group, e, local, how, f, k, energy, found)
+      if (found) return
       n = group%freedoms
-      f = 0.0_wp
       k = 0.0_wp
-      energy = 0.0_wp
       call group%strains(e, local, eps)
       do p = (e - 1) * group%per + 1, e * group%per
          call coaxial_response(law_of(group, e, p), eps(:, p - (e - 1) * group%per), group%history(1:2, p), how, state)

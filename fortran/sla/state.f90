@@ -5,11 +5,11 @@ module sla_state
    use common_kinds, only : wp
    use sla_group, only : event_vectors, most_rank, point_event, point_place, scan_result, unbounded
    use sla_regions, only : region_tree
-   use, intrinsic :: iso_c_binding, only : c_int
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
    public :: load_work, load_vectors, moved_supports, solution_vectors, limit_search, sliding_state, loop_state
-   public :: energy_ledger, force_release, residual_checks, stop_rules, monitor_set, equilibrium_path
+   public :: energy_ledger, force_release, residual_checks, stop_rules, monitor_set, equilibrium_path, entry_places
 
    !> Products of two loads, constant (a) and per multiplier (b), with the displacements of both [J]
    type :: load_work
@@ -106,8 +106,14 @@ module sla_state
       real(wp) :: force = 0.0_wp                         !! that moves supports there [N]
    end type force_release
 
+   !> Where the entries of a group's elements lie in the matrix
+   type :: entry_places
+      integer(c_int64_t), allocatable :: at(:, :)        !! (pairs of freedoms, elements of a group), 0 none
+   end type entry_places
+
    !> The path that equilibrium iterations follow where events find no equilibrium, see sla_continuation
    type :: equilibrium_path
+      type(entry_places), allocatable :: places(:)       !! (groups) of elements' entries in the matrix
       logical :: active = .false.
       logical :: implicit = .true.                       !! else implicit-explicit integration
       logical :: by_energy = .false.                     !! arc length on dissipated energy where the control snaps back

@@ -24,14 +24,14 @@ STOUT = {
 
 @relation("tilt", st.tuples(decks(*STOUT), number(1.01, 1.5)), 2e-3)
 def stouter(deck: Deck, factor: float, within: float) -> None:
-    """A stouter section bears no less."""
+    """A stouter section has no smaller capacity."""
     keys = {k: deck["structure"][k] * factor for k in STOUT[deck["structure"]["kind"]]}
     at_most("stouter", ask(deck, "tilt").capacity, ask(changed(deck, structure=keys), "tilt").capacity, within)
 
 
 @relation("tilt", st.tuples(STONES, number(0.05, 0.6), number(0.01, 0.5)), 1e-5)
 def rougher(deck: Deck, friction: float, more: float, within: float) -> None:
-    """More friction bears no less, and no sliding at all most."""
+    """More friction gives no smaller capacity, and excluded sliding the greatest."""
     found = [statics(changed(deck, joints={"friction": mu})) for mu in (friction, friction + more, "no-sliding")]
     if deck["structure"]["kind"] in SOLIDS and found[2].status == "refused":
         found = found[:2]
@@ -73,12 +73,12 @@ WINDOW = {
 
 @relation("tilt", hung(), 1e-9, examples=(WINDOW,))
 def rest_has_no_sense(deck: Deck, within: float) -> None:
-    """A stone that slides out at rest does so whatever the sense of the load: no load is carried to +x or to -x."""
+    """A block that slides out at rest gives a capacity of zero to +x and to -x."""
     found = ask(deck, "tilt", friction_rule="non-associated")
     if not found.answers:
         reject()
     names = [
-        f"is carried only by friction between its neighbours. In a state without dilatancy it slides out at any load, so no horizontal load {way}"
+        f"is carried only by friction between its neighbours. In a state without dilatancy, this block slides out at any load, so no horizontal load {way}"
         for way in ("to +x", "to -x")
     ]
     told = [name in found.warnings for name in names]
@@ -90,7 +90,7 @@ TIED = st.tuples(decks("arch", "pointed-arch", "elliptical-arch", "column"), num
 
 @relation("tilt", TIED, 1e-5)
 def a_stronger_tie(deck: Deck, force: float, factor: float, within: float) -> None:
-    """A tie bears no less than none, and a stronger one no less than a weak one."""
+    """A tie does not reduce the capacity, and a stronger tie gives no smaller capacity."""
     section = drawn(deck)
     blocks = section["structure"]["block"]
     if len(blocks) < 2:
@@ -110,7 +110,7 @@ VISCOUS = st.tuples(RECTANGLES, st.integers(2, 8), number(0.5, 1.0))
 
 @relation("tilt dem", VISCOUS, 2e-3, share=0.3, examples=(((1.0, 4.0), 6, 0.875),))
 def a_viscous_damper_in_statics(size: tuple[float, float], exponent: int, share: float, within: float) -> None:
-    """A dashpot changes no state of equilibrium: elements fall where they fall without it, and where limit analysis says; it says so.
+    """A dashpot changes no state of equilibrium: discrete elements collapse at the load of limit analysis, with it and without it, and a warning states this.
 
     exponent: of the damping, 10^k N s/m; share: height of the damper over that of the block.
     """
@@ -128,7 +128,7 @@ def a_viscous_damper_in_statics(size: tuple[float, float], exponent: int, share:
 
 @relation("tilt", st.tuples(decks("arch", "column", "block"), number(3.0, 100.0), number(1.1, 4.0)), 1e-4)
 def stronger_stone(deck: Deck, strength: float, factor: float, within: float) -> None:
-    """A greater compressive strength bears no less, and an unlimited one most. strength: over the mean pressure on the ground."""
+    """A greater compressive strength gives no smaller capacity, and an unlimited strength the greatest. strength: over the mean pressure on the ground."""
     bare = ask(deck, "tilt")
     ok(bare)
     stones = drawn(deck)["structure"]
@@ -142,13 +142,13 @@ def stronger_stone(deck: Deck, strength: float, factor: float, within: float) ->
 
 @relation("tilt", st.tuples(sections(*SMALL, "arch"), st.integers(0, 20), number(0.2, 0.8)), 1e-5)
 def a_cut(deck: Deck, block: int, share: float, within: float) -> None:
-    """A new joint through a block lets it move in more ways: it bears no more."""
+    """A new joint through a block permits more motions and gives no greater capacity."""
     at_most("cut", ask(cut(deck, block, share), "tilt").capacity, ask(deck, "tilt").capacity, within)
 
 
 @relation("tilt", decks("brickwork", "blocks", "column", "arch", "stack", friction=number(0.2, 0.9, 14)), 1e-4)
 def dilatancy_helps(deck: Deck, within: float) -> None:
-    """Associated friction bears no less than friction without dilatancy."""
+    """Associated friction gives no smaller capacity than friction without dilatancy."""
     less, most = ask(deck, "tilt", friction_rule="non-associated", starts=3), ask(deck, "tilt")
     if less.outcome in ("refused", "failed"):
         reject()
@@ -157,7 +157,7 @@ def dilatancy_helps(deck: Deck, within: float) -> None:
 
 @relation("tilt", decks(*SOLIDS), 1e-5)
 def bounds_of_solids(deck: Deck, within: float) -> None:
-    """Bounds from within and around enclose the capacity, and its certificate is kept."""
+    """Bounds by pyramids within and around the cones enclose the capacity, and its certificate holds."""
     answer = ask(deck, "tilt", direction=0.0, rose=4, starts=1, pyramids=8)
     ok(answer)
     r = answer.results
@@ -171,7 +171,7 @@ def bounds_of_solids(deck: Deck, within: float) -> None:
 
 @relation("tilt thrust", sections(friction=st.just("no-sliding")), 1e-5)
 def equilibrium_at_collapse(deck: Deck, within: float) -> None:
-    """Reactions carry the weight and the push; both bounds meet; beyond the interval nothing is admissible."""
+    """Reactions balance the weight and the lateral load, both bounds are equal, and beyond them no state is admissible."""
     answer = ask(deck, "tilt")
     ok(answer)
     r = answer.results
@@ -199,7 +199,7 @@ def equilibrium_at_collapse(deck: Deck, within: float) -> None:
     ),
 )
 def energies(deck: Deck, motion: Deck, within: float) -> None:
-    """No energy is won: what friction, dampers and impacts take is negative by errors of the time step at most, and the ledger closes."""
+    """Friction, dampers and impacts create no energy beyond errors of the time step, and the energy balance holds."""
     moving = changed(deck, motion=motion)
     for told, keys in (("rigid contacts", RIGID), ("springs", {"joints": {"normal_stiffness": 1e8}})):
         r = ask(moving, "dem", end_time=1.0, **keys)
@@ -249,7 +249,7 @@ def dissipation(deck: Deck, within: float) -> None:
     ),
 )
 def dry_stones_by_elements(deck: Deck, within: float) -> None:
-    """Stones with dry joints bear no more by elements than by limit analysis."""
+    """Blocks with dry joints have no greater capacity by finite elements than by limit analysis."""
     most = ask(deck, "tilt").capacity[0]
     answer = ask(changed(deck, motion=WEAK), "sla", events=300, directions=["+"])
     if not answer.answers or answer.results.peak_acceleration_g is None:
@@ -308,7 +308,7 @@ def no_more_than_coulomb(deck: Deck, within: float) -> None:
 
 @relation("rocking", st.tuples(RECTANGLES, st.sampled_from(["winkler", "two-spring"])), 0.02)
 def a_stiff_base(size: tuple, foundation: str, within: float) -> None:
-    """A very stiff base is a rigid one; a softer one bears less."""
+    """A very stiff base equals a rigid base; a more compliant base gives less capacity."""
     width, height = size
     deck = {
         "structure": {"kind": "block", "width": width, "height": height},

@@ -3,8 +3,11 @@
 import gc
 import hashlib
 import importlib
+import importlib.machinery
+import importlib.util
 import json
 import os
+import pkgutil
 import re
 import resource
 import signal
@@ -35,13 +38,50 @@ HypothesisProvider._local_constants = Constants()
 ROOT = str(Path(extrados.__file__).parent)
 #: Seconds of a processor after which a test ends the process by SIGPROF, by its name; others: none
 PATIENCE: dict[str, float] = {}
+#: Of the package, where faults are planted: all functions, and those that keep what they answered
+FUNCTIONS: list[FunctionType] = []
+CACHES: list[Any] = []
 #: Whether the test itself has passed
 PASSED = pytest.StashKey[bool]()
+#: Modules of the package that are entered from outside, and are not loaded
+ENTRIES = ("__main__", "explore")
+
+
+def load() -> None:
+    """Load all modules of the package: forks of this process then load none, and share its memory."""
+    for module in pkgutil.walk_packages(extrados.__path__, "extrados."):
+        if not any(entry in module.name for entry in ENTRIES):
+            importlib.import_module(module.name)
+    FUNCTIONS[:] = [f for f in gc.get_objects() if isinstance(f, FunctionType) and f.__code__.co_filename.startswith(ROOT)]
+    CACHES[:] = caches()
+    gc.collect()
+    gc.freeze()  # what is frozen is not written to by a collection, and stays shared
+
+
+def caches() -> list[Any]:
+    """Functions of the package that keep what they answered."""
+    return [kept for kept in gc.get_objects() if isinstance(kept, _lru_cache_wrapper) and kept.__module__.startswith("extrados")]
+
+
+def swap(path: str) -> None:
+    """Put another build of the core into all modules that call it."""
+    name = "extrados._core"
+    spec = importlib.util.spec_from_file_location(name, path, loader=importlib.machinery.ExtensionFileLoader(name, path))
+    assert spec is not None and spec.loader is not None
+    old, new = sys.modules[name], importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(new)
+    assert new is not old and new.__file__ == path
+    sys.modules[name] = new
+    assert new.api_support.init_libraries() == 0
+    for caller in [module for key, module in sys.modules.items() if key.startswith("extrados")]:
+        for key, value in list(vars(caller).items()):
+            assert getattr(value, "__module__", None) != name, f"{caller.__name__}.{key} is of the old core"
+            if value is old:
+                setattr(caller, key, new)
 
 
 def plant(file: str, line: int, new: str) -> None:
-    """Put another line into the functions of a file of the package, which is loaded first: many are when they are asked for."""
-    importlib.import_module(".".join(["extrados", *Path(file).with_suffix("").parts]))
+    """Put another line into the functions of a file of the package."""
     path = Path(ROOT) / file
     lines = path.read_text(encoding="utf-8").split("\n")
     lines[line - 1] = new
@@ -54,7 +94,7 @@ def plant(file: str, line: int, new: str) -> None:
                 note(inner)
 
     note(compile("\n".join(lines), str(path), "exec"))
-    found = [f for f in gc.get_objects() if isinstance(f, FunctionType) and f.__code__.co_filename == str(path)]
+    found = [f for f in FUNCTIONS if f.__code__.co_filename == str(path)]
     assert found, f"{file} has no function"
     for function in found:
         function.__code__ = made[function.__code__.co_qualname, function.__code__.co_firstlineno]
@@ -62,12 +102,13 @@ def plant(file: str, line: int, new: str) -> None:
 
 def tried(asked: dict[str, Any], items: dict[str, pytest.Item]) -> int:
     """Run tests with a fault, until one fails, whose name is written to a file: 1; 0 where none does."""
-    if asked["new"]:
+    if asked["core"]:
+        swap(asked["core"])
+    elif asked["new"]:
         plant(asked["file"], asked["line"], asked["new"])
-    PATIENCE.update(asked["tests"])
-    trials.SHARE, os.environ["EXTRADOS_TOUCHED"] = asked["share"], asked["kept"]
+    os.environ["EXTRADOS_TOUCHED"] = asked["kept"]
     resource.setrlimit(resource.RLIMIT_CPU, (asked["limit"], asked["limit"]))
-    for name in asked["tests"]:
+    for name, (PATIENCE[name], trials.SHARE) in asked["tests"].items():
         if any(report.failed for report in runtestprotocol(items[name], log=False)):
             Path(asked["failed"]).write_text(name, encoding="utf-8")
             return 1
@@ -79,6 +120,7 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     if "EXTRADOS_FAULTS" not in os.environ:
         return None
     items = {item.nodeid: item for item in session.items}
+    load()
     for text in sys.stdin:
         sys.stdout.flush()
         child = os.fork()
@@ -120,9 +162,8 @@ def _noted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> I
         yield
         return
     asking._KEPT.clear()  # what was answered in another test runs through no line
-    for kept in gc.get_objects():
-        if isinstance(kept, _lru_cache_wrapper) and kept.__module__.startswith("extrados"):
-            kept.cache_clear()
+    for kept in CACHES or caches():
+        kept.cache_clear()
     digest, lines, plain = hashlib.sha256(), set(), extrados.run
 
     def run(*args: Any, **keys: Any) -> Any:

@@ -98,7 +98,7 @@ def solids_hold_what_their_parts_do(deck: Deck, within: float) -> None:
 
 @relation("tilt", st.tuples(barrels(), number(0.2, 8.0), number(0.5, 30.0), number(0.2, 20.0)), 1e-5, share=0.5)
 def strength_of_barrels(deck: Deck, crush: float, cohesion: float, tension: float, within: float) -> None:
-    """Along its span a barrel that crushes bears what its crushing section bears; mortar that lasts makes it bear more, crushing less."""
+    """Along its span a barrel with crushing has the capacity of its section with crushing; ductile mortar raises the capacity, crushing reduces it."""
     crushing = {"compressive_strength": 1e6 * crush}
     square, section = changed(deck, structure={"skew": 0.0}), changed(deck, structure={"skew": 0.0, "stones_across": 1})
     keys: Deck = {"direction": 0.0, "rose": 4, "starts": 1, "face_law": False}
@@ -117,7 +117,7 @@ def strength_of_barrels(deck: Deck, crush: float, cohesion: float, tension: floa
 
 @relation("tilt", barrels(), 1e-5, share=0.5)
 def barrels_and_their_sections(deck: Deck, within: float) -> None:
-    """Along its span a barrel of any bond bears what its section bears; a skew one no more, for its joints bear sidewards too."""
+    """Along its span a barrel of any bond has the capacity of its section; the capacity of a skew barrel is no greater."""
     square, section = changed(deck, structure={"skew": 0.0}), changed(deck, structure={"skew": 0.0, "stones_across": 1})
     plane, space, skew = (ask(section, "tilt"), *(ask(d, "tilt", direction=0.0, rose=4, starts=1) for d in (square, deck)))
     same("in space", plane, space)
@@ -163,7 +163,7 @@ def facades(draw: st.DrawFn) -> Deck:
 
 @relation("local-mechanism", facades(), 1e-6)
 def walls_by_virtual_work(table: Deck, within: float) -> None:
-    """alpha_0 and e* of one wall about its hinge are the sums of moments and masses of what the deck names."""
+    """alpha_0 and e* of one wall about its hinge are the sums of moments and masses by hand."""
     t, hinge = table["thickness"], table["hinge_height"]
     h, density = table["height"] - hinge, 1900.0
     wall = density * GRAVITY * t * h * table["width"]
@@ -200,7 +200,7 @@ TIES = st.tuples(RECTANGLES, number(0.3, 1.0), number(0.01, 0.5), st.sampled_fro
 
 @relation("rocking tilt", TIES, 1e-5)
 def ties_by_rocking_and_limit_analysis(size: tuple, level: float, force: float, side: float, within: float) -> None:
-    """A block that a prestressed tie holds to one side begins to rock where limit analysis with the tie's force says."""
+    """A block with a prestressed tie begins to rock at the acceleration of limit analysis with the force of the tie."""
     width, height = size
     deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": "no-sliding"}}
     weight = 2000.0 * width * height * GRAVITY
@@ -308,7 +308,7 @@ LOADED = st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(0.2,
     ),
 )
 def even_loads_where_they_are_adverse(deck: Deck, share: float, factor: float, both: bool, within: float) -> None:
-    """Where an even load stands by its own choice it brings down no later than on any other stretch, and as said on that stretch."""
+    """A uniform load on its adverse length gives no greater factor than on any other length."""
     outlines = building(deck).blocks().outlines
     low, high = (f(float(getattr(o[:, 0], end)()) for o in outlines) for f, end in ((min, "min"), (max, "max")))
     span = high - low
@@ -362,7 +362,7 @@ NAMES = st.text("abcxyz", min_size=3, max_size=8).map(lambda s: f"no-{s}")
 
 @relation("tilt", st.tuples(decks("brickwork", "arch", "column", "blocks"), NAMES), 0.0)
 def what_is_not_there_is_named(deck: Deck, name: str, within: float) -> None:
-    """A name of a joint or stone that the building does not have is refused, and named."""
+    """A name of a joint or block that does not exist is refused, and the message gives the name."""
     for tables in (
         {"joints": {"types": [{"joints": [name], "friction": 0.3}]}},
         {"ties": [{"start": [0.0, 0.1], "start_stone": name, "ground": [-9.0, 0.1]}]},
@@ -373,7 +373,7 @@ def what_is_not_there_is_named(deck: Deck, name: str, within: float) -> None:
 
 @relation("tilt", st.tuples(number(0.3, 2.0), number(0.2, 1.0), number(0.02, 0.5), number(-50.0, 50.0)), 1e-2)
 def gaps_are_measured(width: float, height: float, gap: float, shift: float, within: float) -> None:
-    """A stone that hangs over another is refused with the size of the gap, wherever the survey has its origin."""
+    """A block without contact is refused with the size of the gap, for any origin of the survey."""
     rows = [(0.0, height), (height + gap, 2.0 * height + gap)]
     blocks = [
         {"name": f"s{k}", "points": [[shift + x, shift + y] for x, y in ((0.0, low), (width, low), (width, high), (0.0, high))]}
@@ -422,7 +422,7 @@ def members_of_a_set(deck: Deck, compatible: Deck, generated: Deck, within: floa
 
 @relation("local-mechanism tilt", decks("block", "column", "brickwork", "stack", friction=number(0.1, 0.3)), 1e-4)
 def codes_where_joints_slide(deck: Deck, within: float) -> None:
-    """alpha_0 of a section whose joints slide first is what limit analysis says with its friction."""
+    """alpha_0 of a section whose joints slide first equals the collapse acceleration of limit analysis with friction."""
     codes, limit = ask(deck, "local-mechanism", mechanism="building"), ask(deck, "tilt")
     same("codes", codes, limit) if "cannot-stand" in (codes.outcome, limit.outcome) else ok(codes, limit)
     ok(codes, limit)
@@ -459,7 +459,7 @@ def peaks_are_those_of_histories(deck: Deck, motion: Deck, within: float) -> Non
 
 @relation("fragility", st.tuples(number(0.2, 0.6), number(1.0, 1.5)), 1e-6, share=0.3)
 def a_record_that_cannot_be_read(amplitude: float, frequency: float, within: float) -> None:
-    """One bad file of a suite is named, in the answer and beside its member; the others count as they do without it."""
+    """An unreadable file of a suite is named in the result and at its member; the results of the others do not change."""
     with tempfile.TemporaryDirectory() as name:
         time = np.arange(0.0, 2.0, 0.01)
         recorded(Path(name), 0.01, amplitude * np.sin(2.0 * np.pi * frequency * time))
@@ -481,7 +481,7 @@ def a_record_that_cannot_be_read(amplitude: float, frequency: float, within: flo
     share=0.5,
 )
 def an_arch_is_its_blocks(deck: Deck, motion: Deck, rng: Any, within: float) -> None:
-    """An arch of a template, and its blocks drawn one by one in any order, give the same by all that take both."""
+    """The structure arch and its blocks drawn one by one in any order give the same results."""
     plain = drawn(deck)
     rng.shuffle(plain["structure"]["block"])
     for kind, keys, names in (
@@ -508,7 +508,7 @@ def an_arch_is_its_blocks(deck: Deck, motion: Deck, rng: Any, within: float) -> 
     "tilt", st.tuples(st.integers(3, 6), st.integers(3, 6), st.integers(1, 2), st.sampled_from(["brickwork", "panel"])), 1e-9, share=0.5
 )
 def openings_at_either_end(units: int, courses: int, wide: int, kind: str, within: float) -> None:
-    """A wall with a notch at one end weighs what the wall with the same notch at its other end weighs, also where the notch reaches beyond."""
+    """A wall with a notch at one end has the weight of the wall with this notch at its other end."""
     length, height = units * 0.5, courses * 0.25
     keys = {"units": units, "courses": courses} if kind == "brickwork" else {"width": length, "height": height, "thickness": 0.25}
     level, size = [0.25, height - 0.25], 0.25 * wide
@@ -522,7 +522,7 @@ def openings_at_either_end(units: int, courses: int, wide: int, kind: str, withi
 
 @relation("local-mechanism", st.tuples(RECTANGLES, st.booleans()), 0.0, share=0.5)
 def dampers_make_an_upper_bound_of_codes(size: tuple, held: bool, within: float) -> None:
-    """What codes do not count on, a damper, makes their multiplier an upper bound, which is no verdict that it stands."""
+    """A damper, which codes neglect, makes their multiplier an upper bound, and a satisfied check is open."""
     width, height = size
     deck: Deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": "no-sliding"}}
     x = float(building(deck).blocks().centroid[0, 0])
@@ -539,7 +539,7 @@ def dampers_make_an_upper_bound_of_codes(size: tuple, held: bool, within: float)
     "rocking tilt", decks("arch", "pointed-arch", "elliptical-arch", "frame", "column", "brickwork", friction=st.just("no-sliding")), 1e-4
 )
 def mechanisms_start_at_the_limit(deck: Deck, within: float) -> None:
-    """Rocking starts where limit analysis has its lesser collapse acceleration; that both differ is no reason to refuse."""
+    """Rocking starts at the lesser collapse acceleration of limit analysis; different values to both sides are no reason for a refusal."""
     limit = ask(deck, "tilt")
     rocks = ask(changed(deck, motion={"kind": "sine-pulse", "amplitude": "0.05 g", "period": 0.5}), "rocking")
     must("limit analysis says" not in rocks.said, rocks.said)

@@ -161,7 +161,7 @@ def masses_of_blocks(a: dict[str, np.ndarray], depth: float) -> tuple[np.ndarray
 
 @relation("dem", RUNS, 1e-6, share=1.0)
 def runs_of_solids_by_hand(deck: Deck, motion: Deck, rigid: bool, limit: float, within: float) -> None:
-    """The same of blocks in space: peaks, slips, openings, energies and the outcome are those of its histories."""
+    """For blocks in space peaks, slips, openings, energies and the outcome follow from the histories."""
     keys = {"end_time": 0.6, "output_step": 0.01, "collapse_displacement": limit, "floor": 0.0}
     how: Deck = {"time_step": 1e-3, **RIGID} if rigid else {}
     deck = changed(deck, joints={} if rigid else {"normal_stiffness": 2e8})

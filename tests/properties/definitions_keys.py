@@ -244,7 +244,7 @@ def _whole(answer: Answer) -> str:
 
 @relation("rocking tilt thrust moving-load supports failure-domain fragility local-mechanism dem", st.just({}), 0.0, share=0.28)
 def every_key_has_an_effect(deck: Deck, within: float) -> None:
-    """Each key of an analysis, and each property that an analysis uses, changes something of its answer; an override counts as the deck's own."""
+    """Each key of an analysis, and each property that an analysis uses, changes its result; an override has the effect of the deck's own value."""
     for deck, kind, keys, changes in EFFECTS:
         before = ask(deck, kind, **keys)
         ok(before)
@@ -272,7 +272,7 @@ def every_key_has_an_effect(deck: Deck, within: float) -> None:
 
 @relation("assess", st.just({}), 0.0, share=0.25)
 def a_survey_ranks_what_each_deck_says(deck: Deck, within: float) -> None:
-    """Buildings of a folder are assessed as each by itself, with what common.toml adds, in the order of their margins, and written."""
+    """Buildings of a folder have the results of separate assessments, with the keys of common.toml, in the order of their margins."""
     del deck, within
     narrow = {"structure": {"kind": "block", "width": 0.3, "height": 3.0}}
     wide = {"structure": {"kind": "block", "width": 1.0, "height": 2.0}, "motion": {**PULSE, "amplitude": "0.1 g"}}
@@ -350,7 +350,7 @@ def a_survey_ranks_what_each_deck_says(deck: Deck, within: float) -> None:
     share=2.0,
 )
 def what_is_not_used_is_said_with_who_can(asked: list, count: int, given: tuple, within: float) -> None:
-    """A key that no analysis of the deck uses is told with others that use it, none of which the deck has; one that some use, with those that do not."""
+    """A key that no analysis of the deck uses is reported with kinds that use it; a key that some use is reported with those that do not."""
     table, key, value = given
     rows = [
         {

@@ -403,7 +403,7 @@ def area_of(polygon: np.ndarray) -> float:
 
 @relation("dem", st.tuples(number(0.5, 1.5, 10), number(0.3, 0.8, 10), number(-3.0, 3.0, 12), number(-3.0, 3.0, 12)), 1e-6)
 def overlaps_are_cut_between_blocks(width: float, height: float, left: float, right: float, within: float) -> None:
-    """Two blocks of a survey that overlap by millimetres: elements cut both back to shapes that touch, and neither loses more than what lay in the other."""
+    """Discrete elements cut two overlapping blocks of a survey back to shapes that touch; neither loses more than the overlap."""
     one = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
     two = np.array([[0.0, height - 1e-3 * left], [width, height - 1e-3 * right], [width, 2.0 * height], [0.0, 2.0 * height]])
     deck = {

@@ -90,7 +90,7 @@ WALLS = decks("brickwork", "arch", "column", "blocks", friction=number(0.2, 0.9,
 
 @relation("dem", st.tuples(WALLS, number(0.1, 0.8), number(0.2, 0.6), st.booleans()), 0.05, share=0.3)
 def forces_of_blocks_are_their_momentum(deck: Deck, amplitude: float, period: float, rigid: bool, within: float) -> None:
-    """What the pairs of a block give it, less weight and inertia, is its momentum; what pairs lost is the loss of the run."""
+    """The forces of the pairs of a block, less weight and inertia, add up to its momentum; the losses of the pairs add up to that of the run."""
     moving = waving(changed(deck, joints={} if rigid else {"normal_stiffness": 1e9}), amplitude, period)
     answer = ask(moving, "dem", end_time=0.2, output_step=0.001, perturbed=False, **(RIGID if rigid else {}))
     if not answer.answers or answer.results.stopped != "end":
@@ -112,7 +112,7 @@ PIERS = st.tuples(decks("block", "column", friction=number(0.5, 0.9, 8)), number
 
 @relation("dem", PIERS, 0.15)
 def elements_in_space_and_in_the_plane(deck: Deck, ratio: float, period: float, rigid: bool, within: float) -> None:
-    """A pier that rocks or slides under one sine does so in space as in the plane, with the same losses."""
+    """A pier under one sine rocks or slides in space as in the plane, with the same losses of energy."""
     there = deck["structure"]
     there["height"] = float(f"{there['width'] * 2.5:.5g}")
     there |= {"drums": min(there["drums"], 2), "top_width": there["width"]} if there["kind"] == "column" else {}
@@ -142,7 +142,7 @@ STACKS = st.tuples(decks("block", "column", friction=number(0.6, 0.9)), number(7
 
 @relation("dem", STACKS, 1e-3)
 def settlements_of_springs(deck: Deck, power: float, depth: float, solid: bool, within: float) -> None:
-    """Upright piers settle on the springs of their joints by weight over stiffness and area, drum by drum; the rest stands still."""
+    """Piers settle on the springs of their joints by weight over stiffness and area, drum by drum; other blocks do not move."""
     there = deck["structure"]
     there["depth"] = depth
     if there["kind"] == "column":
@@ -175,7 +175,7 @@ def settlements_of_springs(deck: Deck, power: float, depth: float, solid: bool, 
 def work_of_friction(
     width: float, slenderness: float, mu: float, ratio: float, period: float, how: str, solid: bool, within: float
 ) -> None:
-    """What friction takes from a block that slides is friction times its weight times its way."""
+    """Friction dissipates the coefficient times the weight times the sliding distance of a block."""
     height = round(width * slenderness, 4)
     deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": mu}}
     keys = {"output_step": 0.002, "time_step": 5e-4, **(RIGID if how == "rigid" else {})}
@@ -192,7 +192,7 @@ def work_of_friction(
 
 @relation("dem", st.tuples(RECTANGLES, number(0.2, 3.0), st.booleans()), 0.015, share=0.5)
 def mortar_at_the_ends_of_a_joint(size: tuple, strength: float, solid: bool, within: float) -> None:
-    """Springs with mortar: a block on end points breaks off where the point that it turns from reaches tension times half the area."""
+    """On springs with mortar a block separates when the tension at an edge reaches the tensile strength times half the area."""
     width, height = size
     weight = 2000.0 * GRAVITY * width * height
     tension = float(f"{strength * weight / width:.4g}")
@@ -209,7 +209,7 @@ def mortar_at_the_ends_of_a_joint(size: tuple, strength: float, solid: bool, wit
 
 @relation("dem tilt", st.tuples(SLIDERS, st.booleans(), st.booleans()), 0.01, share=0.5)
 def a_tilt_that_slides(deck: Deck, rigid: bool, solid: bool, within: float) -> None:
-    """A flat block under a slow tilt slides away at its friction, by rigid contacts and springs, in the plane and in space."""
+    """A flat block in a slow tilt slides at its coefficient of friction, on rigid contacts and springs, in the plane and in space."""
     mu = deck["joints"]["friction"]
     made = deck if rigid else changed(deck, joints={"normal_stiffness": 1e9})
     keys = SLOW if rigid else {"test": "tilt", "tilt_accuracy": 0.002}

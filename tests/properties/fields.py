@@ -274,7 +274,7 @@ def grown(deck: Deck, length: float, mass: float) -> Deck:
 
 
 def similitude_of_all_numbers(question: tuple, length: float, density: float, within: float) -> None:
-    """Lengths times s, masses times m, times by the root of s: every number of the result goes as its unit says."""
+    """With lengths multiplied by s, masses by m and times by the root of s, every number of the result scales with its unit."""
     deck, kind, table = question
     mass = density * length**3
     whole = spelled_out(deck, kind, table)
@@ -457,7 +457,7 @@ def asymmetric(draw: st.DrawFn, *only: str) -> tuple[Deck, str, Deck]:
 
 
 def all_numbers_described_otherwise(question: tuple, how: str, rng: Any, within: float) -> None:
-    """Left and right exchanged, blocks in another order, another origin: the same numbers, but for signs, names and places."""
+    """If left and right are exchanged, the blocks reordered or the origin moved, the numbers are the same except for signs, names and places."""
     deck, kind, table = question
     if how == "mirror":
         there, keys = mirrored_question(deck, table)
@@ -520,7 +520,7 @@ SAME_BLOCKS = ("tilt", "rocking", "failure-domain", "fragility", "local-mechanis
 
 
 def a_template_is_its_blocks(question: tuple, within: float) -> None:
-    """A building of a template and the same drawn block by block have the same numbers, however each is made to rock."""
+    """A structure of a kind and the same structure drawn block by block have the same results."""
     deck, kind, table = question
     if kind in AS_ONE and deck["structure"]["kind"] == "column" and deck["structure"]["drums"] == 2:
         reject()  # of a template one rigid body, which its answer states; two drawn blocks rock on each other
@@ -548,7 +548,7 @@ for _kind in SAME_BLOCKS:
     1e-7,
 )
 def each_size_has_an_effect(deck: Deck, factor: float, rng: Any, within: float) -> None:
-    """Any length or number of the structure, the density and the depth: changed, it changes a number of the result."""
+    """A change of any length or number of the structure, of the density or of the depth changes a number of the result."""
     there = deck["structure"]
     model = kinds.table("structure", there["kind"])
     sizes_ = [k for k, v in there.items() if isinstance(v, float) and dimension(unit_of(model, k)).any()]

@@ -21,7 +21,7 @@ from extrados.decks.reader import read_text
 
 @relation("tilt local-mechanism", ANY, 1e-12)
 def a_deck_through_json(deck: Deck, within: float) -> None:
-    """What summary.json keeps of a deck is that deck; of defaults, those that stand by themselves."""
+    """The deck stored in summary.json gives the same results as the deck."""
     resolved = json.loads(json.dumps(run({**deck, "analysis": [asked_of(deck)]}).summary["deck"]["resolved"]))
     back = {name: filled(resolved[name]) for name in ("structure", "material", "joints")}
     back["structure"] = {k: v for k, v in back["structure"].items() if k in deck["structure"]}
@@ -30,7 +30,7 @@ def a_deck_through_json(deck: Deck, within: float) -> None:
 
 @relation("tilt local-mechanism", ANY, 1e-12)
 def a_deck_as_text_and_as_objects(deck: Deck, within: float) -> None:
-    """A deck as a dictionary, as TOML, and made of objects."""
+    """A deck as a dictionary, as TOML and made of objects gives the same results."""
     analysis = asked_of(deck)
     whole = {**deck, "analysis": [analysis]}
     one = Answer(run(whole).results[0])
@@ -47,7 +47,7 @@ def a_deck_as_text_and_as_objects(deck: Deck, within: float) -> None:
 
 @relation("tilt", sections(), 1e-4)
 def a_section_through_files(deck: Deck, within: float) -> None:
-    """As JSON, as a drawing, as an assembly of COMPAS, and as blocks of UDEC, read back."""
+    """A section written as JSON, drawing, assembly of COMPAS or blocks of UDEC and read back has the same capacity."""
     one, there = ask(deck, "tilt"), deck["structure"]
     densities = {b.get("density") for b in there["block"]}
     if len(densities) > 1 and max(densities) - min(densities) > 1.0:
@@ -98,7 +98,7 @@ def a_section_through_files(deck: Deck, within: float) -> None:
     ),
 )
 def solids_through_compas(deck: Deck, within: float) -> None:
-    """An assembly of COMPAS read back bears the same."""
+    """Solids written as an assembly of COMPAS and read back have the same capacity."""
     one = ask(deck, "tilt", direction=0.0, rose=4, starts=1)
     with tempfile.TemporaryDirectory() as name:
         (Path(name) / "stones.json").write_text(extrados.export({**deck, "analysis": [{"kind": "tilt", "direction": 0.0}]}, "compas"))
@@ -116,7 +116,7 @@ CONVEX = "files of solids take convex parts: stones between curves are refused i
 
 @relation("tilt", decks("block", "column", "brickwork", "arch", "stack", "frame"), 1e-4, exception=CONVEX)
 def a_section_drawn_out(deck: Deck, within: float) -> None:
-    """A plane section as solids bears the same."""
+    """A plane section as solids has the same capacity."""
     deck = drawn(deck)
     one = ask(deck, "tilt")
     with tempfile.TemporaryDirectory() as name:
@@ -132,7 +132,7 @@ def a_section_drawn_out(deck: Deck, within: float) -> None:
 
 @relation("tilt", st.tuples(sections(), st.integers(0, 10**6), st.sampled_from([1e-6, 3e-5])), 0.01)
 def noise_below_the_tolerance(deck: Deck, seed: int, deviation: float, within: float) -> None:
-    """Vertices that stray by less than the contact tolerance."""
+    """Deviations of vertices below the contact tolerance hardly change the capacity."""
     one, other = ask(deck, "tilt"), ask(shaken(deck, deviation, seed), "tilt")
     same("noise", one, other)
     near("noise", one.capacity, other.capacity, within, 1e-2)
@@ -176,7 +176,7 @@ CORNER = {
 
 @relation("tilt", st.tuples(decks("wall"), st.integers(0, 10**6)), 0.01, examples=((CORNER, 1),))
 def noise_of_solids(deck: Deck, seed: int, within: float) -> None:
-    """Corners of solids that stray by 10 micrometres."""
+    """Deviations of the corners of solids by 10 micrometres hardly change the capacity."""
     text = extrados.export({**deck, "analysis": [{"kind": "tilt", "direction": 90.0}]}, "compas")
     found = []
     for deviation in (0.0, 1e-5):
@@ -196,7 +196,7 @@ def noise_of_solids(deck: Deck, seed: int, within: float) -> None:
     examples=((1.0, 3.0, 0.04, 0.044),),
 )
 def bevelled_corners(width: float, slenderness: float, dx: float, dy: float, within: float) -> None:
-    """Elements take stones as drawn: a block with both lower corners cut off rocks on its narrower foot."""
+    """Discrete elements use blocks as drawn: a block with both lower corners cut off rocks on its narrower foot."""
     height = width * slenderness / 1.5
     dx, dy = dx * width, dy * width
     points = [[dx, 0.0], [width - dx, 0.0], [width, dy], [width, height], [0.0, height], [0.0, dy]]
@@ -212,7 +212,7 @@ def bevelled_corners(width: float, slenderness: float, dx: float, dy: float, wit
     "rocking fragility motion", st.tuples(number(0.01, 0.05), st.sampled_from(["rocking", "dem"])), 0.0, examples=((0.02, "rocking"),)
 )
 def offsets_of_records_are_told(offset: float, kind: str, within: float) -> None:
-    """A record whose velocity runs away is warned of by all that take it."""
+    """All analyses with a record whose velocity drifts give a warning."""
     time = np.arange(0.0, 30.0, 0.01)
     wave = 0.15 * np.sin(2.0 * np.pi * 2.0 * time) * np.exp(-0.2 * time) + offset
     with tempfile.TemporaryDirectory() as name:

@@ -64,8 +64,7 @@ def push(deck: Deck, frame: dict[str, Any] | None = None, **keys: Any) -> Answer
 
 @relation("frame-pushover", st.tuples(plans(), st.sampled_from([0.0, 90.0])), share=0.5)
 def pushes_of_frames_end(deck: Deck, direction: float, within: float) -> None:
-    """A push ends by its target or by a loss of strength, not by too many steps; without equilibrium only where an element has reached its drift limit,
-    and the place is stated."""
+    """A pushover ends by its target or by a loss of strength, not by too many steps. It ends without equilibrium only if an element has reached its drift limit, and the place is stated."""
     answer = push(deck, directions=[direction], senses=["+", "-"], eccentricities=[0.05], steps=200)
     ok(answer)
     for run in answer.results.runs:
@@ -80,7 +79,7 @@ def pushes_of_frames_end(deck: Deck, direction: float, within: float) -> None:
 
 @relation("frame-pushover", plans(), KEPT, share=0.5)
 def frames_are_held_by_their_weight(deck: Deck, within: float) -> None:
-    """The ground pulls at no wall: the base shear times the height of the forces is at most the weight times its distance to the edge. Without cohesion
+    """The ground exerts no tension on a wall: the base shear times the height of the forces is at most the weight times its distance to the edge. Without cohesion
     it is at most friction times the weight."""
     mu = 0.4
     answer = push(changed(deck, joints={"cohesion": 0.0}), {"shear": "mohr-coulomb", "friction": mu})
@@ -98,7 +97,7 @@ def frames_are_held_by_their_weight(deck: Deck, within: float) -> None:
 
 @relation("frame-pushover", plans(), 0.02, share=0.5)
 def walls_deflect_within_their_rigid_mechanism(deck: Deck, within: float) -> None:
-    """A wall out of its plane carries with its deflection at most what its weakest part carries as a rigid body, and something."""
+    """A wall out of its plane carries with its deflection more than zero, and at most the load of its weakest part as a rigid body."""
     answer = push(deck, drop=0.95)
     ok(answer)
     rows = answer.results.walls_out_of_plane
@@ -113,7 +112,7 @@ def walls_deflect_within_their_rigid_mechanism(deck: Deck, within: float) -> Non
 
 @relation("frame-pushover", st.tuples(plans(), number(5.0, 85.0, 8)), 1e-4, share=0.3)
 def frames_on_a_turned_plan(deck: Deck, angle: float, within: float) -> None:
-    """The plan and the push turned together, and the walls in another order: the same curve."""
+    """Plan and load direction rotated together, and the walls in another order, give the same curve."""
     turn = math.radians(angle)
     made = [[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]]
     walls = [
@@ -130,7 +129,7 @@ def frames_on_a_turned_plan(deck: Deck, angle: float, within: float) -> None:
 
 @relation("frame-pushover", plans(), 1e-4, share=0.3)
 def frames_in_a_mirror(deck: Deck, within: float) -> None:
-    """The mirrored plan pushed to the other sense: the same curve."""
+    """The mirrored plan under the opposite load gives the same curve."""
     walls = []
     for wall in deck["structure"]["walls"]:
         seen = {**wall, "start": [-wall["end"][0], wall["end"][1]], "end": [-wall["start"][0], wall["start"][1]]}
@@ -158,7 +157,7 @@ def stronger_frames(deck: Deck, key: str, within: float) -> None:
 
 @relation("frame-pushover", plans(), 0.02, share=0.3)
 def halved_steps_of_frames(deck: Deck, within: float) -> None:
-    """Twice as many steps: the same greatest base shear, and the same ultimate displacement."""
+    """Twice as many steps give the same greatest base shear and the same ultimate displacement."""
     one, other = push(deck), push(deck, steps=200)
     ok(one, other)
     near("base shear", one.results.base_shear_N, other.results.base_shear_N, within)

@@ -52,7 +52,7 @@ def beside(outline: np.ndarray, place: np.ndarray) -> float:
 
 @relation("", st.tuples(stars(), number(0.05, 0.95), number(0.0, 360.0), number(-2.5, 2.5), number(-2.5, 2.5)), 1e-9, share=5.0)
 def polygons_by_two_ways(star: np.ndarray, share: float, angle: float, dx: float, dy: float, within: float) -> None:
-    """Areas, centres, cuts, levels, distances and places within of random polygons."""
+    """Areas, centroids, cuts, levels, distances and inner points of random polygons agree by two methods."""
     area, centre, second = moments(star)
     found = polygons.properties(star)
     near("area", found[0], area, within)
@@ -178,7 +178,7 @@ def courses(draw: st.DrawFn) -> tuple[list[np.ndarray], dict[tuple[int, int], tu
     share=5.0,
 )
 def contacts_by_hand(wall: tuple, angle: float, shift: float, gap: float, within: float) -> None:
-    """The joints of a wall are those of its courses, wherever and however it lies; a course apart or sunk in is told with its gap."""
+    """The joints of a wall are those of its courses, in any position and rotation; a course with a gap or an overlap is reported with its size."""
     outlines, joints = wall
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     turn = np.array([[c, s], [-s, c]])
@@ -403,7 +403,7 @@ BOX = st.tuples(number(0.3, 2.0), number(0.3, 2.0), number(0.3, 2.0))
     share=5.0,
 )
 def boxes_that_touch(one: tuple, two: tuple, x: float, y: float, gap: float, angle: float, tip: float, within: float) -> None:
-    """Two boxes, one on the other, turned anyhow, share the rectangle that their faces have in common; gaps and overlaps have their size."""
+    """Two boxes, one on the other, in any rotation share the rectangle that their faces have in common; gaps and overlaps have their size."""
     shift = np.array([0.5 * x * (one[0] + two[0]), 0.5 * y * (one[1] + two[1]), one[2] + gap])
     first = prism(_rectangle(*one[:2]), 0.0, one[2])
     second = prism(_rectangle(*two[:2]) + shift[:2], shift[2], shift[2] + two[2])

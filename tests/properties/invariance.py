@@ -18,7 +18,7 @@ from relations import ANY, EARTHQUAKES, GRAVITY, INTERVAL, MASONRY, PUSH, RIGID,
 
 @relation("tilt", sections())
 def mirror_of_a_section(deck: Deck, within: float) -> None:
-    """Left and right exchanged exchange the two capacities."""
+    """If left and right are exchanged, the two capacities are exchanged."""
     one, other = ask(deck, "tilt"), ask(mirrored(deck), "tilt")
     same("mirrored", one, other)
     near("mirrored", one.capacity, other.capacity[::-1], within, 1e-3)
@@ -26,7 +26,7 @@ def mirror_of_a_section(deck: Deck, within: float) -> None:
 
 @relation("tilt", sections(*SMALL, friction=number(0.2, 0.9, 14)), 1e-4)
 def mirror_without_dilatancy(deck: Deck, within: float) -> None:
-    """Non-associated friction too."""
+    """The same holds for non-associated friction."""
     one, other = (ask(d, "tilt", friction_rule="non-associated", starts=3) for d in (deck, mirrored(deck)))
     same("mirrored", one, other)
     ok(one, other)
@@ -37,7 +37,7 @@ def mirror_without_dilatancy(deck: Deck, within: float) -> None:
 
 @relation("dem", sections("block", "column"), 0.006, share=0.2, exception=INTERVAL)
 def mirror_of_elements(deck: Deck, within: float) -> None:
-    """The slow tilt of rigid contacts, to both sides."""
+    """The same holds for rigid contacts in a slow tilt to both sides."""
     one, other = ask(deck, "dem", **SLOW), ask(mirrored(deck), "dem", **SLOW)
     same("mirrored", one, other)
     near("mirrored", one.capacity, other.capacity[::-1], within, 1.0)
@@ -61,7 +61,7 @@ BODIES = st.tuples(number(0.2, 1.0), number(0.2, 1.0), number(1.0, 3.0), number(
 
 @relation("rocking", BODIES, 1e-6)
 def mirror_of_a_rocking_body(deck: Deck, within: float) -> None:
-    """Toes exchanged, motion and start turned around: the rotation changes its sign."""
+    """If the toes are exchanged and motion and start reversed, the rotation changes its sign."""
     s, m = deck["structure"], deck["motion"]
     there = changed(
         deck,
@@ -79,7 +79,7 @@ def mirror_of_a_rocking_body(deck: Deck, within: float) -> None:
 
 @relation("tilt thrust", st.tuples(sections(), number(-900.0, 900.0), number(-50.0, 50.0)))
 def translation_of_a_section(deck: Deck, dx: float, dy: float, within: float) -> None:
-    """Where a survey has its origin changes nothing."""
+    """The origin of a survey changes no result."""
     there = moved(deck, lambda p: p + np.array([dx, dy]))
     for kind in ("tilt", "thrust"):
         one, other = ask(deck, kind), ask(there, kind)
@@ -90,7 +90,7 @@ def translation_of_a_section(deck: Deck, dx: float, dy: float, within: float) ->
 
 @relation("dem", st.tuples(sections("block", "column"), number(-90.0, 90.0)), 0.006, share=0.4)
 def translation_of_elements(deck: Deck, dx: float, within: float) -> None:
-    """Rigid contacts under a slow tilt."""
+    """The same holds for rigid contacts in a slow tilt."""
     one, other = ask(deck, "dem", **SLOW), ask(moved(deck, lambda p: p + np.array([dx, 0.0])), "dem", **SLOW)
     same("moved", one, other)
     near("moved", one.capacity, other.capacity, within, 1.0)
@@ -114,7 +114,7 @@ def turned(deck: Deck, angle: float) -> Deck:
 
 @relation("local-mechanism", st.tuples(decks("building"), number(0.0, 360.0, 24)))
 def turned_plan_by_codes(deck: Deck, angle: float, within: float) -> None:
-    """The walls out of their planes, whichever way the plan lies."""
+    """A rotated plan gives the same results for walls out of their planes."""
     there = [ask(d, "local-mechanism", mechanism="building") for d in (deck, turned(deck, angle))]
     same("turned", *there)
     ok(*there)
@@ -125,7 +125,7 @@ def turned_plan_by_codes(deck: Deck, angle: float, within: float) -> None:
 
 @relation("pushover", st.tuples(decks("building", material=MASONRY), st.sampled_from([90.0, 180.0])), 5e-3)
 def turned_plan_pushed(deck: Deck, angle: float, within: float) -> None:
-    """The push turned with the plan; the triangles of floors lie otherwise."""
+    """Plan and load direction rotated together give the same pushover; only the triangles of floors differ."""
     one, other = (ask(deck, "pushover", direction=0.0, **PUSH), ask(turned(deck, angle), "pushover", direction=angle, **PUSH))
     same("turned", one, other)
     ok(one, other)
@@ -135,7 +135,7 @@ def turned_plan_pushed(deck: Deck, angle: float, within: float) -> None:
 
 @relation("tilt", st.tuples(decks(*SOLIDS), number(0.0, 180.0, 12)), 1e-5)
 def opposite_direction_of_solids(deck: Deck, angle: float, within: float) -> None:
-    """What is borne along a direction is the opposite of what is borne against it."""
+    """The capacity along a direction is the opposite capacity of the reversed direction."""
     one, other = (ask(deck, "tilt", direction=angle, rose=4, starts=1), ask(deck, "tilt", direction=angle - 180.0, rose=4, starts=1))
     same("turned around", one, other)
     near("turned around", one.capacity, other.capacity[::-1], within, 1e-3)
@@ -143,7 +143,7 @@ def opposite_direction_of_solids(deck: Deck, angle: float, within: float) -> Non
 
 @relation("tilt", decks("dome"), 1e-4)
 def a_dome_turned_by_a_lune(deck: Deck, within: float) -> None:
-    """A dome is the same from every lune."""
+    """A dome rotated by a lune has the same capacity."""
     angle = 360.0 / deck["structure"]["lunes"]
     one, other = (ask(deck, "tilt", direction=0.0, rose=4, starts=1), ask(deck, "tilt", direction=angle, rose=4, starts=1))
     same("turned", one, other)
@@ -152,14 +152,14 @@ def a_dome_turned_by_a_lune(deck: Deck, within: float) -> None:
 
 @relation("tilt local-mechanism", ANY, 1e-5)
 def units(deck: Deck, within: float) -> None:
-    """Numbers as text in other units."""
+    """Numbers given as text in other units change no result."""
     deck = changed(deck, material={"density": 1900.0}, joints={"friction": 0.7})
     alike("units", statics(deck), statics(in_words(deck)), within)
 
 
 @relation("rocking dem", st.tuples(decks("block", "arch", "column"), pulses()), 1e-6)
 def units_of_motion(deck: Deck, motion: Deck, within: float) -> None:
-    """Periods in milliseconds, accelerations in cm/s^2."""
+    """Periods in milliseconds and accelerations in cm/s^2 change no result."""
     deck = changed(deck, motion=motion)
     cm = float(motion["amplitude"].split()[0]) * GRAVITY * 100.0
     there = changed(in_words(deck), motion={"amplitude": f"{cm!r} cm/s^2"})
@@ -171,7 +171,7 @@ def units_of_motion(deck: Deck, motion: Deck, within: float) -> None:
 
 @relation("tilt", st.tuples(sections(), st.randoms(use_true_random=False)))
 def order_and_names_of_blocks(deck: Deck, rng: Any, within: float) -> None:
-    """Blocks in another order, called otherwise, their outlines begun elsewhere and passed the other way round."""
+    """Order and names of blocks, and start and sense of their outlines, change no result."""
     there = copy.deepcopy(deck)
     blocks = there["structure"]["block"]
     rng.shuffle(blocks)
@@ -186,7 +186,7 @@ def order_and_names_of_blocks(deck: Deck, rng: Any, within: float) -> None:
 
 @relation("tilt", sections())
 def more_vertices_on_edges(deck: Deck, within: float) -> None:
-    """A vertex in the middle of every edge splits joints into collinear ones."""
+    """A vertex in the middle of every edge, which divides joints into collinear ones, changes no result."""
     there = copy.deepcopy(deck)
     for block in there["structure"]["block"]:
         points = np.array(block["points"], dtype=float)
@@ -199,7 +199,7 @@ def more_vertices_on_edges(deck: Deck, within: float) -> None:
 
 @relation("tilt", st.tuples(number(0.3, 1.5), number(1.0, 4.0), number(0.1, 0.9)), 1e-6)
 def a_block_cut_and_glued(width: float, height: float, share: float, within: float) -> None:
-    """A block in two parts that two rigid bars and a joint without sliding hold together."""
+    """A block divided into two parts, joined by two rigid bars and a joint without sliding, has the same capacity."""
     whole = {"structure": {"kind": "block", "width": width, "height": height}}
     level, inset = share * height, 0.1 * width
     parts = [
@@ -218,7 +218,7 @@ PLINTHS = st.tuples(sections("block", "column", "brickwork", "blocks", "stack"),
 
 @relation("tilt", PLINTHS, 1e-5)
 def a_plinth_under_limit_analysis(deck: Deck, width: float, height: float, within: float) -> None:
-    """A block that cannot move under what stands on it."""
+    """An immobile block below the structure changes no result."""
     one, other = ask(deck, "tilt"), ask(on_plinth(deck, width, height), "tilt")
     same("on a plinth", one, other)
     near("on a plinth", one.capacity, other.capacity, within, 1e-3)
@@ -273,7 +273,7 @@ def a_plinth_by_codes(deck: Deck, width: float, height: float, within: float) ->
     ),
 )
 def a_plinth_under_elements(deck: Deck, width: float, height: float, within: float) -> None:
-    """Rigid contacts under a slow tilt."""
+    """The same holds for rigid contacts in a slow tilt."""
     one, other = ask(deck, "dem", **SLOW), ask(on_plinth(deck, width, height), "dem", **SLOW)
     same("on a plinth", one, other)
     near("on a plinth", one.capacity, other.capacity, within, 1.0)
@@ -284,7 +284,7 @@ WAVES = st.tuples(decks("block", "arch", "column"), number(0.1, 1.0), number(0.5
 
 @relation("rocking dem", WAVES, 1e-6)
 def quiet_after_the_end(deck: Deck, amplitude: float, frequency: float, within: float) -> None:
-    """Zeros after the end of a record."""
+    """Zeros after the end of a record change no result."""
     time = np.arange(0.0, 2.005, 0.01)  # at whose end the wave is zero
     wave = amplitude * np.sin(2.0 * np.pi * frequency * time) * np.sin(0.5 * np.pi * time)
     found: list[dict[str, Answer]] = []
@@ -307,7 +307,7 @@ def quiet_after_the_end(deck: Deck, amplitude: float, frequency: float, within: 
 
 @relation("fragility failure-domain", st.tuples(decks("block", "arch", "column"), EARTHQUAKES), 0.0)
 def one_thread_or_two(deck: Deck, motion: Deck, within: float) -> None:
-    """Ensembles and domains, bit for bit."""
+    """Ensembles and domains on one and two threads are bit-identical."""
     domain = {"durations": [0.3, 0.6], "amplitudes": 4, "accuracy": 1e-2}
     for kind, keys in (("fragility", {"count": 6, "bootstrap": 0}), ("failure-domain", domain)):
         made = changed(deck, motion=motion) if kind == "fragility" else deck
@@ -332,7 +332,7 @@ FOREIGN = st.sampled_from(
 
 @relation("tilt thrust rocking failure-domain local-mechanism", st.tuples(decks("arch", "column", "block"), pulses(), FOREIGN), 0.0)
 def keys_of_other_strategies(deck: Deck, motion: Deck, key: tuple, within: float) -> None:
-    """What an answer says that it leaves out has no effect; what has an effect is not said to be left out."""
+    """A key that a result reports as not used has no effect; a key with an effect is not reported as not used."""
     table, name, value = key
     deck = changed(deck, motion=motion)
     there = changed(deck, **{table: {name: value}})
@@ -352,7 +352,7 @@ def keys_of_other_strategies(deck: Deck, motion: Deck, key: tuple, within: float
 
 @relation("moving-load", decks("arch", "pointed-arch", "elliptical-arch"), 1e-4)
 def a_load_from_either_side(deck: Deck, within: float) -> None:
-    """On a symmetrical arch a load is as bad at either quarter, and worst at the place that is named."""
+    """On a symmetrical arch the load factors at both quarters are equal, and the named place has the least factor."""
     places = [ask(deck, "moving-load", places=[x]) for x in _quarters(deck)]
     ok(*places)
     near("mirrored", places[0].results.collapse_load_N, places[1].results.collapse_load_N, within)
@@ -373,7 +373,7 @@ def _quarters(deck: Deck) -> list[float]:
 
 @relation("rocking", st.tuples(decks("block"), pulses(0.3, 1.0)), 1e-6)
 def a_wall_on_one_side(deck: Deck, motion: Deck, within: float) -> None:
-    """A block beside a wall rocks away from it alone; wall and motion on the other side mirror the run."""
+    """A block beside a wall rocks only away from it; with wall and motion on the other side the run is mirrored."""
     moving = changed(deck, motion=motion)
     turned_motion = {**motion, "amplitude": f"-{motion['amplitude']}"}
     one = ask(changed(moving, supports={"abutting_wall": "left"}), "rocking", end_time=2.0)

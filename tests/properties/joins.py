@@ -59,7 +59,7 @@ def a_verdict_carries_what_is_violated(deck: Deck, motion: Deck, many: Deck, wit
 
 @relation("tilt", st.tuples(decks("block", "arch", "column", "pointed-arch", "brickwork"), number(1e2, 1e4), st.booleans()), 1e-6)
 def ties_of_a_tilt(deck: Deck, force: float, across: bool, within: float) -> None:
-    """Forces of ties are those of their array, no more than they bear, in the states that the words name; a tie never lowers the capacity."""
+    """Forces of ties are those of their array, at most their strength, in the states that the words name; a tie never reduces the capacity."""
     bare = leaning(deck, 0.05)
     x, y = np.mean(bare["structure"]["block"][-1]["points"], axis=0)
     row = {
@@ -109,7 +109,7 @@ LEANING_PIERS = st.tuples(
 
 @relation("dem", LEANING_PIERS, 0.03)
 def elements_in_a_mirror(deck: Deck, motion: Deck, rigid: bool, lean: float, within: float) -> None:
-    """Left and right exchanged, motion turned around: the same numbers of a short run, by rigid contacts and by springs."""
+    """If left and right are exchanged and the motion reversed, a short run on rigid contacts or on springs has the same numbers."""
     if deck["structure"]["kind"] == "column":
         deck["structure"]["drums"] = min(2, deck["structure"]["drums"])
     joints = {} if rigid else {"normal_stiffness": 1e9}
@@ -129,7 +129,7 @@ def elements_in_a_mirror(deck: Deck, motion: Deck, rigid: bool, lean: float, wit
 
 @relation("dem", decks("block", "column", friction=number(0.6, 0.9, 4)), 1e-9, share=0.3)
 def a_tilt_of_elements_ends_by_collapse(deck: Deck, within: float) -> None:
-    """A tilt test of elements finds the push at which the building falls: its outcome, sense and verdict say so."""
+    """A tilt test of discrete elements ends by collapse, which its outcome, sense and verdict state."""
     answer = ask(deck, "dem", **{**SLOW, "tilt_accuracy": 0.1, "time_step": 4e-3})
     ok(answer)
     r = answer.results

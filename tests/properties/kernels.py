@@ -36,7 +36,7 @@ MOTION = st.tuples(number(0.3, 1.0), number(-2.0, 2.0), number(-2.0, 2.0), numbe
 
 @relation("dem", st.tuples(stars(), stars(), number(0.0, 360.0), MOTION, WAYS), 1e-6, share=5.0)
 def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: tuple, how: dict, within: float) -> None:
-    """Two free bodies that hit each other keep momentum and moment of momentum, lose what the ledger says, whichever is named first."""
+    """In an impact of two free bodies momentum and angular momentum are conserved, the loss of energy is that of the energy balance, and the order of the bodies has no effect."""
     a, b = convex.hull(one), convex.hull(two)
     way = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
     (_, first, _), (_, second, _) = moments(a), moments(b)
@@ -50,7 +50,7 @@ def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: t
         outlines = [a, b][::order]
         bodies = [moments(o) for o in outlines]
         mass = np.array([2000.0 * m[0] for m in bodies])
-        inertia = np.array([_inertia(o) for o in outlines])
+        inertia = np.array([inertia_of(o) for o in outlines])
         law = dem.Law(1e9, 5e8, how["friction"], damping=how["damping"])
         both = dem.Bodies(
             np.array([m[1] for m in bodies]), mass, inertia, outlines, [0, 1], [np.ones(len(o), bool) for o in outlines], 1.0, [law]
@@ -91,7 +91,7 @@ def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: t
     must(convex.overlap_depth(*there) < 0.02, f"bodies pass through each other by {convex.overlap_depth(*there)} m")
 
 
-def _inertia(outline: np.ndarray) -> float:
+def inertia_of(outline: np.ndarray) -> float:
     """Moment of inertia of 2000 kg/m^2 about the centre [kg m^2]."""
     _, centre, _ = moments(outline)
     p = outline - centre
@@ -111,8 +111,7 @@ TURNS = st.tuples(number(-180.0, 180.0), number(-180.0, 180.0), number(-180.0, 1
 
 @relation("dem", st.lists(st.tuples(SIZES, SIZES, TURNS, TURNS, MOTION, WAYS), min_size=6, max_size=6), 0.0, share=2.0)
 def blows_in_space(cases: list, within: float) -> None:
-    """Two free boxes that hit each other by corners, edges or faces keep both momenta, and lose what the ledger says, whichever is
-    named first."""
+    """In an impact of two free boxes by corners, edges or faces both momenta are conserved, the loss is that of the energy balance, and the order of the boxes has no effect."""
     for case in cases:
         _keeps_its_ledger(*case)
 
@@ -212,6 +211,10 @@ def mechanisms_by_their_kinematics(deck: Deck, shares: list, within: float) -> N
         near("V", c.potential, (place[:n, :, 1] - rest[:, 1]) @ one.mass * GRAVITY, 1e-5, abs(table.gravity_moment) * table.critical)
         edge, _, _ = core_mechanism.follow(one, [table.critical * (1.0 - 1e-6), table.critical * (1.0 + 1e-6)])
         rise = (edge[:, :, 1] - rest[:, 1]) @ one.mass
+        limit = float(table.numbers[1])
+        if limit < min(1.59, 2.0 * table.critical * (1.0 - 1e-9)):  # the hinges lock there, not at the greatest rotation looked at
+            last, _, _ = core_mechanism.follow(one, limit / 0.999 * np.array([1.0 - 1e-6, 1.0 + 1e-4]))
+            must(bool(np.isfinite(last[0]).all()) and not np.isfinite(last[1]).any(), "the hinges lock elsewhere")
         must(
             bool(rise.max() >= ((place[:n, :, 1] - rest[:, 1]) @ one.mass).max() * (1.0 - 1e-6)),
             "no unstable equilibrium at the critical rotation",
@@ -252,7 +255,7 @@ def _carried(place: np.ndarray, rest: np.ndarray, part: int, point: np.ndarray) 
     share=1.0,
 )
 def elements_on_a_moving_support(deck: Deck, dx: float, dy: float, start: float, duration: float, rigid: bool, within: float) -> None:
-    """A pier goes with the ground that it stands on, along a raised cosine, and stands on it at the end."""
+    """A pier follows the ground that moves along a raised cosine, and is at rest on it at the end."""
     if abs(dx) + abs(dy) < 0.01:
         reject()
     there = deck["structure"]
@@ -309,8 +312,7 @@ def rebounds_by_newton(one: tuple, two: tuple, speed: float, rebound: float, spa
 
 @relation("dem", st.tuples(SIZES, TURNS, number(0.02, 0.1), number(-1.0, 1.0), st.sampled_from([0.0, 0.3, 0.8])), 1e-4, share=2.0)
 def corners_on_a_slab(size: tuple, turn: tuple, speed: float, aside: float, friction: float, within: float) -> None:
-    """A box that meets a fixed slab with a corner, slowly and obliquely, loses by friction alone what its motion loses, and no more
-    impulse along the slab than friction times that across it."""
+    """A box that meets a fixed slab with a corner, slowly and obliquely, loses energy only by friction; the impulse along the slab is at most friction times that across it."""
     slab = box((-5.0, -5.0, -1.0), (5.0, 5.0, 0.0))
     part = box(tuple(-0.5 * np.array(size)), tuple(0.5 * np.array(size))).moved(Rotation.from_euler("xyz", turn, degrees=True).as_matrix())
     low = np.sort(part.vertices[:, 2])
@@ -367,7 +369,7 @@ def settlements_of_prisms(sides: int, radius: float, height: float, exponent: fl
 
 @relation("tilt", st.integers(0, 10**6), 1e-8, share=1.0)
 def programmes_of_the_core(number_of: int, within: float) -> None:
-    """The vertex method solves what HiGHS solves, with its value and with multipliers that prove it; a banded factor solves its system."""
+    """The vertex method gives the optimum of HiGHS, with multipliers that prove it; a banded factor solves its system."""
     draw = np.random.default_rng(number_of)
     n, k = int(draw.integers(2, 20)), int(draw.integers(3, 120))
     rows, least, cost = draw.normal(size=(k, n)), draw.normal(size=k) - 1.0, draw.normal(size=n)

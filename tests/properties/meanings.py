@@ -53,7 +53,7 @@ def the_sense_of_a_push(deck: Deck, factor: float, within: float) -> None:
     "supports", st.tuples(decks("arch", "frame", "vault", friction=st.sampled_from([0.3, 0.7, "no-sliding"])), number(-0.01, 0.01, 8)), 1e-3
 )
 def words_count_the_table(deck: Deck, spread: float, within: float) -> None:
-    """The answer on moving supports names as many joints that open, and that slide, as its table holds."""
+    """The conclusion on moving supports names as many joints that open, and that slide, as its table."""
     if spread == 0.0:
         reject()
     answer = ask(deck, "supports", spread=spread)
@@ -77,7 +77,7 @@ def _moved(points: np.ndarray, bodies: np.ndarray, pose: np.ndarray, centre: np.
 
 @relation("rocking", st.tuples(decks("block", "column", "stack", "arch", "frame", "vault"), pulses(0.2, 1.0)), 1e-6, share=2.0)
 def snapshots_hold_together(deck: Deck, motion: Deck, within: float) -> None:
-    """In each snapshot of a mechanism at least one end of every joint stays where both of its blocks have it."""
+    """In each snapshot of a mechanism both blocks of a joint share at least one of its ends."""
     answer = ask({**deck, "joints": {"friction": 2.0}, "motion": motion}, "rocking", hand_over=False)
     ok(answer)
     arrays = {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}

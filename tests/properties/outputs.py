@@ -269,7 +269,7 @@ STACK = (
 
 @relation("rocking", st.tuples(decks("stack"), pulses(0.2, 1.6)), 1e-9, share=0.5, examples=(STACK,))
 def impacts_of_stacks_lose_energy(deck: Deck, motion: Deck, within: float) -> None:
-    """No impact of two blocks on each other or on the ground gives energy."""
+    """No impact of two stacked blocks creates energy."""
     answer = ask(changed(deck, motion=motion), "rocking", end_time=2.0, output_step=0.005)
     ok(answer)
     r = answer.results
@@ -278,7 +278,7 @@ def impacts_of_stacks_lose_energy(deck: Deck, motion: Deck, within: float) -> No
 
 @relation("fragility", st.tuples(decks("block", "arch", "column"), EARTHQUAKES, st.booleans()), 1e-6, share=1.0)
 def tables_of_levels(deck: Deck, motion: Deck, turned: bool, within: float) -> None:
-    """Tables and arrays of levels hold what the results do; curves are the most likely, by another optimiser; first collapses by rows."""
+    """Tables and arrays of levels agree with the results; curves are the most likely by another optimiser; first collapses agree with the rows."""
     levels = [1.4, 0.3, 0.7] if turned else [0.3, 0.7, 1.4]
     answer = ask(changed(deck, motion={**motion, "mmi": 9}), "fragility", count=8, bootstrap=0, levels=levels, intensity="pga")
     ok(answer)
@@ -359,7 +359,7 @@ def medians_of_two_halves(pieces: int, each: int, low: float, high: float, bins:
 
 @relation("assess", st.just({}), 0.0, share=0.2)
 def an_assessment_ends_at_its_time_limit(deck: Deck, within: float) -> None:
-    """With a budget of next to nothing strategies are left out and told, with enough of it they are asked."""
+    """With a very short budget strategies are not run, and the result lists them; with a sufficient budget they are run."""
     del deck, within
     asked = changed(ARCH, motion=PULSE)
     whole = ask(asked, "assess", strategies=["tilt", "dem"])
@@ -409,7 +409,7 @@ def rocking_decks(draw: st.DrawFn) -> Deck:
 
 @relation("rocking", st.tuples(rocking_decks(), pulses(0.3, 1.0), number(0.03, 0.4, 20)), 1e-6, share=2.0)
 def the_step_of_output_decides_nothing(deck: Deck, motion: Deck, step: float, within: float) -> None:
-    """Outcome, verdict, friction required and times at which conditions fail are those of another step of output."""
+    """Another `output_step` changes no outcome, verdict, required friction or time at which a condition fails."""
     one, other = (ask(changed(deck, motion=motion), "rocking", end_time=4.0, output_step=k, hand_over=False) for k in (0.01, step))
     ok(one, other)
     a, b = one.results, other.results

@@ -15,7 +15,7 @@ import extrados
 
 @relation("rocking dem", SLIDERS, 0.02, examples=(SLIDES,))
 def rocking_of_a_block_that_slides(deck: Deck, within: float) -> None:
-    """What slides before it rocks does not rock: a verdict is that of rigid contacts, which slide as far as by themselves."""
+    """If a block slides before it rocks, the verdict is that of rigid contacts, with the slip of rigid contacts used from the start."""
     moving = changed(deck, motion={"kind": "sine-pulse", "amplitude": "1.5 g", "period": 0.6})
     answer = ask(moving, "rocking")
     if answer.outcome not in ("stands", "collapses"):
@@ -41,7 +41,7 @@ TALL = {"structure": {"kind": "block", "width": 1.0, "height": 2.0}, "joints": {
 
 @relation(" ".join(DROPPED), st.tuples(RECTANGLES, st.sampled_from(DROPPED)), 0.0, examples=tuple(((1.0, 2.0), k) for k in DROPPED[:2]))
 def friction_is_not_dropped(size: tuple, kind: str, within: float) -> None:
-    """Where friction is less than rocking needs, every strategy that rests on rocking says so."""
+    """If friction is below that required by rocking, every analysis of rocking states this."""
     width, height = size
     friction = round(0.6 * width / height, 4)
     deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": friction}}
@@ -74,7 +74,7 @@ def friction_is_not_dropped(size: tuple, kind: str, within: float) -> None:
     examples=((1.005, 5.01, 1.0525, 1.625), (1.15, 4.62, 1.165, 1.725)),
 )
 def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency: float, within: float) -> None:
-    """Where amplitudes 1e-5 g apart end otherwise, every run from the first turn to the last says that last digits decide."""
+    """If amplitudes that differ by 1e-5 g give different outcomes, every run between them is reported as chaotic."""
     deck = {"structure": {"kind": "block", "width": width, "height": width * slenderness}, "joints": {"friction": 0.9}}
     runs = [
         ask(
@@ -99,7 +99,7 @@ def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency:
     examples=((1.0, 5.0, 1.0, 2.0, True),),
 )
 def chaos_of_elements_is_told(width: float, slenderness: float, amplitude: float, frequency: float, rigid: bool, within: float) -> None:
-    """Of elements, too, every run from the first turn of the outcome to the last says that last digits decide."""
+    """Discrete elements, too, report every run between the first and the last change of the outcome as chaotic."""
     joints = {"friction": 2.0, **({} if rigid else {"normal_stiffness": 1e9})}
     deck = {"structure": {"kind": "block", "width": width, "height": width * slenderness}, "joints": joints}
     motion = {"kind": "harmonic", "frequency": frequency, "duration": 8.0}
@@ -116,7 +116,7 @@ def chaos_of_elements_is_told(width: float, slenderness: float, amplitude: float
 
 @relation("dem", st.tuples(decks("block", "column"), st.sampled_from([0.0, 0.01])), 0.0)
 def little_damping(deck: Deck, ratio: float, within: float) -> None:
-    """A wall that stands is looked at with springs that are not damped too."""
+    """A block or column at rest is also calculated on springs with little damping, and not refused."""
     moving = changed(deck, motion=WEAK, joints={"normal_stiffness": 1e9, "damping_ratio": ratio})
     answer = ask(moving, "dem", end_time=0.5)
     must(answer.status == "ok", f"{answer.status}: {answer.said}")
@@ -143,7 +143,7 @@ def a_push_is_no_verdict_on_a_peak(deck: Deck, within: float) -> None:
     examples=((1.0, 0.1, 175.0),),
 )
 def the_impact_rule_is_told(radius: float, share: float, embrace: float, within: float) -> None:
-    """A failure domain of a thin arch says as much of the impact rule as rocking does."""
+    """A failure domain of a thin arch gives the same range of impact rules as rocking."""
     arch = {"kind": "arch", "radius": radius, "thickness": round(share * radius, 4), "embrace": embrace, "voussoirs": 36}
     deck = {"structure": arch, "motion": {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.4}}
     one = ask(deck, "rocking", hand_over=False)  # rigid contacts have one rule of impact
@@ -161,7 +161,7 @@ def the_impact_rule_is_told(radius: float, share: float, embrace: float, within:
     examples=((0.3, 2.0, "parapet"),),
 )
 def clauses_within_their_scope(thickness: float, height: float, mechanism: str, within: float) -> None:
-    """Table 11-5 of ASCE 41, for walls between anchored diaphragms, decides nothing on a cantilever."""
+    """Table 11-5 of ASCE 41, for walls between anchored diaphragms, is not applied to a cantilever."""
     keys = {"mechanism": mechanism, "thickness": thickness, "height": height, "one_second_acceleration": "0.2 g"}
     answer = ask({"code": {"jurisdiction": "ASCE41"}}, "local-mechanism", **keys)
     ok(answer)
@@ -182,7 +182,7 @@ def clauses_within_their_scope(thickness: float, height: float, mechanism: str, 
     ),
 )
 def dilatant_capacities_are_called_so(deck: Deck, within: float) -> None:
-    """Where the mechanism of an associated limit slides, its verdict is an upper bound, or takes the state without dilatancy."""
+    """If the mechanism slides with associated friction, the verdict is an upper bound or uses the state without dilatancy."""
     answer = ask(changed(deck, motion=WEAK), "tilt")
     ok(answer)
     r, verdict = answer.results, answer.verdict
@@ -221,7 +221,7 @@ PLAIN: dict[str, dict[str, Any]] = {
     1e-9,
 )
 def verdicts_are_whole(deck: Deck, motion: Deck, kind: str, within: float) -> None:
-    """A verdict follows from its demand and capacity, names its unit, and never stands beside a violated assumption."""
+    """A verdict follows from demand and capacity, names its unit, and is open if an assumption is violated."""
     answer = ask(changed(deck, motion=motion), kind, **PLAIN[kind])
     ok(answer)
     v = answer.verdict
@@ -238,7 +238,7 @@ def verdicts_are_whole(deck: Deck, motion: Deck, kind: str, within: float) -> No
 
 @relation("tilt sla rocking dem local-mechanism", st.tuples(STONES, pulses(), st.sampled_from(sorted(PLAIN))), 0.0)
 def nobody_dies(deck: Deck, motion: Deck, kind: str, within: float) -> None:
-    """Every strategy answers, or refuses in words: internal errors are faults of the program (`ask` sees to it)."""
+    """Every strategy gives a result or a refusal with a reason; an internal error is a fault."""
     keys = dict(PLAIN[kind])
     if deck["structure"]["kind"] in SOLIDS and kind in ("tilt", "dem"):
         keys["direction"] = 0.0
@@ -252,7 +252,7 @@ def nobody_dies(deck: Deck, motion: Deck, kind: str, within: float) -> None:
 
 @relation("assess", st.tuples(decks("block", "stack", "arch", "column"), pulses(0.05, 0.6)), 0.0, share=0.1)
 def an_assessment_is_whole(deck: Deck, motion: Deck, within: float) -> None:
-    """Each strategy has a row, and one that refuses ends nothing."""
+    """Each strategy of an assessment has a row, and a refusal does not stop the others."""
     answer = ask(changed(deck, motion=motion), "assess", budget=5.0, strategies=["tilt", "rocking", "code-checks", "assessment"])
     must(answer.status == "ok", f"{answer.status}: {answer.said}")
     rows = {row.strategy: row for row in answer.results.verdicts}

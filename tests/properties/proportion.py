@@ -14,7 +14,7 @@ from relations import EARTHQUAKES, GRAVITY, INTERVAL, MASONRY, RIGID, SCALES, SL
 
 @relation("rocking", st.tuples(decks(*ROCKING), pulses(0.1, 1.2), SCALES), 1e-4)
 def similitude_of_rocking(deck: Deck, motion: Deck, factor: float, within: float) -> None:
-    """Lengths times s, times times the root of s: the same rotations."""
+    """With lengths multiplied by s and times by the root of s the rotations are equal."""
     end, root = 4.0 * motion["period"] + 2.0, math.sqrt(factor)
     there = changed(scaled(deck, factor), motion=changed(motion, period=motion["period"] * root))
     one = ask(changed(deck, motion=motion), "rocking", end_time=end)
@@ -29,7 +29,7 @@ def similitude_of_rocking(deck: Deck, motion: Deck, factor: float, within: float
 
 @relation("dem", st.tuples(decks("block", "column"), pulses(0.1, 0.6), st.sampled_from([0.25, 4.0])), 1e-3, share=0.4)
 def similitude_of_elements(deck: Deck, motion: Deck, factor: float, within: float) -> None:
-    """Rigid contacts have no other scale of time than their size."""
+    """With lengths multiplied by s and times by the root of s the response of rigid contacts is similar."""
     root = math.sqrt(factor)
     keys = {**RIGID, "end_time": 1.0, "time_step": 0.002, "output_step": 0.01}
     one = ask(changed(deck, motion=motion), "dem", **keys)
@@ -42,7 +42,7 @@ def similitude_of_elements(deck: Deck, motion: Deck, factor: float, within: floa
 
 @relation("tilt local-mechanism", st.tuples(STONES, SCALES), 1e-5)
 def statics_of_another_size(deck: Deck, factor: float, within: float) -> None:
-    """Collapse accelerations have no scale."""
+    """Collapse accelerations do not depend on the size."""
     if deck["structure"].get("preset"):
         reject()  # sizes of a preset are not in the deck
     one, other = statics(deck), statics(scaled(deck, factor))
@@ -52,7 +52,7 @@ def statics_of_another_size(deck: Deck, factor: float, within: float) -> None:
 
 @relation("local-mechanism", st.tuples(decks("block", "column", "arch", "brickwork"), SCALES), 1e-4)
 def codes_of_another_size(deck: Deck, factor: float, within: float) -> None:
-    """a_0* has no scale, d_0* is a length, T_SLV goes by its root, M* by its square."""
+    """a_0* does not depend on the size; d_0* is proportional to it, T_SLV to its root, M* to its square."""
     answers = [ask(d, "local-mechanism", mechanism="building") for d in (deck, scaled(deck, factor))]
     same("scaled", *answers)
     ok(*answers)
@@ -78,7 +78,7 @@ def codes_of_another_size(deck: Deck, factor: float, within: float) -> None:
 
 @relation("tilt local-mechanism", st.tuples(STONES, number(0.3, 3.0)), 1e-5)
 def statics_of_another_density(deck: Deck, factor: float, within: float) -> None:
-    """Collapse accelerations do not know the density, weights go with it."""
+    """Collapse accelerations do not depend on the density; weights are proportional to it."""
     if deck["structure"]["kind"] in ("bridge", "aisled-vault"):
         reject()  # their fill has a density of its own
     one, other = (statics(changed(deck, material={"density": 2000.0 * f})) for f in (1.0, factor))
@@ -90,7 +90,7 @@ def statics_of_another_density(deck: Deck, factor: float, within: float) -> None
 
 @relation("moving-load thrust", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), number(0.3, 3.0)), 1e-5)
 def loads_in_proportion(deck: Deck, factor: float, within: float) -> None:
-    """Collapse loads and thrusts go with the density, factors on the weight are densities, the safety factor goes by the load."""
+    """Collapse loads and thrusts are proportional to the density, a factor on the weight equals a density, and the safety factor is inversely proportional to the load."""
     there = [changed(deck, material={"density": 2000.0 * f}) for f in (1.0, factor)]
     for name in ("least", "most"):
         thrusts = [ask(d, "thrust") for d in there]
@@ -110,7 +110,7 @@ def loads_in_proportion(deck: Deck, factor: float, within: float) -> None:
 
 @relation("fragility", st.tuples(decks("block"), EARTHQUAKES, number(0.5, 2.0)), 1e-6)
 def a_factor_on_the_motion(deck: Deck, motion: Deck, factor: float, within: float) -> None:
-    """A set at a level is the set scaled by it: the same share comes down."""
+    """A set at a level equals the set scaled by the level: the same share collapses."""
     whole = changed(deck, motion=motion)
     levels = ask(whole, "fragility", count=8, intensity="scale", levels=[1.0, round(factor, 6) + 0.01], bootstrap=0)
     plain = ask(changed(deck, motion={**motion, "factor": 1.0}), "fragility", count=8, bootstrap=0)
@@ -132,7 +132,7 @@ def a_factor_on_the_motion(deck: Deck, motion: Deck, factor: float, within: floa
     ),
 )
 def a_finer_integrator(deck: Deck, motion: Deck, within: float) -> None:
-    """A hundredth of the tolerance changes nothing."""
+    """A hundredth of the tolerance of the integrator changes no result."""
     for hand_over, error in ((False, within), (True, 0.05)):
         one, other = (ask(changed(deck, motion=motion), "rocking", tolerance=t, hand_over=hand_over) for t in (1e-8, 1e-10))
         ok(one, other)
@@ -144,7 +144,7 @@ def a_finer_integrator(deck: Deck, motion: Deck, within: float) -> None:
 
 @relation("dem", st.tuples(decks("block", "column"), st.sampled_from([0.001, 0.002])), 0.01, share=0.15, exception=INTERVAL)
 def half_the_time_step(deck: Deck, step: float, within: float) -> None:
-    """Rigid contacts under a slow tilt, in steps half as long."""
+    """Rigid contacts in a slow tilt give the same capacity with half the time step."""
     one, other = (ask(deck, "dem", **{**SLOW, "time_step": s}) for s in (step, 0.5 * step))
     same("half the step", one, other)
     near("half the step", one.capacity, other.capacity, within, 1.0)
@@ -152,7 +152,7 @@ def half_the_time_step(deck: Deck, step: float, within: float) -> None:
 
 @relation("sla", decks("mesh", material=MASONRY), 1e-6)
 def a_mesh_of_another_scale(deck: Deck, within: float) -> None:
-    """Stiffness of a plane wall has no scale: twice as large under twice the stress per thickness is as stiff."""
+    """The stiffness of a plane wall does not depend on its size."""
     found = []
     for factor in (1.0, 2.0):
         with tempfile.TemporaryDirectory() as name:
@@ -166,7 +166,7 @@ def a_mesh_of_another_scale(deck: Deck, within: float) -> None:
 
 @relation("motion", st.tuples(pulses(), number(0.2, 3.0)), 1e-6)
 def measures_in_proportion(motion: Deck, factor: float, within: float) -> None:
-    """Twice the motion has twice the peaks and four times the Arias intensity; turned around it has the same."""
+    """A doubled motion has doubled peaks and four times the Arias intensity; a reversed motion has the same values."""
     with tempfile.TemporaryDirectory() as name:
         time = np.arange(0.0, 4.0, 0.01)
         wave = float(motion["amplitude"].split()[0]) * np.sin(2.0 * np.pi * time / motion["period"]) * np.exp(-time)
@@ -185,7 +185,7 @@ PIERS = st.tuples(number(0.8, 3.0), number(2.0, 4.0), number(0.2, 0.6), number(1
 
 @relation("code-checks", PIERS, 1e-6)
 def strengths_of_piers_in_proportion(width: float, height: float, thickness: float, load: float, factor: float, within: float) -> None:
-    """Forces and strengths times f give capacities times f; so does the thickness with the force."""
+    """Forces and strengths multiplied by f give capacities multiplied by f, and so do thickness and force."""
     strengths = {"compressive_strength": 4e6, "tensile_strength": 1e5, "fracture_energy": 50.0, "density": 0.0}
 
     def pier(thick: float, f: float, force: float) -> Answer:
@@ -212,7 +212,7 @@ def strengths_of_piers_in_proportion(width: float, height: float, thickness: flo
 
 @relation("supports", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), SCALES), 1e-3)
 def spreading_supports_of_another_size(deck: Deck, factor: float, within: float) -> None:
-    """The movement at which an arch falls is a length."""
+    """The movement of supports at collapse is proportional to the size of the arch."""
     one, other = ask(deck, "supports", steps=50), ask(scaled(deck, factor), "supports", steps=50)
     same("scaled", one, other)
     ok(one, other)

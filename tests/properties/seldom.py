@@ -85,7 +85,7 @@ def top_of(vertices: list[np.ndarray], x: float, y: float) -> float | None:
     "tilt", st.tuples(decks("wall", "dome", "chimney"), number(0.02, 0.98, 96), number(0.02, 0.98, 96), number(0.05, 0.5)), 1e-6, share=0.5
 )
 def a_load_on_solids_acts_on_their_top(deck: Deck, along: float, across: float, share: float, within: float) -> None:
-    """A load without a height acts on the highest surface below, and is refused where there is none."""
+    """A load without a height acts on the highest surface below, and is refused if no surface is below."""
     solids = building(deck).solids()
     points = np.concatenate([p.vertices for p in solids.parts])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -341,8 +341,7 @@ LONG = {
 
 @relation("assess dem", st.tuples(number(10.0, 1000.0), number(0.02, 0.2)), 0.0, share=0.25)
 def a_strategy_ends_at_its_deadline(start: float, seconds: float, within: float) -> None:
-    """A strategy of an assessment that takes longer than what is left of the budget is stopped; one that takes less has its result; after the
-    deadline none begins."""
+    """A strategy of an assessment that takes longer than the remaining budget is stopped; a shorter one has its result; after the deadline none begins."""
     del within
     deck = make_deck({**LONG, "motion": PULSE, "analysis": [{"kind": "assess"}]})
     passed = [start]
@@ -464,7 +463,7 @@ DAMPED = st.tuples(number(0.6, 1.2, 6), number(2.5, 4.0, 6), number(0.05, 0.4, 7
 
 @relation("dem", st.tuples(DAMPED, pulses(0.3, 0.6)), 0.005, share=0.5)
 def energies_of_damped_solids(column: tuple, motion: Deck, within: float) -> None:
-    """Blocks in space on damped springs: what the ground supplies is motion, height, springs and losses; the losses never fall."""
+    """For blocks in space on damped springs the work of the ground equals motion, height, springs and losses; the losses never decrease."""
     width, slender, ratio, friction, way = column
     structure = {"kind": "column", "section": "round", "sides": 8, "drums": 2, "width": width, "height": round(width * slender, 4)}
     deck = {"structure": structure, "joints": {"friction": friction, "normal_stiffness": 1e8, "damping_ratio": ratio}, "motion": motion}

@@ -248,7 +248,7 @@ def walls_of_a_plan_by_hand(deck: Deck, within: float) -> None:
     1e-4,
 )
 def a_wall_beside_stops_one_side(deck: Deck, lean: float, side: str, within: float) -> None:
-    """Beside a wall to the left a building falls to the right alone: codes and rocking take that side's multiplier."""
+    """Beside a wall to the left a building collapses only to the right: codes and rocking use the multiplier of this side."""
     deck = leaning(deck, lean)
     limit = ask(deck, "tilt")
     ok(limit)
@@ -376,7 +376,7 @@ def modes_of_a_stack(deck: Deck, motion: Deck, within: float) -> None:
 
 @relation("tilt", st.integers(1, 3), 0.0, share=0.5)
 def names_of_joints_are_looked_for_where_they_stand(count: int, within: float) -> None:
-    """A wrong joint is told at the table that names it, among several tables."""
+    """The message on a wrong joint gives the table that names it."""
     lines = ["[structure]", "kind = 'column'", "width = 1.0", "height = 4.0", "drums = 3", "[[analysis]]", "kind = 'tilt'"]
     for name in ["base", "joint 1"][: count - 1]:
         lines += ["[[joints.types]]", "friction = 0.6", f"joints = ['{name}']"]

@@ -145,8 +145,7 @@ DOWELLED = st.tuples(number(0.6, 1.4), number(0.15, 0.4), number(0.3, 0.6), numb
 
 @relation("dem", DOWELLED, 0.15, share=0.5)
 def dowels_hold_what_they_are_given(width: float, push: float, part: float, way: float, drums: int, within: float) -> None:
-    """Drums almost without friction on a ground that accelerates: each dowel carries what is above it as a spring, and beyond its strength all that is
-    above slides as a body under the rest of the push; dowels of no account change nothing."""
+    """Drums almost without friction on accelerating ground: each dowel carries the inertia above it as a spring. Beyond its strength the part above slides as one body under the remaining force."""
     height = float(f"{0.5 * width * drums:.5g}")
     structure = {**DRUM, "width": width, "height": height, "drums": drums}
     area = 2.0 * math.sqrt(2.0) * (0.5 * width) ** 2
@@ -285,7 +284,7 @@ def compare_names(answer: Answer) -> None:
     "rocking tilt thrust moving-load supports failure-domain fragility local-mechanism", st.integers(0, len(EFFECTS) - 1), 0.0, share=0.5
 )
 def arrays_tables_and_results_of_one_name(k: int, within: float) -> None:
-    """What stands in arrays, in tables and among the results under one name is the same, with any one key of an analysis changed."""
+    """Values of one name in arrays, tables and results are the same, with any one key of an analysis changed."""
     deck, kind, keys, changes = EFFECTS[k]
     for key in [None, *list(changes)[:6], *(c for c in ("durations", "levels", "histories") if c in changes)]:
         answer = ask(deck, kind, **{**keys, **({} if key is None else {key.split()[0]: changes[key]})})

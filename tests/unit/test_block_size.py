@@ -26,7 +26,7 @@ def test_a_dome_by_its_blocks() -> None:
     assert rows["lunes = 24"].relative_change == pytest.approx(0.471 / 0.497 - 1.0, abs=0.012)
     assert set(rows) == {"rings = 24", "lunes = 24", "bond = running"}
     assert "bond = running" in found.answer
-    assert any("depends on the blocks" in told for told in found.warnings)
+    assert any("depends on the size of the blocks" in told for told in found.warnings)
 
 
 def test_a_row_is_the_capacity_of_that_deck() -> None:

@@ -132,7 +132,7 @@ def test_the_floor_spectrum_of_several_modes_is_the_root_of_the_sum_of_squares()
     site = {"code": "EN1998-1", "ground": "B", "acceleration": "0.15 g"}
     r = extrados.run({"analysis": {**base, "modes": modes, "spectrum": site}})["local-mechanism"]
     assert r.floor_acceleration_g == pytest.approx(2.5 * 0.18 * 1.1 * math.sqrt(1.01))
-    with pytest.raises(DeckError, match="the modes already give this value"):
+    with pytest.raises(DeckError, match="the key `modes` already gives this value"):
         make_deck({"analysis": {**base, "modes": modes, "storeys": 3}})
 
 
@@ -164,7 +164,7 @@ def test_a_free_part_answers_at_its_own_period() -> None:
     rows = [r.checks[n] for n in ("NTC nonlinear", "NTC activation (at height z)")]
     assert r.zeta_E == pytest.approx(max(c.capacity / c.demand for c in rows))
     bare = extrados.run({"code": code, "analysis": table})["local-mechanism"].checks["NTC activation at SLD (at height z)"]
-    assert bare.verdict == "not-applicable" and "Give [material] young" in bare.reason
+    assert bare.verdict == "not-applicable" and "Give `young` of [material]" in bare.reason
 
 
 def test_the_peak_of_the_first_example_of_the_circolare() -> None:
@@ -306,7 +306,7 @@ def test_a_report_has_the_spectrum_of_its_own_code() -> None:
     (row,) = extrados.run({"analysis": {**WALL, "one_second_acceleration": "0.2 g"}}).analyses
     assert row["status"] == "refused" and "a key of the checks by ASCE 41" in row["reason"]
     run = extrados.run({"analysis": {**WALL, "spectrum": site}})
-    assert run["local-mechanism"].by_default and "The deck names no code" in run.analyses[0]["verdict"]["statement"]
+    assert run["local-mechanism"].by_default and "The deck has no table [code]" in run.analyses[0]["verdict"]["statement"]
     (row,) = extrados.run(
         {"structure": {"kind": "block", "width": 1.0, "height": 3.0}, "code": {"jurisdiction": "NTC"}, "analysis": {"kind": "tilt"}}
     ).analyses

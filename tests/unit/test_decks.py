@@ -65,7 +65,7 @@ def test_good_deck() -> None:
         ("embrace = 157.5", "embrace = 157.5\nfloat = 1", 7, ["unknown key"]),
         ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'energy-safe' or 'inelastic', or", "number"]),
         ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
-        ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound` requires abutting_wall"]),
+        ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound` requires `abutting_wall`"]),
         (
             "voussoirs = 7",
             "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]",
@@ -91,11 +91,11 @@ def test_complaint(old: str, new: str, line: int, words: list[str]) -> None:
 
 #: A tie of `strengthen` and a span of a bridge whose keys contradict one another: rules of tables in lists
 NESTED = {
-    "debonding_force requires its source": (
+    "`debonding_force` requires its source": (
         '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\n'
         'debonding_force = "10 kN" # here\n'
     ),
-    "places` requires start_to or far_to": (
+    "places` requires `start_to` or `far_to`": (
         '[analysis]\nkind = "strengthen"\nacceleration = "0.3 g"\n[[analysis.ties]]\nstart = [0, 1]\nend = [1, 1]\nplaces = 5 # here\n'
     ),
     "intrados belongs to shape": (
@@ -110,7 +110,7 @@ def test_a_rule_of_a_table_in_a_list_has_the_line_of_the_key_that_it_names(words
     rows = NESTED[words].splitlines()
     line = 1 + next(k for k, row in enumerate(rows) if "# here" in row)
     found = complaints(NESTED[words])
-    key = words.split()[0].rstrip("`")
+    key = words.split()[0].strip("`")
     assert any(c.startswith(f"deck.toml:{line}:") and f".{key}: " in c for c in found), found
 
 

@@ -597,10 +597,6 @@ def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) ->
     ):
         with pytest.raises(error):
             dem3.Model(replace(model, dowels=wrong), options)
-    with pytest.raises(ValueError, match="rigid contacts have no dowels"):
-        dem3.Model(replace(whole, laws=[Law(1e9, 1e9, 0.3)]), replace(options, rigid=True))
-    with pytest.raises(ValueError, match="rigid contacts have no mortar"):
-        dem3.Model(model, replace(options, rigid=True))
 
 
 def test_a_contact_that_becomes_deep_gives_no_energy() -> None:

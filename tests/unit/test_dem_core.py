@@ -285,7 +285,7 @@ def test_a_run_pauses_and_goes_on_from_any_state_to_the_same_bits(threads: int, 
         with dem.Model(bodies, options) as other:
             with pytest.raises(ValueError, match="damaged"):
                 other.run(motions, state=broken)
-            with pytest.raises(ValueError, match="to other times"):
+            with pytest.raises(ValueError, match="with other output times"):
                 other.run(motions, state=states[0][1], times=[0.0, 0.1])
 
 

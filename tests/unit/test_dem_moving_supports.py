@@ -129,6 +129,6 @@ def test_a_settlement_of_a_plane_section_in_space_is_dz() -> None:
     name = make_deck({"structure": ARCH, "analysis": {"kind": "tilt"}}).building.blocks().joint_names[-1]
     keys = {"end_time": 0.1, "solver": "nonsmooth"}
     found = run(ARCH, [{"joint": name, "dy": -0.05}], direction=0.0, **keys)
-    assert found.status != "ok" and "give dz for a settlement" in found.reason
+    assert found.status != "ok" and "give `dz` for a settlement" in found.reason
     for movement, more in (({"dy": -1e-4}, {}), ({"dz": -1e-4}, {"direction": 0.0})):
         assert run(ARCH, [{"joint": name, **movement}], **keys, **more).status == "ok"

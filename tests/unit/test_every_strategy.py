@@ -65,7 +65,7 @@ TWO = (
     "two stacked blocks rock in two coordinates. Only `rocking`, `fragility`, `failure-domain`, `failure-curves`, `harmonic-map` and `dem` "
     "can follow them"
 )
-UNKNOWN = "the units of the panel are not known: give unit_length and unit_height"
+UNKNOWN = "the units of the panel are not known: give `unit_length` and `unit_height`"
 REFUSED = {
     # Stone does not crush here, and a load on a body that stands on all its width, or on a lintel, finds its way down.
     ("block", "moving-load"): PRESSED.format("block"),

@@ -20,4 +20,4 @@ def test_the_report_of_a_real_house(tmp_path):
     assert walls["statement"] in pushed["verdict"]["statement"] and walls["statement"] in pushed["answer"]
     write_report(tmp_path)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "The result contains no safety margin of a code" not in page  # the strengths are divided by 1.2
+    assert "The result includes no safety margin of a code" not in page  # the strengths are divided by 1.2

@@ -85,7 +85,7 @@ def test_a_wall_that_rocks_outward_draws_it_from_under_the_joists(tmp_path) -> N
 
 def test_seats_are_refused_where_nothing_rests_on_them(tmp_path) -> None:
     for old, new, words in (
-        ('load = "4 kPa"', "", "load above 0"),
+        ('load = "4 kPa"', "", "`load` above 0"),
         ("[[analysis]]\n", '[[analysis]]\nwithout_equilibrium = "load-unload"\n', "seats"),
     ):
         with pytest.raises(Exception, match=words):

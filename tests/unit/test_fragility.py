@@ -199,12 +199,12 @@ def test_durations() -> None:
         ({"count": -3}, "greater than or equal to 1"),
         ({"levels": [0.1, 0.0]}, "above zero"),
         ({"levels": [0.1], "durations": [1.0]}, "not both"),
-        ({"levels": [0.1], "intensity": "sa"}, "requires sa_period"),
+        ({"levels": [0.1], "intensity": "sa"}, "requires `sa_period`"),
         ({"uncertain": {"widht": 0.1}}, "unknown"),
         ({"sensitivity": 64}, "requires uncertain"),
         ({"uncertain": {"width": 0.1}, "sensitivity": 100}, "power of 2"),
         ({"uncertain": {"width": 2.0}}, "at most 0.5"),
-        ({"uncertain": {"width": 0.1, "friction": 0.1}, "sensitivity": 64}, "remove uncertain.friction or sensitivity"),
+        ({"uncertain": {"width": 0.1, "friction": 0.1}, "sensitivity": 64}, "remove uncertain.friction or `sensitivity`"),
         ({"initial": {"rotation_ratio": 1.2}}, "less than 1"),
     ],
 )
@@ -219,7 +219,7 @@ def test_refusals() -> None:
     pulse = {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}
     assert "expected at most 1" in run({"kind": "fragility", "count": 2}, motion=pulse).reason
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.15, "embrace": 157.5, "voussoirs": 7}
-    assert "has no such value" in run({"kind": "fragility", "count": 2, "uncertain": {"width": 0.1}}, arch).reason
+    assert "has no value of this name" in run({"kind": "fragility", "count": 2, "uncertain": {"width": 0.1}}, arch).reason
     ok = run({"kind": "fragility", "count": 8, "uncertain": {"thickness": 0.05}, "joints": {"restitution": "energy-safe"}}, arch)
     assert ok.status == "ok" and ok.results["count"] == 8
 

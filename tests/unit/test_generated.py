@@ -236,7 +236,7 @@ def test_compatible_motions(target, damping, band) -> None:
 
 def test_impossible_targets_are_refused() -> None:
     made = CompatibleSet(code_spectra.en1998(1, "A", 2.0), 0.05, 0.2, 1.0, 0.001, 3.0, 0.02, 1)
-    with pytest.raises(NotMatched, match="Increase the tolerance"):
+    with pytest.raises(NotMatched, match="Increase `tolerance`"):
         made.motion(0)
 
 

@@ -194,7 +194,7 @@ def test_cells_of_a_map_are_decided_by_contacts() -> None:
     assert found.verdict.outcome in ("stands", "collapses")
     few = extrados.run(deck | {"analysis": domain | {"hand_over_cells": 1}}).results[0]
     assert few.results.handed_over is None and few.verdict.outcome == "open"
-    assert any("hand_over_cells = 1" in text for text in few.warnings)
+    assert any("`hand_over_cells` = 1" in text for text in few.warnings)
 
 
 def test_the_equations_of_slender_blocks_are_not_handed_over() -> None:

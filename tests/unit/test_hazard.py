@@ -123,8 +123,8 @@ def test_a_hazard_curve_that_ends_too_early_is_reported() -> None:
         ({"cloud": True, "levels": [0.1]}, "remove the keys `levels`"),
         ({"rotation_limits": [0.5]}, "is used only with cloud = true"),
         ({"histories": 3, "levels": [0.1]}, "unscaled motions"),
-        ({"cloud": True, "hazard": {"intensities": [0.1, 0.2]}}, "give either intensities"),
-        ({"cloud": True, "hazard": {**HAZARD, "file": "h.csv"}}, "give either intensities"),
+        ({"cloud": True, "hazard": {"intensities": [0.1, 0.2]}}, "give either `intensities`"),
+        ({"cloud": True, "hazard": {**HAZARD, "file": "h.csv"}}, "give either `intensities`"),
         ({"cloud": True, "hazard": {"intensities": [0.1, 0.2], "annual_rates": [0.1, 0.1]}}, "decrease"),
         ({"cloud": True, "hazard": {"intensities": [0.2, 0.1], "annual_rates": [0.1, 0.01]}}, "increase"),
         ({"cloud": True, "hazard": {"intensities": [0.1, 0.2, 0.3], "annual_rates": [0.1, 0.01]}}, "equal numbers"),
@@ -298,7 +298,7 @@ def test_buildings_of_the_sample_that_cannot_stand_count_as_collapsed() -> None:
 
 def test_what_a_building_does_not_know_is_refused() -> None:
     assert "one rigid block" in run({"count": 4, "uncertain": {"density": 0.1}}).reason
-    assert "has no such value" in run({"count": 4, "uncertain": {"corners": 0.1}}).reason
+    assert "has no value of this name" in run({"count": 4, "uncertain": {"corners": 0.1}}).reason
     column = {"kind": "column", "width": 0.4, "height": 2.0, "drums": 4}
     assert run({"count": 4, "uncertain": {"density": 0.1, "width": 0.05}}, column).status == "ok"
     thesis = {"uncertain": {"imperfection": 0.02}, "joints": {"restitution": "thesis"}}

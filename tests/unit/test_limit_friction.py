@@ -204,7 +204,7 @@ def test_no_verdict_without_proof(monkeypatch: pytest.MonkeyPatch) -> None:
         raise NoEquilibrium
 
     monkeypatch.setattr(limit, "collapse", fails)
-    with pytest.raises(NoAnswer, match="no mechanism proves"):
+    with pytest.raises(NoAnswer, match="neither an equilibrium state nor a collapse mechanism was found"):
         assess(column, limit=limit)
 
 

@@ -155,7 +155,7 @@ def test_walls_that_are_all_held_have_no_mechanism_and_the_crushing_hinge_is_set
     run = extrados.run({"structure": house(floors=slabs), "analysis": {"kind": "local-mechanism", "mechanism": "building"}})
     (told,) = run.analyses
     assert told["status"] == "ok" and told["verdict"]["outcome"] == "not-applicable"
-    assert "restrain the top of every wall" in told["verdict"]["statement"] == run["local-mechanism"].statement()
+    assert "restrain the top of each wall" in told["verdict"]["statement"] == run["local-mechanism"].statement()
     soft = {"density": 2000.0, "compressive_strength": "1 MPa"}
     whole = {"structure": house(), "material": soft, "analysis": {"kind": "local-mechanism", "mechanism": "building"}}
     table = {"material": soft, "analysis": {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.5}}
@@ -399,7 +399,7 @@ def test_ties_of_the_table_are_not_counted_on_to_collapse() -> None:
     pushed = mechanism(**base, floors=[{"height": 6.0, "thrust": 1e3}])["local-mechanism"]
     assert pushed.zero_displacement_m < bare.zero_displacement_m
     only = mechanism(**base, floors=[{"height": 6.0, "thrust": 8e3}], ties=[{"height": 6.0, "force": 9e3}])
-    assert only["local-mechanism"].zero_displacement_m is None and "Without its ties" in only.analyses[0]["warnings"][0]
+    assert only["local-mechanism"].zero_displacement_m is None and "without its ties" in only.analyses[0]["warnings"][0]
 
 
 def test_a_mechanism_whose_stones_crush_is_not_said_to_slide() -> None:

@@ -282,7 +282,7 @@ def test_components_are_kept_together(tmp_path) -> None:
     ns, ud = put(tmp_path, "ns.at2", files.at2(A)), put(tmp_path, "ud.at2", files.at2(0.5 * A[:-3]))
     motion = record_motion(read_record(ns), Treatment(pga=1.0, scale=2.0), vertical=read_record(ud))
     horizontal, vertical = motion.ground.samples
-    assert motion.ground.channels == 2 and len(horizontal) == len(A) - 3 and "cut to the shortest" in motion.notes[0]
+    assert motion.ground.channels == 2 and len(horizontal) == len(A) - 3 and "cut to the length of the shortest" in motion.notes[0]
     np.testing.assert_allclose(vertical, 0.5 * horizontal, rtol=1e-5)
     assert np.abs(horizontal).max() == pytest.approx(2.0)
     other = put(tmp_path, "other.at2", files.at2(A, 0.01))

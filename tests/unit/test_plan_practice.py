@@ -163,7 +163,7 @@ def test_bad_openings_through_storeys_name_wall_and_place(z, more, words):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"roof": None}, "both pitch and roof"),
+        ({"roof": None}, "both `pitch` and `roof`"),
         ({"bears_on": ["south"]}, "two different walls"),
         ({"bears_on": ["south", "east"]}, "'south' and 'east' are not parallel"),
         ({"bears_on": ["east", "west"]}, "wall 'east' has a gable on top of storey 1"),
@@ -214,7 +214,7 @@ def test_purlins_follow_the_slope_of_either_side_of_a_gable():
 def test_a_rigid_floor_ties_the_rafters():
     slab = {k: v for k, v in ROOF.items() if k not in ("young", "thickness")} | {"kind": "rigid"}
     tied = building(floors=[slab])
-    assert any("ties the rafters at the eaves, so they have no thrust" in remark for remark in all_warnings(tied))
+    assert any("ties the rafters at the eaves, so the rafters have no thrust" in remark for remark in all_warnings(tied))
     assert not tied.shell(ShellOptions(size=1.0)).push.any()
     assert not any("push wall" in remark for remark in tied.frame(FrameOptions()).remarks)
 

@@ -256,7 +256,7 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
         ((status, reason),) = told(damper + DECK.replace('[supports]\nabutting_wall = "left"\n', "").replace("rocking", kind))
         assert status == "refused" and "[[dampers]]" in reason and "rocking" in reason
     ((status, reason),) = told("[[ties]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\nyield_force = 10.0\n" + DECK)
-    assert status == "refused" and "requires its stiffness" in reason
+    assert status == "refused" and "requires a stiffness" in reason
 
 
 def test_wrong_dampers_and_hinges_are_reported_with_their_line() -> None:

@@ -87,7 +87,7 @@ def test_a_deck_takes_the_records_that_are_closest(suite: Path) -> None:
         one = suite_motion(deck.motion, member, suite)
         if 0.25 < member.factor < 4.0:
             assert spectrum_of(one, np.array([0.5]), 0.05)[0] == pytest.approx(0.4 * GRAVITY, rel=1e-9)
-        assert any("selected with the factor" in note for note in one.notes)
+        assert any("selected with the scale factor" in note for note in one.notes)
     result = run_analyses(Context(deck))[0]
     assert (result.results.shortest_s, result.results.longest_s) == (0.05, 2.0)  # the figure draws the band
     assert result.results.count == 3 and "target" in result.arrays and "selected by spectrum" in result.answer
@@ -124,7 +124,7 @@ def test_a_record_that_cannot_be_read_and_a_count_not_reached_are_stated(suite: 
     assert len(members) == 5
     deck = make_deck({"motion": motion(count=6), "analysis": {"kind": "motion"}}, suite)
     stated = " ".join(run_analyses(Context(deck))[0].warnings)
-    assert "6 records were requested, and 5 are selected; 1 record(s) cannot be read: " in stated and "r0.AT2" in stated
+    assert "6 records were requested, but only 5 are selected; 1 record(s) cannot be read: " in stated and "r0.AT2" in stated
     assert not any("requested" in note for note in members_of(suite, count=5)[1].notes)
 
 

@@ -77,7 +77,7 @@ def test_outline_from_a_drawing(tmp_path) -> None:
     area = 3.0 * 1.8 + 0.5 * 3.0 * 0.8 - 0.8**2
     assert result.results["reference_load_N"] == pytest.approx(1950.0 * 0.2 * area, rel=1e-6)
     del data["structure"]["outline"]
-    with pytest.raises(DeckError, match="width and height are missing"):
+    with pytest.raises(DeckError, match="`width` and `height` are missing"):
         make_deck(data, tmp_path)
     data["structure"] |= {"outline": "gable.dxf", "width": 3.0}
     with pytest.raises(DeckError, match="an outline replaces width"):
@@ -98,7 +98,7 @@ def test_repetitions_give_a_band() -> None:
     data["analysis"][0]["seeds"] = [4]
     assert run_deck(data).results["scatter"]["peak_loads_N"] == peaks[:1]
     assert scatter["scatter_load"].shape[0] == 2
-    assert "seeds require a random mesh" in run_deck(wall(events=5, seeds=[1])).reason
+    assert "`seeds` require a random mesh" in run_deck(wall(events=5, seeds=[1])).reason
 
 
 def test_strength_field_has_its_mean_and_scatter() -> None:
@@ -249,7 +249,7 @@ def test_a_force_between_nodes_is_shared() -> None:
 
 def test_a_node_that_is_not_where_it_was_requested_is_reported() -> None:
     data = wall(events=5, control=[{"x": 0.0123, "y": 0.0, "direction": "x"}])
-    assert any("no node lies at x 0.0123 m" in w for w in run_deck(data).warnings)
+    assert any("no node is at x 0.0123 m" in w for w in run_deck(data).warnings)
 
 
 def test_what_cracks_keep_is_never_the_peak() -> None:

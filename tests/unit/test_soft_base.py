@@ -495,6 +495,23 @@ def test_a_block_on_two_springs_that_slides_ends_as_discrete_elements_from_rest(
     assert compared >= 2
 
 
+@pytest.mark.parametrize("stiffness", [1e7, 1e9])
+def test_a_base_that_lifts_off_is_not_said_to_slide(stiffness: float) -> None:
+    """Any friction fails as the force vanishes: the condition named is that of no friction at all."""
+    made = {
+        "structure": {"kind": "block", "width": 0.8, "height": 2.4},
+        "supports": {"stiffness": stiffness, "foundation": "two-spring"},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.6},
+        "analysis": {"kind": "rocking", "hand_over": False},
+    }
+    found = [extrados.run(made | {"joints": {"friction": one}}).results[0].results.conditions for one in (2.0, "no-sliding")]
+    assert found[0].violated == found[1].violated and "lifts off" in found[0].violated[0]
+    assert found[0].slides_first is None and found[0].leaves_first == found[1].leaves_first
+    made["motion"]["amplitude"] = "0.9 g"  # slides long before
+    early = extrados.run(made | {"joints": {"friction": 0.2}}).results[0].results.conditions
+    assert early.slides_first.time_s < 0.1
+
+
 def test_cells_and_members_on_two_springs_are_handed_over() -> None:
     """Of a domain and of an ensemble; a bed is not: its force moves along the base."""
     made, two_spring, _ = sliding_deck(1)

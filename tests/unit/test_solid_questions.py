@@ -158,13 +158,13 @@ def test_the_thrust_on_the_ground_of_one_block_is_its_push() -> None:
     assert "from 0 kN to 0 kN, 0 kN in the most central state" in run(block, kind="thrust", direction=30.0).answer  # no rounding
     assert run(PRISM, kind="thrust", gamma=0.1).status == "ok"  # a round column, along +x by default
     refused = run(block, kind="thrust", direction=30.0, section=[{"name": "a", "joints": ["ground"]}])
-    assert refused.status == "refused" and "give toward" in refused.reason
+    assert refused.status == "refused" and "give the key `toward`" in refused.reason
 
 
 @pytest.mark.parametrize(
     ("section", "words"),
     [
-        ({"name": "a", "x": 99.0}, "section 'a': the cut crosses no contact between two blocks"),
+        ({"name": "a", "x": 99.0}, "section 'a': its cut crosses no contact between two blocks"),
         ({"name": "a", "joints": ["nowhere"]}, "names no contact 'nowhere'"),
     ],
 )
@@ -186,7 +186,7 @@ def test_a_sweep_of_an_extruded_arch_is_that_of_its_section() -> None:
     plane, space = run(ARCH, **keys).results, run(ARCH, direction=0.0, **keys).results
     assert space.collapse_accelerations_g == pytest.approx(plane.collapse_accelerations_g, abs=1e-7)
     assert [g.status for g in space.gaps] == [g.status for g in plane.gaps]
-    assert "locate = true locates them" in run(ARCH, direction=0.0, **keys).answer
+    assert "locate = true` locates them" in run(ARCH, direction=0.0, **keys).answer
 
 
 def test_a_sweep_over_the_direction_of_a_prism(tmp_path: Path) -> None:

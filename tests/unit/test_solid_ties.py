@@ -168,7 +168,7 @@ def test_a_barrel_in_bond_by_the_programme_of_the_forces() -> None:
     assert pushed(SolidLimit(solids, 0.7)).gamma == pytest.approx(outside(solids, 0.7, 0.0, [], 0.0), abs=1e-6)
 
 
-@pytest.mark.parametrize(("z", "words"), [(8.0, "Move the load"), (1.0, "move the load into one of them")])
+@pytest.mark.parametrize(("z", "words"), [(8.0, "Move the load"), (1.0, "move the load to one of them")])
 def test_a_load_in_no_block_or_between_two_has_its_own_advice(z: float, words: str) -> None:
     """Not that of the end of a tie, whose block a key names."""
     deck = {

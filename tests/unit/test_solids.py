@@ -388,7 +388,7 @@ def test_a_compas_assembly_without_a_plane_is_looked_at_in_space(folder: Path) -
     }
     tilt, thrust, moving = run_analyses(Context(make_deck(tables, folder), threads=1))
     assert tilt.status == "ok" and tilt.results["blocks"] == 2
-    assert thrust.status == "ok" and moving.status == "refused" and "prisms across one plane" in moving.reason
+    assert thrust.status == "ok" and moving.status == "refused" and "prisms perpendicular to one plane" in moving.reason
     assert check_building(make_deck({**tables, "analysis": tables["analysis"][:1]}, folder)).solids is not None
 
 
@@ -420,11 +420,11 @@ def test_errors_of_a_file_are_reported(folder: Path) -> None:
         "words.obj": ("v 0 0 0\nf 1 b 2\n", "words.obj:2: a face must give its vertices by numbers"),
         "none.obj": ("v 0 0 0\nf 1 2 3\n", "none.obj:2: a face has a vertex that does not exist"),
         "empty.obj": ("# nothing\n", "empty.obj: holds no faces"),
-        "garbage.stl": ("solid nothing of the kind", "neither the text nor the length of an STL file"),
+        "garbage.stl": ("solid nothing of the kind", "neither a text STL file nor a binary STL file of the right length"),
         "nan.stl": (stl_text({"a": CUBE}).replace("vertex 0.0", "vertex nan", 1), "expected a vertex of three numbers"),
         "lifted.obj": (
             obj(lifted),
-            "upper touches neither another block nor the ground; the nearest face is 0.5 mm away: contact_tolerance",
+            "upper touches no other block and not the ground; the nearest face is 0.5 mm away: `contact_tolerance`",
         ),
         "pressed.obj": (obj(pressed), "lower and upper overlap by 5 mm, which exceeds 0.1 mm"),
     }

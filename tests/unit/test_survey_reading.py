@@ -173,7 +173,7 @@ def test_layers_for_material_friction_and_supports(tmp_path: Path) -> None:
     assert deck.building.rigid().mass.sum() == pytest.approx(4500.0)
     with pytest.raises(DeckError, match="material 'brick' does not exist"):
         make_deck({**data, "materials": {}}, tmp_path)
-    for change, words in (({"name": "NONE"}, "layer 'NONE' does not exist"), ({"name": "OTHER", "role": "joints"}, "mark no joint")):
+    for change, words in (({"name": "NONE"}, "layer 'NONE' does not exist"), ({"name": "OTHER", "role": "joints"}, "name no joint")):
         wrong = make_deck({**data, "structure": {**structure, "layer": [*structure["layer"][:3], change]}}, tmp_path)
         assert words in run_analyses(Context(wrong, threads=1))[0].reason
 
@@ -182,7 +182,7 @@ def test_georeferenced(tmp_path: Path) -> None:
     far = np.array([431250.0, 5062480.0])
     blocks = [Polygon(b.name, b.points + far) for b in (box("a", 0, 0), box("b", 0, 1))]
     here, there = run({"block": rows(box("a", 0, 0), box("b", 0, 1))}), {"block": rows(*blocks)}
-    assert "origin = [431250, 5062480] would move it near" in run(there).reason
+    assert "origin = [431250, 5062480] would move the drawing near" in run(there).reason
     beyond = run({"block": rows(*(Polygon(b.name, b.points + 1e14) for b in blocks))}).reason
     assert "farther than" in beyond and "origin =" not in beyond  # in a file it may be 1e308
     for origin in (far.tolist(), "lower-left"):
@@ -197,7 +197,9 @@ def test_foundations_at_unlike_levels() -> None:
     """The lowest level alone leaves the higher foundation hanging, which is told; the levels named make supports."""
     portal = rows(box("low", 0, 0, 1, 3), box("high", 3, 1, 1, 2), box("lintel", 0, 3, 4, 0.5))
     hanging = run({"block": portal})
-    assert any("horizontal soles of 'high' at y = 1 m. To make supports of them, give foundation_levels" in w for w in hanging.warnings)
+    assert any(
+        "horizontal soles of 'high' at y = 1 m. To make supports of these soles, give `foundation_levels`" in w for w in hanging.warnings
+    )
     found = run({"block": portal, "foundation_levels": [0.0, "1 m"]})
     assert found.warnings == [] and len(found["reactions"]) == 2
     # The same with segments of ground.

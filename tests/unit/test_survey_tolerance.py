@@ -29,7 +29,7 @@ def test_a_gap_changes_no_capacity_in_silence() -> None:
         assert words in told
     mended = run({"block": leaning(3e-4), "contact_tolerance": "0.31 mm"})
     assert mended["collapse_acceleration_g"] == pytest.approx(closed["collapse_acceleration_g"], rel=1e-3)
-    assert "closed within contact_tolerance" in mended.warnings[0]
+    assert "closed within `contact_tolerance`" in mended.warnings[0]
     assert f"the collapse acceleration to +x is {mended['collapse_acceleration_g']:.4f} g" in both
     # A mended joint lies midway between the two faces.
     assert mended["joint_p"][:, 0].tolist().count(1.00015) == 1
@@ -87,7 +87,7 @@ def test_random_surveys_give_a_band() -> None:
             "analysis": {"kind": "imperfections"},
         }
     )
-    assert "give the key deviation" in run_analyses(Context(arch, threads=1))[0].reason
+    assert "give the key `deviation`" in run_analyses(Context(arch, threads=1))[0].reason
     assert "1/4 of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
 
 

@@ -71,13 +71,22 @@ def test_dome_lies_between_its_bounds_and_turns_with_its_load() -> None:
     assert 0.0 < r["horizontal_load_g"] <= r["horizontal_load_bound_g"] * (1.0 + 1e-6)
     assert run.analyses[1]["results"]["horizontal_load_bound_g"] == pytest.approx(r["horizontal_load_bound_g"], rel=1e-6)
     arrays = run.arrays["thrust-network"]
+    first, second = arrays["network_branch"].numbers.T
+    weight = arrays["network_weight"].numbers
+    free = np.setdiff1d(np.arange(len(weight)), arrays["network_support"].numbers)
     for which in ("least", "central", "greatest"):
-        z = arrays[f"{which}_height"].numbers
+        z, q = arrays[f"{which}_height"].numbers, arrays[f"{which}_density"].numbers
         low, high = arrays["network_low"].numbers, arrays["network_high"].numbers
-        inner = np.setdiff1d(np.arange(len(z)), arrays["network_support"].numbers)
-        inner = inner[np.linalg.norm(arrays["network_point"].numbers[inner], axis=1) < 4.7]  # the others lie over the bed
+        inner = free[np.linalg.norm(arrays["network_point"].numbers[free], axis=1) < 4.7]  # the others lie over the bed
         assert (z[inner] >= low[inner] - 1e-5).all()
         assert (z[inner] <= high[inner] + 1e-5).all()
+        assert (q >= -1e-9 * q.max()).all()
+        place = np.column_stack([arrays["network_point"].numbers, z])
+        force = q[:, None] * (place[first] - place[second])
+        sums = np.zeros_like(place)  # sum of the compression of all branches at each node [N]
+        np.add.at(sums, first, force)
+        np.add.at(sums, second, -force)
+        assert sums[free] == pytest.approx(np.column_stack([np.zeros((len(free), 2)), weight[free]]), abs=1e-6 * weight.sum())
 
 
 def test_thinner_dome_is_less_safe_until_no_network_fits() -> None:
@@ -149,12 +158,20 @@ def _results(**keys) -> ThrustNetwork:
 @pytest.mark.parametrize(
     ("load", "bound", "words"),
     [
-        (None, 0.3, "found no network that carries a horizontal load. This proves no limit: the bound of the diagram is 0.3"),
-        (0.0, 0.3, "found no network that carries a horizontal load. This proves no limit: the bound of the diagram is 0.3"),
-        (None, None, "No limit of the horizontal load was found"),
-        (0.0, 1e-9, "the diagram carries no horizontal load"),
-        (None, 0.0, "the diagram carries no horizontal load"),
-        (0.2, 0.3, "0.2 (bound of the diagram: 0.3) times the weight, if it acts at the nodes"),
+        (
+            None,
+            0.3,
+            "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3",
+        ),
+        (
+            0.0,
+            0.3,
+            "no network was found that carries a horizontal load. This does not prove a limit: the upper bound for this form diagram is 0.3",
+        ),
+        (None, None, "No upper limit of the horizontal load was found"),
+        (0.0, 1e-9, "networks on this form diagram carry no horizontal load"),
+        (None, 0.0, "networks on this form diagram carry no horizontal load"),
+        (0.2, 0.3, "0.2 (bound of the diagram: 0.3) times the weight, if the load acts at the nodes"),
     ],
 )
 def test_words_of_the_horizontal_load(load, bound, words) -> None:

@@ -274,7 +274,7 @@ def test_anchors_are_named_where_they_are_wrong(tie: dict, word: str) -> None:
         ([{**ROD, "prestress": 3.0, "works_in": "compression"}], "exceeds the range that the tie can carry"),
         ([{**ROD, "prestress": 30.0, "yield_force": 20.0}], "exceeds the range that the tie can carry"),
         ([{**ROD, "name": "a"}, {**ROD, "name": "a"}], "two ties are called 'a'"),
-        ([{"start": [0, 1], "ground": [0, 0], "end_stone": "left"}], "only with the key `end`"),
+        ([{"start": [0, 1], "ground": [0, 0], "end_stone": "left"}], "requires the key `end`"),
         ({"start": [0, 1]}, "expected tables [[ties]]"),
         ([{**ROD, "yield_force": "20 s"}], "not a unit of N"),
     ],

@@ -55,7 +55,7 @@ def test_a_special_vehicle_is_its_axles_and_says_that_nobody_read_the_clause() -
         for one in ({"train": "SV100", "gap": 5.0}, own)
     )
     assert named["moving-load"].adequacy_factor == pytest.approx(given["moving-load"].adequacy_factor, rel=1e-9)
-    assert "not verified in the standard" in named.analyses[0]["warnings"][0] and not given.analyses[0]["warnings"]
+    assert "not verified against the standard" in named.analyses[0]["warnings"][0] and not given.analyses[0]["warnings"]
 
 
 def test_an_interrupted_moving_load_resumes_its_further_positions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -64,7 +64,7 @@ def test_an_interrupted_moving_load_resumes_its_further_positions(tmp_path: Path
     deck = make_deck({"structure": BRIDGE, "joints": {"friction": 0.6}, "analysis": {"kind": "moving-load", "count": 5, **train}}, tmp_path)
     options, shown = deck.analyses[0], []
     whole = moving_load.run(Context(deck, out=tmp_path / "run", progress=lambda done, _, text: shown.append((done, text))), options)
-    assert {text for _, text in shown} == {"moving load", "further positions near the least factor"}
+    assert {text for _, text in shown} == {"moving load", "further positions near the one with the least factor"}
     monkeypatch.setattr(moving_load.Places, "run", lambda *_: pytest.fail("a kept position was calculated again"))
     again = moving_load.run(Context(deck, out=tmp_path / "run", resume=True), options)
     for name, array in whole.arrays.items():
@@ -72,7 +72,7 @@ def test_an_interrupted_moving_load_resumes_its_further_positions(tmp_path: Path
 
 
 def test_a_gap_belongs_to_special_vehicles() -> None:
-    with pytest.raises(DeckError, match="gap is used only with"):
+    with pytest.raises(DeckError, match="`gap` is used only with"):
         make_deck({"structure": BRIDGE, "analysis": {"kind": "moving-load", "train": "LM71", "gap": 5.0}})
 
 

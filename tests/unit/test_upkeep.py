@@ -47,7 +47,7 @@ def test_a_release_sets_the_version_everywhere(sources: Path) -> None:
         text = (sources / name).read_text(encoding="utf-8")
         assert re.search(f"{left}{re.escape(version)}{right}", text, re.M) and f"'{before}'" not in text
     log = (sources / "CHANGELOG.md").read_text(encoding="utf-8")
-    assert f"## {major}.{minor + 2}.0 (unreleased)\n\n## {version} (2026-12-01)\n\n### " in log
+    assert f"## {major}.{minor + 2}.0 (unreleased)\n\n## {version} (2026-12-01)\n\n" in log
     assert release.git(sources, "tag") == f"v{version}" and not release.git(sources, "status", "--porcelain", "-uno")
     with pytest.raises(release.Refused, match="not larger"):
         release.prepare(sources, version, "2026-12-02")

@@ -92,7 +92,7 @@ def test_fits_beside_the_curves() -> None:
     assert refused.status == "refused" and "the key `fits` is only for arches, and this structure is a block" in refused.reason
     flat = {**deck, "structure": {**deck["structure"], "embrace": 136.0}}
     beyond = extrados.run(flat).results[0]
-    assert beyond.results.curves[0].criterion is None and any("Table 5.3 covers" in text for text in beyond.warnings)
+    assert beyond.results.curves[0].criterion is None and any("Table 5.3 of the thesis covers" in text for text in beyond.warnings)
 
 
 @pytest.mark.parametrize("exponent", [-0.9, -0.03])

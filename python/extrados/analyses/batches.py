@@ -167,10 +167,10 @@ class _Batches:
             end = 0
             for first, arrays, path in self.kept.placed(self.name, context.warnings):
                 if _are_rows(arrays) and not end <= first <= count - _rows(arrays):  # of another run that was going on at the same time
-                    context.warnings.append(f"a saved batch overlaps another batch and is not used; it begins at member {first}")
+                    context.warnings.append(f"a saved batch of results overlaps another batch and is not used; it begins at run {first}")
                 elif not _are_rows(arrays) or (self.names and set(arrays) != set(self.names)):  # of a stranger
                     context.warnings.append(
-                        f"a saved batch does not contain results of this analysis and is not used; it begins at member {first}"
+                        f"a saved batch does not contain results of this analysis and is not used; it begins at run {first}"
                     )
                 else:
                     self._put(first, arrays, path)
@@ -252,7 +252,7 @@ def sweep(
     whose work is done in Python; a scheduler comes first.
     """
     if count < 1:
-        raise ValueError(f"a sweep requires at least one member, found {count}")
+        raise ValueError(f"a sweep requires at least one run, found {count}")
     with interruptible():
         batches = _Batches(context, name, job, count, tell or (lambda done: context.progress(done, count, text)), large)
         if batches.done == count:
@@ -382,8 +382,8 @@ def _collect(batches: _Batches, job: Job, pace: _Pace, client: Any, address: str
 
 def _lost(batches: _Batches, address: str) -> Swept:
     return batches.swept(
-        f"the scheduler at {address} does not respond any more; {batches.done} of {batches.count} members are complete "
-        f"and saved{batches.again}"
+        f"the scheduler at {address} does not respond any more; {batches.done} of {batches.count} runs "
+        f"are complete and saved{batches.again}"
     )
 
 

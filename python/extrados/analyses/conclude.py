@@ -70,7 +70,7 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
     # Half a motion, half a curve: neither stands for the whole
     if result.status == "interrupted" and not result.results.whole_in_parts:
         verdict = judge("The analysis was interrupted before its end, so there is no verdict.")
-        answer = f"The analysis was interrupted before its end. Result of the completed part: {answer}"
+        answer = f"The analysis was interrupted before its end. Result up to the interruption: {answer}"
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
 
 
@@ -92,7 +92,10 @@ def faulty(kind: str, error: Exception, resumed: bool = False) -> Result:
         return Result(kind, "failed", f"{reason} ({name} says where)" if files else reason, files=files)
     beside = f" with {name}" if files else ""
     if resumed:
-        reason = f"the saved batches of this run do not hold results of this analysis: {said}. Run again without --resume; if that fails too, please report it{beside}"
+        reason = (
+            f"the saved batches of this run do not contain results of this analysis: {said}. Run again "
+            f"without --resume; if that fails too, please report it{beside}"
+        )
         return Result(kind, "failed", reason, files=files)
     return Result(kind, "failed", f"internal error of extrados, please report it{beside}: {said}", files=files)
 

@@ -23,7 +23,7 @@ MOST_NOTES = 10  # of a suite, shown with the result
 def shortened(notes: list[str]) -> list[str]:
     """The first MOST_NOTES, and how many more there are."""
     more = len(notes) - MOST_NOTES
-    return notes[:MOST_NOTES] + ([f"{more} more remarks on records of the suite are not shown."] if more > 0 else [])
+    return notes[:MOST_NOTES] + ([f"{more} further remarks on records of the suite are not shown."] if more > 0 else [])
 
 
 class Source(Protocol):

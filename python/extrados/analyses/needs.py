@@ -66,7 +66,10 @@ def refuse_memory(needed: float, what: str, cure: str, key: Key) -> None:
     """Refused, before a long run, where its numbers take more memory [bytes] than the machine has; `cure` says what takes less."""
     there = room.total()
     if needed > SHARE * there:
-        raise Refused(f"{what} needs about {needed / 1e9:.3g} GB of memory, and this machine has {there / 1e9:.3g} GB; {cure}", key)
+        raise Refused(
+            f"{what} requires about {needed / 1000000000.0:.3g} GB of memory, but this machine has {there / 1000000000.0:.3g} GB; {cure}",
+            key,
+        )
 
 
 def as_shell(building: Building, options: Analysis) -> bool:

@@ -15,11 +15,11 @@ log = logging.getLogger(__name__)
 #: Format -> what writes it, the ending of its files, and what it is
 FORMS: dict[str, tuple[Callable[[Deck], str], str, str]] = {
     "compas": (compas.written, ".json", "the stones as an Assembly of compas_assembly"),
-    "udec": (itasca.udec, ".dat", "the stones of a plane section as blocks of UDEC 7"),
-    "3dec": (itasca.threedec, ".dat", "the stones in space as blocks of 3DEC 7"),
-    "opensees-frame": (frame_script.macroelements, ".tcl", "the frame of macro-elements of a building for OpenSees with Macroelement3d"),
-    "frame-tables": (frame_script.tables, ".txt", "the frame of macro-elements of a building as text tables in the order of TREMURI"),
-    "opensees": (opensees.written, ".py", "a single rocking block, or the mesh of a wall with dry joints, as a script of OpenSeesPy"),
+    "udec": (itasca.udec, ".dat", "the stones of a plane section, as blocks of UDEC 7"),
+    "3dec": (itasca.threedec, ".dat", "the stones in space, as blocks of 3DEC 7"),
+    "opensees-frame": (frame_script.macroelements, ".tcl", "the frame of macro-elements of a building, for OpenSees with Macroelement3d"),
+    "frame-tables": (frame_script.tables, ".txt", "the frame of macro-elements of a building, as text tables in the order of TREMURI"),
+    "opensees": (opensees.written, ".py", "a single rocking block, or the mesh of a wall with dry joints, as a script for OpenSeesPy"),
 }
 #: Those that hold nothing but the geometry of blocks
 BLOCKS = ("compas", "udec", "3dec")
@@ -34,7 +34,7 @@ def exported(deck: Deck, form: str) -> str:
     try:
         text = FORMS[form][0](deck)
         if form in BLOCKS and (left := _beyond_geometry(deck)):
-            log.warning("%s: the file holds the geometry of the blocks. Not exported: %s", form, ", ".join(left))
+            log.warning("%s: the file contains the geometry of the blocks. Not exported: %s", form, ", ".join(left))
         return text
     except BadGeometry as error:
         raise DeckError([deck.complaint(None, error.at, str(error))]) from None

@@ -33,7 +33,7 @@ def frame_of(deck: Deck) -> EquivalentFrame:
     found = deck.building.frame(next((one for one in tables if isinstance(one, FrameOptions)), FrameOptions()))
     if found.plan.foundation_stiffness is not None:
         raise BadGeometry(
-            "the export of frames assumes rigid ground: remove foundation_stiffness from the deck", ("structure", "foundation_stiffness")
+            "the export of frames assumes rigid ground: remove `foundation_stiffness` from the deck", ("structure", "foundation_stiffness")
         )
     return found
 

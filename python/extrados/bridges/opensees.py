@@ -136,7 +136,7 @@ def _held(mesh: Mesh) -> dict[int, set[str]]:
     for k, support in enumerate(mesh.held):
         key = ("supports", "held", k)
         if support.stiffness is not None:
-            raise BadGeometry("the export to OpenSees has rigid supports only: remove stiffness", (*key, "stiffness"))
+            raise BadGeometry("the export to OpenSees has rigid supports only: remove `stiffness` of [supports]", (*key, "stiffness"))
         for node in mesh.nodes_at(support, f"supports.held[{k}]").tolist():
             held.setdefault(node, set()).update(support.fix)
     return held

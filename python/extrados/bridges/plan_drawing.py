@@ -71,7 +71,8 @@ def deck_of_plan(
     short = [wall.length for wall in pieces if wall.length <= LEAST + wall.thickness]
     if not found:
         raise BadGeometry(
-            f"{file.path.name}: no two parallel lines have a distance of {THIN:g} to {THICK:g} m: draw both faces of each wall, or draw axes and give --thickness"
+            f"{file.path.name}: no two parallel lines are {THIN:g} to {THICK:g} m apart: draw both faces of each "
+            "wall, or draw axes and give --thickness"
         )
     if len(found) > MOST_WALLS:
         raise BadGeometry(f"{file.path.name}: the drawing has {len(found)} walls, more than the {MOST_WALLS} allowed")
@@ -225,7 +226,8 @@ def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name
     said = [f"Walls are read from the drawing {name}; it gives no heights.", f"Assumed {sills}."]
     if short:
         said.append(
-            f"Not considered: {len(short)} pieces whose length exceeds their thickness by at most {LEAST:g} m, such as ends of walls; the longest measures {max(short):.2f} m."
+            f"Not considered: {len(short)} pieces that are hardly longer than thick (by at most {LEAST:g} m), "
+            f"such as ends of walls. The longest of them measures {max(short):.2f} m."
         )
     made = []
     for wall in walls:

@@ -36,8 +36,12 @@ def deck_of_ifc(model: Path) -> str:
         raise DeckError([f"{model.name}: {error}"]) from None
     walls, storeys = _by_storey(found, model.name)
     said = [
-        f"Walls, openings and storeys are read from the model {model.name}: boxes about their solids.",
-        *([f"{found['cut']} walls are cut, as gables are by a roof: their boxes count (more masonry)."] if found["cut"] else []),
+        (f"Walls, openings and storeys are read from the model {model.name}. Each wall is the box about its solid."),
+        *(
+            [(f"{found['cut']} walls are cut, for instance gables by a roof. Their boxes are used, which adds masonry.")]
+            if found["cut"]
+            else []
+        ),
         *([f"Not considered: {found['left']} walls whose solids are not straight boxes."] if found["left"] else []),
     ]
     return written_deck(walls, storeys, model.name, said)
@@ -68,7 +72,7 @@ def _parsed(model: Any) -> dict[str, Any]:
     if not every:
         raise Unreadable("holds no IfcWall")
     if len(every) > 10 * MOST_WALLS:
-        raise Unreadable(f"{len(every)} walls, at most {10 * MOST_WALLS}")
+        raise Unreadable(f"the model has {len(every)} walls, but at most {10 * MOST_WALLS} are allowed")
     for wall in every:
         corners, volume = _solid(wall)
         if not volume > FILLED * np.prod(np.ptp(corners, axis=0)):
@@ -215,7 +219,7 @@ def _by_storey(found: dict[str, Any], name: str) -> tuple[list[WrittenWall], lis
         ]
         drawn = [DrawnWall(np.array(w["a"]), np.array(w["b"]), w["thickness"]) for w in own]
         if len(drawn) > MOST_WALLS:
-            raise DeckError([f"{name}: storey {storey} has {len(drawn)} walls, at most {MOST_WALLS}"])
+            raise DeckError([f"{name}: storey {storey} has {len(drawn)} walls, but at most {MOST_WALLS} are allowed"])
         for before, wall in zip(own, joined(drawn), strict=True):
             shift = float((np.array(before["a"]) - wall.a) @ wall.way)
             openings = [

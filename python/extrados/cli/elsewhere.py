@@ -11,18 +11,16 @@ from extrados.cli.terminal import errors, out_console
 def explore(
     deck: Annotated[Path | None, typer.Argument(help="deck to open; default: a new arch")] = None,
     port: Annotated[int | None, typer.Option(min=1024, max=65535, help="port; default: 8737, or any free port")] = None,
-    browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
+    browser: Annotated[bool, typer.Option(help="whether the page is opened in a browser")] = True,
     classroom: Annotated[
-        bool, typer.Option("--class", help="also start a classroom session; prints a link and a QR code for the pupils")
+        bool, typer.Option("--class", help="also start a classroom session, with a link and a QR code for the pupils")
     ] = False,
     address: Annotated[
         str, typer.Option(help="for --class: address of this machine on the local network; default: only this machine can open the pages")
     ] = "127.0.0.1",
     standalone: Annotated[
         Path | None,
-        typer.Option(
-            help="write a page that needs no server to this file, and exit; the page has sliders for one dimension and for the tilt"
-        ),
+        typer.Option(help="write a page that works without a server to this file, and exit; its sliders change one dimension and the tilt"),
     ] = None,
     pupils: Annotated[int, typer.Option(min=1, max=60, help="for --class: greatest number of pupils at the same time")] = 30,
 ) -> None:
@@ -70,7 +68,7 @@ def export(
         ),
     ],
     out: Annotated[
-        Path | None, typer.Option(help="file to write; default: results/<deck name>-<format> with the ending of the format")
+        Path | None, typer.Option(help="file to write; default: results/<deck name>-<format>, with the file extension of the format")
     ] = None,
 ) -> None:
     """Write the building of a deck for another program."""
@@ -97,11 +95,13 @@ def import_plan(
         list[str] | None, typer.Option("--walls", help="layer of the walls of a drawing; repeat the option for further layers")
     ] = None,
     openings: Annotated[
-        list[str] | None, typer.Option("--openings", help="layer of the openings; without this layer, gaps in the walls are openings")
+        list[str] | None, typer.Option("--openings", help="layer of the openings; without this option, gaps in the walls are openings")
     ] = None,
     thickness: Annotated[
         float | None,
-        typer.Option("--thickness", help="thickness [m] of walls that are drawn by their axes; default: the lines are faces of walls"),
+        typer.Option(
+            "--thickness", help="thickness [m] of walls that are drawn as single lines (axes); default: the lines are faces of walls"
+        ),
     ] = None,
     storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys from the ground up, such as 3.0,2.8")] = "3.0",
     unit: Annotated[str | None, typer.Option("--unit", help="length unit, if the drawing states none: m, cm, mm, in, ft")] = None,

@@ -44,7 +44,7 @@ def explain(
         list[str] | None,
         typer.Argument(
             metavar="[WORD]",
-            help="key, kind or section of a deck, or a technical term; or results, results.KIND, results.KIND.KEY",
+            help="key, kind or section of a deck; technical term; or results, results.KIND, results.KIND.KEY",
             autocompletion=_words,
         ),
     ] = None,

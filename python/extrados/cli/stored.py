@@ -14,7 +14,8 @@ def report(
     folder: Annotated[Path, typer.Argument(help="a results folder")],
     pdf: Annotated[bool | None, typer.Option(help="also write report.pdf; default: only for a run with an assessment")] = None,
     template: Annotated[
-        Path | None, typer.Option(help="report.toml of an office: logo, colour, title block, order and choice of sections")
+        Path | None,
+        typer.Option(help="file report.toml with the layout of an office: logo, colour, title block, order and choice of sections"),
     ] = None,
     language: Annotated[
         str | None, typer.Option(help="language of the report: en, it, es, fr or de; default: that of the template, or that of the deck")
@@ -30,7 +31,7 @@ def report(
 def plot(
     folders: Annotated[list[Path], typer.Argument(help="results folders")],
     together: Annotated[
-        Path | None, typer.Option(help="one picture with the capacity curves of all runs: a .png file, and .svg beside it")
+        Path | None, typer.Option(help="one picture with the capacity curves of all runs: a .png file, with a .svg file beside it")
     ] = None,
 ) -> None:
     """Draw figures and report again and list the figures. With --together: the capacity curves of several runs in one picture."""
@@ -71,8 +72,8 @@ def _together(folders: list[Path], picture: Path) -> None:
 
 def compare(
     old: Annotated[Path, typer.Argument(help="a results folder")],
-    new: Annotated[Path, typer.Argument(help="the results folder to compare it with")],
-    tolerance: Annotated[float, typer.Option(min=0.0, help="relative difference up to which two numbers count as equal")] = 1e-9,
+    new: Annotated[Path, typer.Argument(help="results folder with which this run is compared")],
+    tolerance: Annotated[float, typer.Option(min=0.0, help="relative difference up to which two numbers are equal")] = 1e-9,
     page: Annotated[Path | None, typer.Option(help="also write the comparison as an HTML page")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print the comparison as JSON")] = False,
 ) -> None:

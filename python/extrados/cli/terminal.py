@@ -102,5 +102,5 @@ def usable_threads(asked: int | None) -> int:
 
     cores = default_threads()
     if asked is not None and asked > cores:
-        err_console.say(f"--threads {asked} exceeds the {cores} cores of this process: {cores} threads are used")
+        err_console.say(f"--threads {asked} exceeds the {cores} cores of this process, so {cores} threads are used")
     return min(asked or cores, cores)

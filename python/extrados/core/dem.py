@@ -85,7 +85,9 @@ class Model(BodyModel[Run]):
         moves: Sequence[SupportMove] = (),
     ):
         if not bodies.laws or any(not 0 <= k < len(bodies.laws) for k in bodies.joints.values()):
-            raise ValueError("a joint has the number of a law that does not exist")
+            raise ValueError("a joint refers to the number of a joint law that does not exist")
+        if options.rigid and any(law.strength > 0.0 for law in bodies.laws):
+            raise ValueError("corners crush on springs alone")
         n, parts = len(bodies.mass), len(bodies.parts)
         corners = [len(part) for part in bodies.parts]
         handle, status = _core.api_dem.create(
@@ -129,6 +131,7 @@ class Model(BodyModel[Run]):
                     shear_stiffness=law.shear_stiffness * depth,
                     cohesion=law.cohesion * depth,
                     tension=law.tension * depth,
+                    strength=law.strength * depth,
                 )
                 for law in bodies.laws
             ]

@@ -90,9 +90,9 @@ class Model(BodyModel[Run]):
 
     def __init__(self, solids: Solids, options: Options, *, rate: np.ndarray | None = None, moves: Sequence[SupportMove] = ()):
         if not solids.laws or any(not 0 <= k < len(solids.laws) for k in solids.joints.values()):
-            raise ValueError("a joint has the number of a law that does not exist")
-        if options.rigid and any(max(law.cohesion, law.tension) > 0.0 for law in solids.laws):
-            raise ValueError("rigid contacts have no mortar")
+            raise ValueError("a joint refers to the number of a joint law that does not exist")
+        if any(law.strength > 0.0 for law in solids.laws):
+            raise ValueError("corners crush in the plane alone")
         if (most := max((len(face) for faces in solids.faces for face in faces), default=0)) > MOST_CORNERS:
             raise ValueError(f"a face has {most} corners, expected at most {MOST_CORNERS}")
         n, parts = len(solids.mass), len(solids.vertices)
@@ -146,8 +146,6 @@ class Model(BodyModel[Run]):
         self._dowels = 0 if dowels is None else len(dowels.body)
         if dowels is None:
             return
-        if self.options.rigid:
-            raise ValueError("rigid contacts have no dowels")
         n = self._dowels
         body = indices("body", np.transpose(dowels.body), self.count, (2, n))
         bounded = [

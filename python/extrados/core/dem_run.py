@@ -33,7 +33,7 @@ STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic
 @dataclass(frozen=True)
 class Law:
     """A type of joint. Stiffnesses [Pa/m]; cohesion and tension of mortar, lost at the first failure [Pa]; damping: beta of
-    stiffness-proportional damping [s]."""
+    stiffness-proportional damping [s]; strength: compressive strength by which corners crush, in the plane, 0 none [Pa]."""
 
     normal_stiffness: float
     shear_stiffness: float
@@ -41,12 +41,15 @@ class Law:
     cohesion: float = field(default=0.0, kw_only=True)
     tension: float = field(default=0.0, kw_only=True)
     damping: float = field(default=0.0, kw_only=True)
+    strength: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
             raise ValueError(f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0")
-        if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
-            raise ValueError("friction, cohesion, tension and damping of a joint must be 0 or above")
+        if min(self.friction, self.cohesion, self.tension, self.damping, self.strength) < 0.0:
+            raise ValueError("friction, cohesion, tension, damping and strength of a joint must be 0 or above")
+        if self.strength > 0.0 and max(self.cohesion, self.tension) > 0.0:
+            raise ValueError("a joint whose corners crush has no mortar")
 
 
 @dataclass(frozen=True)
@@ -227,7 +230,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         real("places of ties", ties.place, (anchors, None))
         bodies = integers("bodies of ties", np.asarray(ties.body) + 1, anchors)
         if np.any(bodies < 0) or np.any(bodies > self.count):
-            raise IndexError(f"a tie has the number of a body that does not exist; the model has {self.count} bodies")
+            raise IndexError(f"a tie refers to the number of a body that does not exist; the model has {self.count} bodies")
         if not np.bincount(integers("points of ties", ties.point, anchors)).all():
             raise ValueError("a point of a tie has no anchor body")
         on = np.flatnonzero(ties.body >= 0)
@@ -266,7 +269,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
             self.handle,
             *(
                 real(name, [getattr(law, name) for law in laws], (len(laws),))
-                for name in ("normal_stiffness", "shear_stiffness", "friction", "cohesion", "tension", "damping")
+                for name in ("normal_stiffness", "shear_stiffness", "friction", "cohesion", "tension", "damping", "strength")
             ),
         )
         check(status, "laws of the joints")
@@ -320,14 +323,14 @@ class BodyModel(Owner, ABC, Generic[Found]):
             times = np.arange(round(o.end_time / o.output_step * (1 - 1e-12)) + 1) * o.output_step
         wanted = real("times", times, (None,))
         if not len(wanted) or np.any(np.diff(wanted) < 0.0):
-            raise ValueError("output times must increase, and at least one is required")
+            raise ValueError("output times must increase, and at least one output time is required")
         for number in (motion, across or 0):
             if not 0 <= number < len(motions):
                 raise IndexError(f"motion number {number} does not exist: the set has {len(motions)} motions")
         if across is not None and not self.in_space:
             raise ValueError("a plane model takes one horizontal component only")
         if not np.isfinite(scale):
-            raise ValueError(f"scale is {scale}, expected a number")
+            raise ValueError(f"the scale factor of the motion is {scale}, expected a number")
         other = 0 if across is None else int(across) + 1
         where = (self.handle, motions.handle, int(motion) + 1, other, float(scale))
         steps = FIRST_PAUSE if watch else 0
@@ -375,7 +378,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         if status == status_code("out_of_memory"):
             check(status, "state of the run")
         if status != status_code("ok"):
-            raise ValueError("this state belongs to a run of another model, to other times or to another build")
+            raise ValueError("this saved state belongs to a run of another model, with other output times, or of another build of extrados")
 
     @abstractmethod
     def _last_run(self, interrupted: bool) -> Found:

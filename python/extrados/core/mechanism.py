@@ -153,7 +153,7 @@ def inelastic_blow(
     side = np.asarray(sides)
     joints = len(side)
     if side.size and (side.min() < -1 or side.max() >= n):
-        raise ValueError(f"sides must lie between -1 and {n - 1}")
+        raise ValueError(f"sides of hinges must lie between -1 and {n - 1}")
     frames = np.asarray(frame, dtype=float)
     after, status = _core.api_mechanism.blow(
         real("mass", mass, (n,)),

@@ -217,7 +217,7 @@ def _affordable(length: int) -> int:
         factor += 1
     slow += left if left > 7 else 0
     if length * slow > 1e9:
-        raise ValueError(f"length is {length}, expected a product of small prime factors, such as a power of 2")
+        raise ValueError(f"the length of a Fourier transform is {length}, expected a product of small prime factors, such as a power of 2")
     return length
 
 
@@ -228,7 +228,7 @@ def fourier(series: npt.ArrayLike, length: int | None = None) -> np.ndarray:
     series = real("series", series, (None,))
     length = int(length or series.size)
     if length < max(2, series.size):
-        raise ValueError(f"length is {length}, expected at least {max(2, series.size)}")
+        raise ValueError(f"the length of a Fourier transform is {length}, expected at least {max(2, series.size)}")
     re, im, status = _core.api_motion.fourier(series, _affordable(length), length // 2 + 1)
     check(status, "Fourier transform")
     return re + 1j * im

@@ -78,7 +78,7 @@ def restrained_body(
     if not any(open_sides) or not all(0.0 <= r <= 1.0 for r in rebound):
         raise ValueError(f"open side is {open_sides} and rebound is {rebound}: expected a valid open side, and a rebound from 0 to 1")
     if bool(laws) != (tables is not None):
-        raise ValueError("each law requires a path, and each path a law")
+        raise ValueError("each law of a restraint requires a path, and each path a law")
     numbers = [
         [bare.kind, len(bare.parameters)],
         bare.parameters,

@@ -167,7 +167,8 @@ class Model(Owner):
         equations = int(equation.max(initial=-1)) + 1
         if equations > self.freedoms * self.nodes:
             raise IndexError(
-                f"a degree of freedom has the equation number {equations}; expected at most {self.freedoms * self.nodes}, the number of degrees of freedom"
+                f"a degree of freedom has the equation number {equations}, but at most {self.freedoms * self.nodes} "
+                "(the number of degrees of freedom) is possible"
             )
         self.moved = int(freedoms.moved)
         handle, status = _core.api_sla_model.create(
@@ -194,8 +195,8 @@ class Model(Owner):
             self.equations, self.points, self.factor_values = (int(x) for x in sizes)
             if status == status_code("too_large"):
                 raise MemoryError(
-                    f"{self.equations} equations need {self.factor_values * 8 / 2**30:.1f} GiB for the matrix factor, and "
-                    f"{limit / 2**30:.1f} GiB are allowed: use larger elements"
+                    f"the matrix factor of {self.equations} equations requires {self.factor_values * 8 / 2**30:.1f} GiB "
+                    f"of memory, but only {limit / 2**30:.1f} GiB are allowed: use larger elements"
                 )
             check(status, "analysis of the stiffness matrix")
             self.factorise()
@@ -262,7 +263,7 @@ class Model(Owner):
         """
         stop = stop or Stop()
         if room < 1 or not monitors:
-            raise ValueError("a run requires memory for at least one event, and at least one monitored value")
+            raise ValueError("a run requires memory for at least one event and one monitored value")
         room_for(15 + len(monitors), room)
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)

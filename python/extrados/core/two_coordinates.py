@@ -40,7 +40,7 @@ def run_two(
     """
     check_run(end_time, output_step, tolerance, scale)
     if not 1 <= room <= 10**7:
-        raise ValueError(f"number of events kept is {room}, expected 1 to 10,000,000 events")
+        raise ValueError(f"the number of saved events is {room}, expected 1 to 10,000,000")
     rows = int(module.rows())
     times = output_times(end_time, output_step, rows)
     with MotionSet([ground]) as motions:

@@ -31,7 +31,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "span, clear span, opening width",
-        "for a round arch, the span is 2 (radius - thickness / 2) sin(embrace / 2), reported as clear_span_m",
+        "for a round arch, the span is 2 (radius - thickness / 2) sin(embrace / 2), reported as `clear_span_m`",
         "arch.radius arch.embrace pointed-arch.span spans.span results.tilt.clear_span_m",
         "limit.md",
     ),
@@ -79,7 +79,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "width, breadth, out of plane depth, vault length",
-        "depth of a plane structure out of its plane; weights and forces refer to this depth",
+        "depth of a plane structure perpendicular to its plane; weights and forces refer to this depth",
         "arch.depth vault.depth",
         "theory.md",
     ),
@@ -91,7 +91,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "abutment, buttress, counterfort, pinnacle",
-        "mass that resists the thrust of an arch",
+        "mass of masonry that resists the thrust of an arch",
         "bridge.abutments vault.buttress_width aisled-vault.buttress_width tilt.fracture",
         "limit.md",
     ),
@@ -170,21 +170,26 @@ SYNONYMS: tuple[Synonym, ...] = (
         "joints.friction results.tilt.required_friction",
         "limit.md",
     ),
-    _line("dilatancy, associated flow, non-associated, flow rule", "whether joints that slide also open", "tilt.friction_rule", "limit.md"),
+    _line(
+        "dilatancy, associated flow, non-associated, flow rule",
+        "whether joints that slide also open (dilatancy)",
+        "tilt.friction_rule",
+        "limit.md",
+    ),
     _line(
         "strength, compressive strength, crushing, fc",
-        "blocks crush by the strength of the material, joints by their own strength",
+        "crushing: blocks by the strength of the material, joints by their own strength",
         "material.compressive_strength joints.compressive_strength",
         "limit.md",
     ),
     _line(
         "tensile strength, ft, cracking, fracture energy, gf",
-        "strengths at which masonry cracks, and the energy of a crack",
+        "strengths at which masonry cracks, and fracture energy of a crack",
         "material.tensile_strength material.fracture_energy",
         "sla.md",
     ),
     _line(
-        "restitution, coefficient of restitution, cor, impact, energy loss, housner",
+        "ratio of angular velocity after / before an impact, given by a rule or as a number",
         "ratio of the angular velocity after / before an impact, by a rule or as a number",
         "joints.restitution joints.energy_ratio",
         "theory.md",
@@ -271,7 +276,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "hinge, plastic hinge, mechanism, four-hinge mechanism",
-        "joints about which blocks rotate at collapse, reported by number, name and location",
+        "joints about which blocks rotate at collapse; results give number, name and location",
         "results.tilt.hinges hinges tilt",
         "limit.md",
     ),
@@ -289,13 +294,13 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "safety factor, geometric safety factor, factor of safety, margin, demand capacity ratio, dcr",
-        "ratio of capacity to demand in every verdict; the geometric safety factor states how much thinner the structure could be",
+        "capacity divided by demand, in every verdict; the geometric safety factor says how much thinner the structure could be",
         "thrust results.tilt.geometric_safety_factor results.verdict",
         "limit.md",
     ),
     _line(
         "overturning, toppling, rocking, uplift",
-        "rigid bodies and mechanisms under a motion",
+        "rigid bodies and mechanisms that rock under a motion",
         "rocking failure-domain rocking-spectrum",
         "rocking.md",
     ),
@@ -307,7 +312,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "hazard curve, return period, annual rate, mean annual frequency",
-        "probability of collapse over a number of years, from a hazard curve",
+        "probability of collapse within a number of years, from a hazard curve",
         "fragility.hazard",
         "rocking-statistics.md",
     ),
@@ -325,7 +330,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "finite elements, fem, mesh, element size, smeared crack, snap back",
-        "sequentially linear analysis: cracks form event by event, without iterations",
+        "sequentially linear analysis: cracks form one event at a time, without iterations",
         "sla sla.mesh.size panel",
         "sla.md",
     ),
@@ -337,7 +342,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     ),
     _line(
         "code, eurocode, ec8, ntc, asce 41, nzsee, behaviour factor",
-        "checks by the rules of codes, in addition to dynamic analysis",
+        "checks by the rules of codes, besides dynamic analysis",
         "code-checks local-mechanism compatible.code",
         "codes.md",
     ),
@@ -348,7 +353,7 @@ SYNONYMS: tuple[Synonym, ...] = (
         "tilt.animation rocking.animation",
         "guide.md",
     ),
-    _line("paraview, vtk, vtu, export", "fields for ParaView, in addition to the results", "dem.vtk motion.export", "dem.md"),
+    _line("paraview, vtk, vtu, export", "fields for ParaView, besides the results", "dem.vtk motion.export", "dem.md"),
     _line(
         "parallel, cores, threads, cluster, dask, slurm",
         "`extrados run --threads N`, or `--scheduler ADDRESS` for a dask cluster",

@@ -88,7 +88,8 @@ def _pieces(model: Model, gamma: float, rate: np.ndarray) -> Iterator[Piece]:
         residual_limit=np.inf,
         gravity=(GRAVITY * np.sin(theta), -GRAVITY * np.cos(theta)),
     )
-    values = replace(model.values, friction=np.minimum(model.values.friction, FRICTION))
+    nothing = np.zeros_like(model.values.cohesion)  # the pictures of limit analysis have no mortar either
+    values = replace(model.values, friction=np.minimum(model.values.friction, FRICTION), cohesion=nothing, tension=nothing)
     begin, shown = time.monotonic(), 0
     with dem.Model(model.bodies(values), options, shift=np.zeros_like(rate), rate=rate) as bodies, as_motion_set([STILL]) as motions:
         times = np.arange(round(DURATION * RATE) + 1) / RATE

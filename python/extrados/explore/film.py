@@ -77,7 +77,7 @@ def _gif(pictures: list[bytes], rate: int) -> bytes:
 def _mp4(pictures: list[bytes], rate: int) -> bytes:
     program = ffmpeg()
     if program is None:
-        raise BadFilm("mp4 needs the program ffmpeg, which was not found: pip install imageio-ffmpeg, or choose gif")
+        raise BadFilm("mp4 requires the program ffmpeg, which was not found: pip install imageio-ffmpeg, or choose gif")
     for size in {_size(p) for p in pictures}:
         if min(size) < 2:
             raise BadFilm("the pictures of the film are too small")

@@ -236,7 +236,7 @@ def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     wide, high = s.units * s.unit_length, s.courses * s.unit_height
     yield _length(
         "unit_length",
-        "Length of a unit. The handle changes the length of the wall; the number of units remains",
+        "Length of a unit (brick or block). The handle changes the length of the wall; the number of units stays the same",
         wide,
         0.5 * high,
         s.unit_length,
@@ -244,7 +244,7 @@ def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     )
     yield _length(
         "unit_height",
-        "Height of a unit (the handle changes the height of the wall)",
+        "Height of a unit (brick or block). The handle changes the height of the wall",
         0.5 * wide,
         high,
         s.unit_height,
@@ -300,7 +300,7 @@ def _pointed(s: Any, _: Assembly) -> Iterator[Handle]:
     yield _length("span", "Clear span", -0.5 * s.span, 0.0, s.span, lambda x, y: -2.0 * x)
     yield _length(
         "radius",
-        "Radius of the intrados (the handle changes the rise)",
+        "Radius of the intrados. The handle changes the rise",
         0.0,
         rise,
         s.radius,

@@ -110,7 +110,7 @@ def _say_class(link: str, pupils: ClassOptions, say: Callable[[str], None]) -> N
     try:
         import segno
     except ImportError:
-        say('         A QR code needs the package segno: pip install "extrados[class]".')
+        say('         A QR code requires the package segno: pip install "extrados[class]".')
         return
     drawn = io.StringIO()
     segno.make(link, error="m").terminal(drawn, compact=True)

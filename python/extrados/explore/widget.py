@@ -8,7 +8,7 @@ try:
     import anywidget
     import traitlets
 except ImportError:
-    raise ImportError('the page in a notebook needs anywidget: pip install "extrados[notebook]"') from None
+    raise ImportError('the page in a notebook requires anywidget: pip install "extrados[notebook]"') from None
 
 from extrados.decks.reader import Deck
 from extrados.explore.document import text_of

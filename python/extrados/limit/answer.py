@@ -137,7 +137,7 @@ def assess(
 
     try:
         thrusts = {
-            name: beside(f"the least and greatest thrust of the {name}", partial(limit.thrust, joints), (NoAnswer,))
+            name: beside(f"the minimum and maximum thrust of the {name}", partial(limit.thrust, joints), (NoAnswer,))
             for name, joints in assembly.chains.items()
         }
         state, mechanism = limit.collapse(1)
@@ -192,7 +192,9 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
                 f"{why_not(limit)}; certificate: balance of the work of loads and crushing in the mechanism under self-weight"
             )
     if motion is None:
-        raise NoAnswer("no equilibrium state was found for the upright structure, and no mechanism proves that none exists")
+        raise NoAnswer(
+            "whether the structure stands under self-weight is not decided: neither an equilibrium state nor a collapse mechanism was found"
+        )
     assembly = limit.assembly
     x, y = (assembly.centroid / assembly.size).T
     velocity = np.column_stack([motion[:, 0] - motion[:, 2] * y, motion[:, 1] + motion[:, 2] * x, motion[:, 2]])
@@ -232,8 +234,8 @@ def why_not(limit: LimitAnalysis) -> str:
         return "no thrust line stays inside the structure"
     if part < 1.0 and limit.strength is not None:
         return (
-            f"a thrust line passes within the central {part:.3f} of the joints, but the strength of "
-            f"{engineering(limit.strength, 'Pa')} is not sufficient for this line"
+            f"a thrust line passes within the central {part:.3f} of the joints, but the strength of {engineering(limit.strength, 'Pa')} "
+            "is not sufficient for this thrust line"
         )
     if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
         return _slides(limit)

@@ -134,7 +134,7 @@ class CrushingLimit(SolidLimit):
         found = self._measured(dead, live, motion / power, gamma, x[:forces], x[forces : forces + strands])
         cone = max(found.cone, self._crushed(x) / np.sqrt(len(self.weight)))
         if max(found.equilibrium, cone, found.overlap, gap) > LOOSE:
-            why = f"unbalanced {found.equilibrium:.1e}, excess {cone:.1e}, overlap {found.overlap:.1e}, gap {gap:.1e} g"
+            why = f"unbalanced force {found.equilibrium:.1e}, excess of shear {cone:.1e}, overlap {found.overlap:.1e}, gap {gap:.1e} g"
             raise NoAnswer(f"the conic solver stopped without a solution ({status}): {why}")
         low, high = sorted((gamma, found.upper))
         return replace(found, gamma=low, upper=high, cone=cone)

@@ -101,7 +101,10 @@ def fractured_collapse(
             raise
         except NoEquilibrium:
             if limit.certificate() is None:
-                raise NoAnswer("with the crack, neither an equilibrium state nor a collapse mechanism was found") from None
+                raise NoAnswer(
+                    "whether the structure stands with the crack is not decided: neither an equilibrium state nor a "
+                    "collapse mechanism was found"
+                ) from None
             raise
         distance, width = section_distance(cracked, block, foot + height, direction, state, load, sway)
         line = np.array(_ends(assembly, block, base, height, direction))
@@ -128,7 +131,7 @@ def _base(assembly: Assembly, block: int) -> int:
     grounded = [j for j in assembly.joints_of(block).tolist() if GROUND in (assembly.a[j], assembly.b[j])]
     name = assembly.block_names[block]
     if len(grounded) != 1:
-        raise NoCrack(f"{name}: the buttress has {len(grounded)} joints on the ground; the analysis of the crack requires exactly one")
+        raise NoCrack(f"{name}: the buttress has {len(grounded)} joints on the ground, but the analysis of the crack requires exactly one")
     return grounded[0]
 
 

@@ -115,7 +115,7 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     mass, centroid, inertia = _mass(assembly, part, count)
     spin = np.array([mechanism.velocity[part == k + 1, 2].mean() for k in range(count)])
     driver = _driver(assembly, joint, joined, point, spin, side)
-    parted = f", because it opens along the whole of {_listed(names, mechanism.sliding)}" if mechanism.sliding else ""
+    parted = f", because the mechanism opens along the whole of {_listed(names, mechanism.sliding)}" if mechanism.sliding else ""
     row = _independent(centroid, joined, point, assembly.size, driver, parted)
     made = Linkage(side, part, mass, centroid, inertia, joint, joined, point, row, driver, 1 if spin[driver - 1] > 0.0 else -1)
     _same_motion(made, assembly, mechanism, fastest)

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import SuperLU, splu
 
 from extrados.limit.contact_points import ContactPoints, SlidingState
 from extrados.limit.errors import NoAnswer
+from extrados.limit.stiffness_factor import StiffnessFactor
 
 #: Shear stiffness over normal stiffness of the joints; the least of their collapse loads is the design value
 RATIOS = (0.1, 0.5, 1.0)
@@ -26,7 +26,9 @@ FLAT, FLAT_STEPS = 1e-7, 6  # relative change of the multiplier per step, in so 
 MEETS = 1e-6  # of the fastest point: open contacts that approach faster will carry again
 PROXIMAL, EASED, STIFFENED = (0.05, 0.4, 5.0)  # of the normal stiffness: elastic hold to the last iterate, and its changes
 NEARLY_FREE, LOOSE = 5e-3, 1e-7  # holds below which a step without it is tried, and that count as none
+RETRIED = 0.05  # of the hold at which a step without it failed: it is tried again below
 HOLDS = 60
+HALVINGS = 3  # of a step, before proximal ones are tried
 SHRUNK = 1e-3  # of the first step: no smaller step is tried
 MOST_STEPS = 600
 #: Linear systems of a whole path: where the deck requests it, and beside an upper bound
@@ -37,7 +39,7 @@ STIFFENING = 1e-10  # of the normal stiffness, in the tangent alone: blocks with
 @dataclass
 class _State:
     """Displacements (equations), multiplier, opening and slip (points, d), forces (points, d), shortening and shares of the
-    answers (k)."""
+    answers (k); trial: shear without its limit (points, d - 1); size, most: its length and limit (points)."""
 
     u: np.ndarray
     gamma: float
@@ -45,6 +47,9 @@ class _State:
     force: np.ndarray
     moved: np.ndarray
     share: np.ndarray
+    trial: np.ndarray
+    size: np.ndarray
+    most: np.ndarray
 
 
 class LoadPath:
@@ -58,35 +63,36 @@ class LoadPath:
         self.shear = ratio * np.where(points.stiffness > 0.0, points.stiffness, held)
         self.least = BALANCED * points.weight
         self.solves = 0
+        self.stiffness = {border: StiffnessFactor(points, border=border) for border in (False, True)}
+        self.answers_t = sparse.csr_array(points.answers.T)
 
     def follow(self) -> SlidingState:
         """The end of the path; NoAnswer where no step leads on."""
         p = self.points
-        nothing = np.zeros(len(p.dead))
-        state = _State(
-            nothing,
-            0.0,
-            np.zeros((len(p.friction), p.dimension)),
-            np.zeros((len(p.friction), p.dimension)),
-            np.zeros(p.answers.shape[1]),
-            np.zeros(p.answers.shape[1]),
-        )
+        nothing, m, k = np.zeros(len(p.dead)), len(p.friction), p.answers.shape[1]
+        still = np.zeros((m, p.dimension))
+        state = _State(nothing, 0.0, still, still, np.zeros(k), np.zeros(k), still[:, 1:], np.zeros(m), np.zeros(m))
         bonded = self._factor(self._bonded(), 0.0, border=False)
         upright = self._held(state, bonded.solve(p.dead), 0.0, None)
         if upright is None:
             raise NoAnswer("no equilibrium with elastic joints was found under self-weight")
         state = upright
         first = step = FIRST * ELASTIC_LOAD * float(p.live @ bonded.solve(p.live))
-        flat, moved = 0, nothing
+        flat, moved, halvings = 0, nothing, 0
         for _ in range(MOST_STEPS):
             start = state.u + moved
-            found = self._held(state, start, state.gamma, step)
+            # A smaller step costs less than proximal ones and is nearer to the path.
+            patient = halvings == HALVINGS or step < first
+            found = self._held(state, start, state.gamma, step) if patient else self._newton(state, start, state.gamma, step, 0.0, start)
+            if found is None and not patient:
+                halvings, step, moved = halvings + 1, 0.5 * step, 0.5 * moved
+                continue
             if found is None:
                 step, moved = 0.5 * step, 0.5 * moved
                 if step < SHRUNK * first:
                     raise NoAnswer(f"the load path ended at {state.gamma:.4f} g, because no smaller step converges")
                 continue
-            moved = found.u - state.u
+            moved, halvings = found.u - state.u, 0
             change = abs(found.gamma - state.gamma)
             speed = found.rate - state.rate
             meets = -speed[state.rate[:, 0] > 0.0, 0].min(initial=0.0) > MEETS * np.abs(speed).max()
@@ -96,14 +102,14 @@ class LoadPath:
             if flat >= FLAT_STEPS:
                 return SlidingState(state.gamma, state.force, state.share, moved / step)
             step, moved = GROWTH * step, GROWTH * moved
-        raise NoAnswer(f"the load on the load path has not become constant after {MOST_STEPS} steps: {state.gamma:.4f} g")
+        raise NoAnswer(f"the load still changes after {MOST_STEPS} steps of the load path: {state.gamma:.4f} g")
 
     def _held(self, old: _State, start: np.ndarray, gamma: float, work: float | None) -> _State | None:
         """The state after a step of `work` of the live load (None: gamma stays), by proximal steps where Newton's fail."""
         found = self._newton(old, start, gamma, work, 0.0, start)
         if found is not None:
             return found
-        hold, about = PROXIMAL, old.u
+        hold, about, free_below = PROXIMAL, old.u, NEARLY_FREE
         for _ in range(HOLDS):
             near = self._newton(old, about, gamma, work, hold, about)
             if near is None:
@@ -113,19 +119,20 @@ class LoadPath:
                 continue
             about, gamma = near.u, near.gamma
             hold *= EASED
-            if hold > NEARLY_FREE:
+            if hold > free_below and hold >= LOOSE:
                 continue
             free = self._newton(old, about, gamma, work, 0.0, about)
             if free is not None:
                 return free
             if hold < LOOSE:
                 return None
+            free_below = RETRIED * hold
         return None
 
     def _newton(self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray) -> _State | None:
         """The state in equilibrium after a step, with springs `hold` to the displacements `about`; None without one."""
         if self.solves > self.effort:
-            raise NoAnswer(f"the load path ended at {gamma:.4f} g, because it needed more than {self.effort} linear systems")
+            raise NoAnswer(f"the load path was stopped at {gamma:.4f} g, because more than {self.effort} linear systems had to be solved")
         p = self.points
 
         def left(u: np.ndarray, gamma: float) -> tuple[_State, np.ndarray, float, float]:
@@ -168,20 +175,16 @@ class LoadPath:
         p = self.points
         rate = (p.rates @ u).reshape(old.rate.shape)
         force = np.empty_like(rate)
-        force[:, 0] = self.normal * np.maximum(-rate[:, 0], 0.0)
+        normal = self.normal * np.maximum(-rate[:, 0], 0.0)
         trial = old.force[:, 1:] - self.shear[:, None] * (rate[:, 1:] - old.rate[:, 1:])
-        size = np.sqrt((trial * trial).sum(axis=1))
-        most = self._most(force[:, 0])
+        size = np.abs(trial[:, 0]) if p.dimension == 2 else np.hypot(trial[:, 0], trial[:, 1])
+        with np.errstate(invalid="ignore"):  # no compression under infinite friction
+            most = np.where(normal > 0.0, p.friction * normal, 0.0) + p.grip
+        force[:, 0] = normal
         force[:, 1:] = trial * np.where(size > most, most / np.maximum(size, 1e-300), 1.0)[:, None]
-        moved = p.answers.T @ u
+        moved = self.answers_t @ u
         share = np.clip(old.share - (moved - old.moved), *p.bounds)
-        return _State(u, gamma, rate, force, moved, share)
-
-    def _most(self, normal: np.ndarray) -> np.ndarray:
-        """The greatest shear under compressions."""
-        p = self.points
-        with np.errstate(invalid="ignore"):
-            return np.where(normal > 0.0, p.friction * normal, 0.0) + p.grip
+        return _State(u, gamma, rate, force, moved, share, trial, size, most)
 
     def _tangent(self, old: _State, now: _State) -> tuple[np.ndarray, np.ndarray]:
         """Forces lost per opening and slip (points, d, d), and per shortening of the answers (k)."""
@@ -189,12 +192,9 @@ class LoadPath:
         closed = now.rate[:, 0] < 0.0
         out = np.zeros((len(closed), d, d))
         out[:, 0, 0] = self.normal * closed
-        trial = old.force[:, 1:] - self.shear[:, None] * (now.rate[:, 1:] - old.rate[:, 1:])
-        size = np.sqrt((trial * trial).sum(axis=1))
-        most = self._most(now.force[:, 0])
-        slides = size > most
-        way = trial / np.maximum(size, 1e-300)[:, None]
-        part = self.shear * np.where(slides, most / np.maximum(size, 1e-300), 1.0)
+        slides = now.size > now.most
+        way = now.trial / np.maximum(now.size, 1e-300)[:, None]
+        part = self.shear * np.where(slides, now.most / np.maximum(now.size, 1e-300), 1.0)
         out[:, 1:, 1:] = part[:, None, None] * (
             np.eye(d - 1) - np.where(slides, 1.0, 0.0)[:, None, None] * way[:, :, None] * way[:, None, :]
         )
@@ -211,17 +211,7 @@ class LoadPath:
         out[:, 1:, 1:] = self.shear[:, None, None] * np.eye(d - 1)
         return out, np.ones(self.points.answers.shape[1])
 
-    def _factor(self, tangent: tuple[np.ndarray, np.ndarray], hold: float, *, border: bool) -> SuperLU:
+    def _factor(self, tangent: tuple[np.ndarray, np.ndarray], hold: float, *, border: bool) -> StiffnessFactor:
         """Factors of the stiffness of the blocks, bordered by the live load."""
         self.solves += 1
-        p = self.points
-        points, answers = tangent
-        m, d = len(self.normal), p.dimension
-        local = sparse.bsr_array((points, np.arange(m), np.arange(m + 1)), shape=(m * d, m * d))
-        stiff = p.matrix @ local.tocsr() @ p.rates
-        if p.answers.shape[1]:
-            stiff = stiff + p.answers @ sparse.diags_array(answers) @ p.answers.T
-        stiff = stiff + (hold + STIFFENING) * sparse.eye_array(len(p.dead))
-        if border:
-            stiff = sparse.block_array([[stiff, -p.live[:, None]], [p.live[None], None]])
-        return splu(stiff.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.1)
+        return self.stiffness[border].factor(*tangent, hold + STIFFENING)

@@ -216,7 +216,7 @@ class ThrustNetworks:
             reach *= 4.0
             outside, start = self._bound("central", reach)
             if reach > FARTHEST:
-                raise NoEquilibrium(f"no network on this diagram lies within {FARTHEST / 4.0:g} times the depth of the structure")
+                raise NoEquilibrium(f"no network on this form diagram lies within {FARTHEST / 4.0:g} times the depth of the structure")
         found = self._search("central", *start)
         if found is None:
             return Extreme(None, None, None)

@@ -264,9 +264,9 @@ class LimitAnalysis:
             self._refuse_immovable(direction)
             lower, upper = ("nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction))
             raise NoAnswer(
-                f"no collapse state without dilatancy was found. The collapse load lies between that without friction ({lower}) "
-                f"and that with dilatancy ({upper}). If friction alone carries a block between its neighbours, such a state may "
-                "not exist"
+                "no collapse state without dilatancy was found. The collapse load lies between the value without "
+                f"friction ({lower}) and the value with dilatancy ({upper}). If only friction between its "
+                "neighbours carries a block, such a state may not exist"
             )
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())

@@ -68,7 +68,7 @@ def settle(limit: LimitAnalysis, movement: np.ndarray) -> Settlement:
     twist, defect = limit.system.velocities(scaled, *([solution.equations * most / assembly.size] if limit.system.equations else []))
     defect *= float(np.abs(twist).max()) * assembly.size / most  # of the movement: where no block moves, of nothing
     if defect > 1e-6:
-        raise NoAnswer(f"the motions of blocks and of joints differ by {defect:.1e} times the movement")
+        raise NoAnswer(f"the movements of blocks and joints do not agree: they differ by {defect:.1e} times the movement of the support")
     size = assembly.size
     shift = twist[:, :2] * size
     x, y = assembly.centroid.T

@@ -288,7 +288,7 @@ class SolidLimit:
             if np.isfinite(total) and abs(total - bound) <= LOOSE * max(1.0, bound):
                 return np.maximum(forces, 0.0) * self.scale
             if "DualInfeasible" in status:
-                raise NoEquilibrium("no forces of these ties are sufficient")
+                raise NoEquilibrium("no forces of these ties are sufficient for equilibrium")
         raise NoAnswer(f"the conic solver found no least forces: {status}")
 
     def contact_points(self, direction: float) -> ContactPoints:
@@ -568,7 +568,8 @@ class SolidLimit:
         power = (float(dead @ motion) - spent) / falling
         if power < POWERLESS or overlap > PROOF:
             raise NoAnswer(
-                f"no equilibrium forces were found, and no mechanism proves that none exist (power {power:.1e}, overlap {overlap:.1e})"
+                "whether the blocks stand is not decided: neither equilibrium forces nor a collapse mechanism "
+                f"were found (power {power:.1e}, overlap {overlap:.1e})"
             )
         return Falls(self._rates(motion), power, overlap)
 

@@ -66,7 +66,7 @@ class _Chain:
         active = np.flatnonzero(np.abs(motion).max(axis=1) > 1e-9 * np.abs(motion).max())
         hinges: Hinges = tuple((int(k), "intrados" if motion[k, 0] < motion[k, 1] else "extrados") for k in active)
         if len(hinges) != 3:
-            raise NoEquilibrium(f"the first movement opens {len(hinges)} hinges instead of three")
+            raise NoEquilibrium(f"the start of the movement opens {len(hinges)} hinges instead of three")
         return hinges
 
     def state(self, hinges: Hinges, movement: float) -> SupportState | None:
@@ -164,7 +164,7 @@ def support_movement(assembly: Assembly, direction: tuple[float, float], steps: 
     chain = _Chain(assembly, unit / np.hypot(*unit))
     state = chain.settle(chain.first(), 0.0)
     if state is None:
-        raise NoEquilibrium("the three hinges of the first movement have no admissible thrust line")
+        raise NoEquilibrium("the three hinges at the start of the movement permit no admissible thrust line")
     # The fall, by doubling and bisection, each state starting from the hinges of the last that stood.
     step, last = 1e-4 * assembly.size, state
     while (after := chain.settle(last.hinges, last.movement + step)) is not None:

@@ -17,14 +17,14 @@ class Damper(Table):
 
     name: str | None = key(None, "name in the results; default: damper 1, damper 2 and so on", max_length=80)
     start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block")
-    end: Place | None = key(None, "position of the anchorage in another block; or give `ground`")
-    ground: Place | None = key(None, "position of the anchorage in the ground, which moves with the supports")
+    end: Place | None = key(None, "position of the anchorage in a second block; alternatively give `ground`")
+    ground: Place | None = key(None, "position of the anchorage in the ground; it moves with the supports")
     start_stone: str | None = key(None, "name of the block at `start`; required if this point lies between two blocks", max_length=80)
     end_stone: str | None = key(None, "name of the block at `end`; required if this point lies between two blocks", max_length=80)
-    damping: Damping | None = key(None, "c of a viscous damper: force per n-th power of the rate, in N (s/m)^n", gt=0, le=1e10)
+    damping: Damping | None = key(None, "c of a viscous damper, with force = c rate^n, in N (s/m)^n", gt=0, le=1e10)
     power: float = key(1.0, "power n of the rate; 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
     slip_force: Force | None = key(None, "force at which a friction damper slides", gt=0)
-    stiffness: AxialStiffness | None = key(None, "stiffness of the brace of a friction damper, before it slides", gt=0)
+    stiffness: AxialStiffness | None = key(None, "stiffness of the brace of a friction damper, which acts before the damper slides", gt=0)
 
     @model_validator(mode="after")
     def _whole(self) -> "Damper":
@@ -39,7 +39,7 @@ class Damper(Table):
                 "expected either the key `damping` (viscous damper), or the keys `slip_force` and `stiffness` (friction damper)"
             )
         if (self.slip_force is None) != (self.stiffness is None):
-            raise ValueError("slip_force and stiffness require each other: give both")
+            raise ValueError("`slip_force` and `stiffness` require each other: give both")
         return self
 
     @property
@@ -50,7 +50,7 @@ class Damper(Table):
     def flat(self) -> list[list[float]]:
         """Both ends in a plane section [m]; BadGeometry of a damper in space."""
         if len(self.start) != 2:
-            raise BadGeometry(f"{self.name}: this analysis takes a plane section, where the points of a damper are [x, y]")
+            raise BadGeometry(f"{self.name}: in a plane section, the points of a damper are [x, y]; this damper has other points")
         return [self.start, self.far]
 
     @property
@@ -67,8 +67,8 @@ class AddedHinge(Table):
         about='names of joints; "ground" means all joints at the ground, "all" means every joint', min_length=1, max_length=10000
     )
     stiffness: Moment | None = key(None, "moment per radian of rotation", gt=0)
-    yield_moment: Moment | None = key(None, "moment at which the hinge yields, in both senses; requires stiffness", gt=0)
-    damping: TurningDamping | None = key(None, "ratio of the moment to the angular velocity of the hinge", gt=0)
+    yield_moment: Moment | None = key(None, "moment at which the hinge yields, for both senses of rotation; requires `stiffness`", gt=0)
+    damping: TurningDamping | None = key(None, "viscous damping of the hinge: moment divided by angular velocity", gt=0)
 
     @model_validator(mode="after")
     def _whole(self) -> "AddedHinge":

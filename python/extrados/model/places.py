@@ -19,7 +19,7 @@ def _range(value: Any) -> Any:
             raise ValueError("expected a length such as 1.2 or '20 mm', or two lengths as [from, to]")
         out.append(parse(end, "m") if isinstance(end, str) else float(end))
     if out[0] > out[1]:
-        raise ValueError(f"the range decreases from {out[0]:g} m to {out[1]:g} m: give the smaller value first")
+        raise ValueError(f"the range goes from {out[0]:g} m down to {out[1]:g} m: give the smaller value first")
     return out
 
 
@@ -44,7 +44,7 @@ class Placed(Table):
     @model_validator(mode="after")
     def _somewhere(self) -> "Placed":
         if self.edge is None and self.x is None and self.y is None:
-            raise ValueError("the place is missing: give edge, x or y")
+            raise ValueError("the place is missing: give `edge`, `x` or `y`")
         return self
 
 

@@ -21,67 +21,71 @@ class Material(Table):
     density: Density = key(2000.0, "density", ge=0, le=30000)
     young: Stress = key(10e9, "modulus of elasticity, E0", source="thesis 7.3", gt=0)
     poisson: float = key(0.2, "Poisson's ratio", ge=0, lt=0.5)
-    tensile_strength: Stress | None = key(None, "tensile strength, ft; without this value, no cracking", gt=0)
-    fracture_energy: Energy | None = key(None, "fracture energy Gf: energy of a crack per area", gt=0)
+    tensile_strength: Stress | None = key(None, "tensile strength ft; without this value, the masonry does not crack", gt=0)
+    fracture_energy: Energy | None = key(None, "fracture energy Gf: energy of a crack for each unit of its area", gt=0)
     tensile_strength_parallel: Stress | None = key(
         None,
-        "tensile strength along the bed joints; tensile_strength is then the strength across them",
+        "tensile strength along the bed joints; `tensile_strength` is then the strength across the bed joints",
         source="Lourenco, de Borst and Rots (1997)",
         gt=0,
     )
     fracture_energy_parallel: Energy | None = key(
-        None, "fracture energy of a crack that runs across the bed joints, per area; default: fracture_energy", gt=0
+        None, "fracture energy per area of a crack that runs across the bed joints; default: `fracture_energy`", gt=0
     )
     shear_strength: Stress | None = key(
         None,
-        "for masonry with bed joints: strength under pure shear in the axes of its joints; default and greatest value: "
-        "the square root of the product of both tensile strengths",
+        "for masonry with bed joints: strength under pure shear along the bed joints. Default and "
+        "greatest value: the square root of the product of both tensile strengths",
         gt=0,
     )
     bed_angle: Angle = key(0.0, "angle from the x axis to the bed joints, counter-clockwise", ge=-180, le=180)
     softening: Literal["linear", "exponential", "hordijk"] = key(
-        "linear", "softening law: shape of the stress decrease beyond the strength", source="thesis Fig. 4-1"
+        "linear", "softening law: how the stress decreases after the strength is reached", source="thesis Fig. 4-1"
     )
-    compressive_strength: Stress | None = key(None, "compressive strength; without this value, no crushing", gt=0)
+    compressive_strength: Stress | None = key(None, "compressive strength; without this value, the masonry does not crush", gt=0)
     compressive_strength_parallel: Stress | None = key(
         None,
-        "compressive strength along the bed joints; compressive_strength is then the strength across them (criterion of Hill)",
+        "compressive strength along the bed joints; `compressive_strength` is then the strength across the bed joints (criterion of Hill)",
         source="Lourenco, de Borst and Rots (1997)",
         gt=0,
     )
     compressive_coupling: float = key(
         -1.0,
-        "coupling of the compression along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + "
-        "(sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed joints; t: shear stress; fx, "
-        "fy: compressive strengths; c: the key compressive_shear",
+        "coupling of the compression along and across the bed joints: b in the criterion (sx/fx)^2 + b "
+        "sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) = 1. sx, sy: stresses along and across the bed "
+        "joints; t: shear stress; fx, fy: compressive strengths; c: `compressive_shear`",
         source="-1.05 of Page's panels, Lourenco (1996), from memory",
         gt=-2,
         lt=2,
     )
     compressive_shear: float = key(
         1.2,
-        "weight of the shear stress: c of the criterion of compressive_coupling",
+        "weight of the shear stress: c in the criterion of `compressive_coupling`",
         source="1.20 of Page's panels, Lourenco (1996), from memory",
         gt=0,
         le=20,
     )
     crushing_energy: Energy | None = key(
-        None, "crushing energy per area, Gc; sequentially linear analysis includes crushing only if this value is given", gt=0
+        None, "crushing energy Gc per area; sequentially linear analysis includes crushing only if this value is given", gt=0
     )
     crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
     lateral_reduction: bool = key(
         False,
-        "reduce the tensile strength ft under lateral compression: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension "
-        "positive; fc: compressive strength); requires compressive_strength",
+        "whether lateral compression reduces the tensile strength ft: s1/ft - s2/fc <= 1 (s1, s2: principal stresses, tension positive; "
+        "fc: compressive strength); requires `compressive_strength`",
     )
     confinement: float = key(
-        0.0, "increase of the compressive strength per lateral pressure; 4.1 for concrete", source="Richart and others (1928)", ge=0, le=10
+        0.0,
+        "increase of the compressive strength, divided by the lateral pressure; 4.1 for concrete",
+        source="Richart and others (1928)",
+        ge=0,
+        le=10,
     )
 
     @model_validator(mode="after")
     def _complete(self) -> "Material":
         if (self.tensile_strength is None) != (self.fracture_energy is None):
-            raise ValueError("tensile_strength and fracture_energy require each other: give both")
+            raise ValueError("`tensile_strength` and `fracture_energy` require each other: give both")
         if self.crushing_energy is not None and self.compressive_strength is None:
             raise ValueError("crushing_energy needs compressive_strength")
         if self.lateral_reduction and self.compressive_strength is None:
@@ -92,7 +96,7 @@ class Material(Table):
             if self.crushing_energy is None:
                 raise ValueError("compressive_strength_parallel needs compressive_strength and crushing_energy")
             if self.confinement:
-                raise ValueError("the key `confinement` requires a single compressive strength: remove compressive_strength_parallel")
+                raise ValueError("the key `confinement` requires a single compressive strength: remove `compressive_strength_parallel`")
         self._check_bedding()
         return self
 
@@ -106,14 +110,14 @@ class Material(Table):
                 raise ValueError("bed_angle needs tensile_strength_parallel or compressive_strength_parallel")
             return
         if self.tensile_strength is None:
-            raise ValueError("tensile_strength_parallel requires tensile_strength, the strength across the bed joints")
+            raise ValueError("`tensile_strength_parallel` requires `tensile_strength`, the strength across the bed joints")
         if self.lateral_reduction:
-            raise ValueError("the key `lateral_reduction` requires a single tensile strength: remove tensile_strength_parallel")
+            raise ValueError("the key `lateral_reduction` requires a single tensile strength: remove `tensile_strength_parallel`")
         most = (self.tensile_strength * self.tensile_strength_parallel) ** 0.5
         if self.shear_strength is not None and self.shear_strength > most * (1.0 + 1e-9):
             raise ValueError(
-                f"shear_strength is {engineering(self.shear_strength, 'Pa')}; it must not exceed the square root of the product "
-                f"of both tensile strengths, {engineering(most, 'Pa')}"
+                f"`shear_strength` is {engineering(self.shear_strength, 'Pa')}, but must not exceed {engineering(most, 'Pa')}, "
+                "the square root of the product of both tensile strengths"
             )
 
 
@@ -121,18 +125,18 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about='names of joints. "ground" means all joints at the ground; "rings" and "backing" are joints of a bridge; "beds" '
-        '(including those at the ground) and "heads" are joints of a wall in running bond. The name of a layer of a '
-        "drawing means the joints between its blocks, or along its lines",
+        about='names of joints. "ground": all joints at the ground; "rings" and "backing": joints of a bridge; '
+        '"beds" (including those at the ground) and "heads": joints of a wall in running bond. The name '
+        "of a layer of a drawing: the joints between its blocks, or along its lines",
         min_length=1,
         max_length=10000,
     )
     friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] | None = key(None, "coefficient of friction")
     normal_stiffness: Stiffness | None = key(None, "normal stiffness per area", gt=0)
-    cohesion: Stress | None = key(None, "cohesion of the mortar; lost at the first failure", ge=0)
-    tension: Stress | None = key(None, "tensile strength of the mortar; lost at the first failure", ge=0)
+    cohesion: Stress | None = key(None, "cohesion of the mortar, which is lost at the first failure", ge=0)
+    tension: Stress | None = key(None, "tensile strength of the mortar, which is lost at the first failure", ge=0)
     fracture_energy: Energy | None = key(None, "fracture energy of the mortar per area", gt=0)
-    shear_energy: Energy | None = key(None, "fracture energy of the cohesion per area, mode II", gt=0)
+    shear_energy: Energy | None = key(None, "fracture energy of the cohesion per area (mode II)", gt=0)
     compressive_strength: Stress | None = key(None, "compressive strength of the masonry across the joint", gt=0)
     crushing_energy: Energy | None = key(None, "crushing energy of the joint per area", gt=0)
 
@@ -143,30 +147,30 @@ class Joints(Table):
     friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] = key(
         0.7, 'coefficient of friction; "no-sliding" excludes sliding (Heyman\'s assumption)', source="thesis 3.2, 7.3"
     )
-    cohesion: Stress = key(0.0, "cohesion of the mortar; lost at the first failure", ge=0)
-    tension: Stress = key(0.0, "tensile strength of the mortar; lost at the first failure", ge=0)
+    cohesion: Stress = key(0.0, "cohesion of the mortar, which is lost at the first failure", ge=0)
+    tension: Stress = key(0.0, "tensile strength of the mortar, which is lost at the first failure", ge=0)
     fracture_energy: Energy | None = key(
-        None, "fracture energy of the mortar per area; sequentially linear analysis requires it with a tension", gt=0
+        None, "fracture energy of the mortar per area; sequentially linear analysis requires this value if `tension` is given", gt=0
     )
     shear_energy: Energy | None = key(
         None,
-        "fracture energy of the cohesion per area, mode II. Sequentially linear analysis requires it with a cohesion; "
-        "the cohesion then decreases with this energy instead of being lost at the first failure",
+        "fracture energy of the cohesion per area (mode II). Sequentially linear analysis requires this value if `cohesion` is given; "
+        "the cohesion then decreases gradually and is not lost at the first failure",
         gt=0,
     )
     compressive_strength: Stress | None = key(
         None, "compressive strength of the masonry across the joints, for sequentially linear analysis", gt=0
     )
-    crushing_energy: Energy | None = key(None, "crushing energy of the joints per area; requires compressive_strength", gt=0)
+    crushing_energy: Energy | None = key(None, "crushing energy of the joints per area; requires `compressive_strength`", gt=0)
     softening: Literal["linear", "exponential"] = key(
         "exponential",
-        "softening law of the cohesion and the tension of the mortar, for sequentially linear analysis",
+        "law by which cohesion and tension of the mortar decrease (softening), for sequentially linear analysis",
         source="Lourenco 1996",
     )
     normal_stiffness: Stiffness | None = key(
         None, "normal stiffness per area; default: E divided by the length of block that a joint represents", source="thesis Eq. 7.10", gt=0
     )
-    shear_stiffness: Stiffness | None = key(None, "shear stiffness per area; default: shear_ratio times the normal stiffness", gt=0)
+    shear_stiffness: Stiffness | None = key(None, "shear stiffness per area; default: `shear_ratio` times the normal stiffness", gt=0)
     shear_ratio: float = key(1.0, "shear over normal stiffness", gt=0, le=10)
     stiffness_rule: Literal["consistent", "thesis"] = key(
         "consistent",
@@ -176,34 +180,36 @@ class Joints(Table):
     )
     damping: Literal["edge", "corner", "rotation", "restitution"] = key(
         "edge",
-        "impact frequency at which the damping is critical: edge, corner or rotation. restitution, for a single "
-        "block: the damping that gives its coefficient of restitution (found by trial runs)",
+        "impact frequency for which the damping is given: edge, corner or rotation. restitution, for a single block: the damping that "
+        "gives the coefficient of restitution of the block (found by trial runs)",
         source="thesis Eqs 7.13, 7.17-7.20",
     )
-    damping_ratio: float = key(1.0, "damping ratio at this impact frequency (fraction of critical damping)", ge=0, le=100)
+    damping_ratio: float = key(
+        1.0, "damping ratio (fraction of critical damping) at the impact frequency that `damping` names", ge=0, le=100
+    )
     beta: Annotated[float, Field(ge=0, le=10)] | None = key(
-        None, "constant of stiffness-proportional damping in s; replaces damping and damping_ratio"
+        None, "constant of stiffness-proportional damping in s; replaces `damping` and `damping_ratio`"
     )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
-        "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic impact, with "
-        "impulses at all joints and all energy that remains; thesis: momentum balance of the thesis for arches "
-        "(energy-safe for other sections); energy-safe: energy-safe projection on the next mechanism only; or a number: "
-        "c_v, angular velocity after / before an impact (0 to 1)",
+        "rule for impacts during rocking (blocks always use the rule of Housner). inelastic: plastic impact with impulses at all "
+        "joints, and all the energy that remains; thesis: momentum balance of the thesis for arches (energy-safe for other sections); "
+        "energy-safe: projection on the mechanism after the impact only. A number is c_v: angular velocity after / before an impact (0 "
+        "to 1)",
         source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
-        None, "for a block, instead of restitution: c_E, kinetic energy after / before an impact", source="thesis Eq. 6.2"
+        None, "for a block, instead of `restitution`: c_E, the ratio of kinetic energy after / before an impact", source="thesis Eq. 6.2"
     )
     worn_corners: Length = key(0.0, "radius to which the corners of the blocks are worn", ge=0)
     types: list[JointType] = key(
-        [], "joints with other values, [[joints.types]]; missing keys take the values of [joints]", max_length=1000
+        [], "joints with other values, [[joints.types]]; keys that are not given there keep the values of [joints]", max_length=1000
     )
 
     @model_validator(mode="after")
     def _one_impact(self) -> "Joints":
         if self.energy_ratio is not None and "restitution" in self.model_fields_set:
-            raise ValueError("give either restitution or energy_ratio, not both")
+            raise ValueError("give either `restitution` or `energy_ratio`, not both")
         return self
 
     @property
@@ -216,33 +222,35 @@ class Held(Placed):
     """Nodes of a finite-element mesh that are held."""
 
     fix: Literal["x", "y", "xy"] = key("xy", "directions that are held")
-    stiffness: Annotated[float, Field(gt=0)] | None = key(None, "stiffness of a spring in N/m at each node, instead of a rigid support")
+    stiffness: Annotated[float, Field(gt=0)] | None = key(
+        None, "stiffness of the springs that replace a rigid support, in N/m at each node"
+    )
 
 
 class Supports(Table):
     """What the building stands on. Stones stand on the joints to the ground that the structure has."""
 
     stiffness: Stiffness | None = key(
-        None, "stiffness of the ground per area, in series with the joints on the ground; `rocking` assumes rigid joints", gt=0
+        None, "stiffness of the ground per area, in series with the joints on the ground; for `rocking`, these joints are rigid", gt=0
     )
     foundation: Literal["winkler", "two-spring"] = key(
         "winkler",
-        "for `rocking`: place of the springs of the ground. winkler: springs of this stiffness along the whole "
-        "base; two-spring: half of the stiffness under each edge. The springs carry no tension",
+        "for `rocking`: place of the springs of the ground. winkler: springs along the whole base; two-spring: one spring under each "
+        "edge, with half of the stiffness. The springs carry no tension",
         source="Psycharis and Jennings 1983",
     )
     damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(
         None,
-        "for `rocking`: damping ratio of dashpots in parallel with these springs, for the vertical motion of the whole "
-        "structure on its base; default: no dashpots",
+        "for `rocking`: damping ratio of dashpots in parallel with the springs of the ground, for the "
+        "vertical motion of the whole structure; default: no dashpots",
     )
     abutting_wall: Literal["left", "right"] | None = key(
-        None, "side of an abutting wall: the structure rocks only away from this wall, and rebounds from it"
+        None, "side on which a wall abuts: the structure rocks only away from this wall, and rebounds from it"
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
         None,
-        "angular velocity after / before the rebound from the wall. Default for a block: three impacts (far toe, top at "
-        "the wall, near toe), which give an upper bound",
+        "ratio of angular velocity after / before the rebound from the wall. Default for a block: "
+        "calculated from three impacts (far toe, top at the wall, near toe), which gives an upper bound",
         source="three balances of angular momentum, derived here",
     )
     held: list[Held] = key(
@@ -254,7 +262,7 @@ class Supports(Table):
     @model_validator(mode="after")
     def _thrown_back_by_a_wall(self) -> "Supports":
         if self.rebound is not None and self.abutting_wall is None:
-            raise ValueError("the key `rebound` requires abutting_wall, the side of the wall")
+            raise ValueError("the key `rebound` requires `abutting_wall`, the side of the wall")
         return self
 
     @model_validator(mode="after")
@@ -272,11 +280,11 @@ class Movement(Table):
     dx: Length = key(0.0, "to the right")
     dy: Length = key(
         0.0,
-        "upward; negative is a settlement. In space: along y, the second direction in plan; refused for a plane section with a `direction`, "
-        "whose settlement is dz",
+        "upward movement; negative is a settlement. In space: movement along y, the second direction in "
+        "plan. With `direction`, a plane section requires `dz` for a settlement",
     )
-    dz: Length = key(0.0, "in space: upward; negative is a settlement")
-    turn: Angle = key(0.0, "in the plane: rotation, counter-clockwise, about the middle of the support")
+    dz: Length = key(0.0, "in space: upward movement; negative is a settlement")
+    turn: Angle = key(0.0, "in a plane section: rotation about the middle of the support, counter-clockwise")
     start: Time = key(0.0, "when it starts", ge=0)
     duration: Time = key(1.0, "how long it takes", gt=0)
 
@@ -285,10 +293,6 @@ class Initial(Table):
     """The state from which dynamics start."""
 
     rotation_ratio: float = key(
-        0.0,
-        "ratio of the initial rotation to the critical rotation on the same side; positive towards +x",
-        source="thesis 6.2.2",
-        gt=-1,
-        lt=1,
+        0.0, "initial rotation, divided by the critical rotation on the same side; positive towards +x", source="thesis 6.2.2", gt=-1, lt=1
     )
     movements: list[Movement] = key([], "supports that move, [[initial.movements]]", max_length=100)

@@ -19,16 +19,16 @@ class Tie(Table):
 
     name: str | None = key(None, "name in the results; default: tie 1, tie 2 and so on", max_length=80)
     start: Place = key(about="[x, y], in space [x, y, z], of the anchorage in a block; for a hoop, any point at its height")
-    end: Place | None = key(None, "anchorage in another block; or give `ground`")
+    end: Place | None = key(None, "position of the anchorage in a second block; alternatively give `ground`")
     ground: Place | None = key(None, "anchorage in the ground: a point that stays fixed when supports move")
-    via: list[Place] = key([], "in space: points of blocks over which a chain runs from start to end, in order", max_length=1000)
+    via: list[Place] = key([], "in space: points of the blocks over which a chain runs, in order from start to end", max_length=1000)
     hoop: bool = key(
-        False, "in space: closed hoop around the convex outline of the structure at the height z of `start`, as the chain of a dome"
+        False, "in space: closed hoop around the convex outline of the structure, at the height z of `start`, like the chain of a dome"
     )
     bonded: bool = key(
         False,
-        "for a chain or hoop: true: anchored at every point, so that each segment has its own force; false: the chain "
-        "runs over the points without friction",
+        "for a chain or hoop. true: anchored at each point, so that each segment has its own force; "
+        "false: slides over the points without friction",
     )
     start_stone: str | None = key(
         None, "name of the block at `start`; required if this point lies between two blocks or outside all blocks", max_length=80
@@ -37,18 +37,19 @@ class Tie(Table):
         None, "name of the block at `end`; required if this point lies between two blocks or outside all blocks", max_length=80
     )
     works_in: Literal["tension", "compression", "both"] = key(
-        "tension", "senses in which the tie acts: a tie is slack in compression, a strut in tension; a spring acts in both senses"
+        "tension",
+        "senses in which the tie acts. tension: a tie, slack in compression; compression: a strut, slack in tension; both: a spring",
     )
     yield_force: Force | None = key(
-        None, "yield force, which remains constant after yielding; without this value the tie never yields", gt=0
+        None, "yield force, which remains constant after yielding; without this value, the tie never yields", gt=0
     )
     stiffness: AxialStiffness | None = key(
         None,
-        "stiffness EA/L: force per change of length. Without this value the tie is rigid until it yields; limit analysis "
-        "always assumes this",
+        "axial stiffness EA/L (force / elongation). Without this value the tie is rigid until it yields; "
+        "limit analysis always assumes a rigid tie",
         gt=0,
     )
-    prestress: Force = key(0.0, "force in the tie before any load, tension positive; it does not change a plastic collapse load")
+    prestress: Force = key(0.0, "force in the tie before any load acts, tension positive; a plastic collapse load does not depend on it")
 
     @model_validator(mode="after")
     def _whole(self) -> "Tie":
@@ -68,7 +69,7 @@ class Tie(Table):
         if self.start == self.far:
             raise ValueError("start: both ends have the same position")
         if self.ground is not None and self.end_stone is not None:
-            raise ValueError("end_stone can be given only with the key `end`, and this tie has the key `ground`: remove end_stone")
+            raise ValueError("`end_stone` requires the key `end`, but this tie has the key `ground`: remove `end_stone`")
         if self.prestress > self.most or self.prestress < self.least:
             raise ValueError(
                 f"prestress: {self.prestress:g} N exceeds the range that the tie can carry, {self.least:g} to {self.most:g} N "

@@ -138,7 +138,9 @@ def conditional_mean(name: str | Path, folder: Path | None, at: float, accelerat
     """
     period, median, sigma = _columns(name, folder, ("period_s", "sa_g", "sigma_ln")).T
     if not period[0] <= at <= period[-1]:
-        raise ValueError(f"conditional_period {at:g} s lies outside the table, which covers {period[0]:g} to {period[-1]:g} s")
+        raise ValueError(
+            f"`conditional_period` {at:g} s is outside the table of the spectrum, which covers {period[0]:g} to {period[-1]:g} s"
+        )
     low, high = max(period[0], 0.01), min(period[-1], 10.0)
     t = np.unique(np.concatenate([period[(period >= low) & (period <= high)], [low, at, high]]))
     middle, spread = np.exp(np.interp(t, period, np.log(median))), np.interp(t, period, sigma)
@@ -185,5 +187,5 @@ def _parse(path: Path, text: str, names: tuple[str, ...]) -> np.ndarray:
             raise ValueError(f"{path}:{reader.line_num}: the periods must increase, and the accelerations must be above zero")
         rows.append([period, *values])
     if len(rows) < 2:
-        raise ValueError(f"{path}: expected at least two rows")
+        raise ValueError(f"{path}: expected at least two rows of numbers")
     return np.array(rows)

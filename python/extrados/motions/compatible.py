@@ -71,8 +71,8 @@ class CompatibleSet:
             if misfits[-1] <= self.tolerance:
                 return motion
         raise NotMatched(
-            f"motion {k + 1} of seed {self.seed} still differs from its target by {100 * min(misfits):.0f} % after {_DRAWS} "
-            "attempts. Increase the tolerance, use a narrower band, or lengthen the motion"
+            f"motion {k + 1} of seed {self.seed} still differs from its target spectrum by {100 * min(misfits):.0f} "
+            f"% after {_DRAWS} attempts. Increase `tolerance`, use a narrower band, or lengthen the motion"
         )
 
     def _matched(self, k: int, draw: int) -> np.ndarray:

@@ -59,6 +59,6 @@ def on_floor(motion: Motion, floor: FloorBelow | None) -> Motion:
 def floor_condition(floor: FloorBelow) -> str:
     """The condition under which all analyses of a deck with a floor run, in words."""
     return (
-        f"The structure is on a floor at {floor.height:g} m in a building of {floor.building_height:g} m with T_1 = "
-        f"{sway_of(floor).period:.3g} s. All analyses apply the motion of this floor."
+        f"The structure is on a floor at a height of {floor.height:g} m, in a building of {floor.building_height:g} "
+        f"m with T_1 = {sway_of(floor).period:.3g} s. All analyses apply the motion of this floor."
     )

@@ -49,7 +49,7 @@ def _make_motion(model: Model, folder: Path) -> Motion:
         case models.Suite():
             members = suite_members(model, folder)
             if model.member > len(members):
-                raise RecordError(f"member is {model.member}, but the suite has {len(members)} records")
+                raise RecordError(f"`member` is {model.member}, but the suite has only {len(members)} records")
             return suite_motion(model, members[model.member - 1], folder)
         case models.Generated():
             made = generated_set(model, folder)
@@ -171,7 +171,7 @@ def _selected(wanted: _Wanted) -> tuple[models.Components, ...]:
         raise ValueError(f"none of the {len(members)} records can be read. First reason: {wrong[0]}")
     if len(best) < chosen.count or wrong:
         reasons = f"; {len(wrong)} record(s) cannot be read: {_first_few(wrong)}" if wrong else ""
-        notes.append(f"[motion.selection]: {chosen.count} records were requested, and {len(best)} are selected{reasons}.")
+        notes.append(f"[motion.selection]: {chosen.count} records were requested, but only {len(best)} are selected{reasons}.")
     notes += _cut_factors([(member_name(members[one.number]), one) for one in best], chosen)
     # model_construct: its paths were found
     return tuple(
@@ -227,8 +227,8 @@ def suite_motion(model: models.Suite, member: models.Components, folder: Path) -
     if isinstance(member, Selected):
         cut = "" if member.factor == member.unbounded else f" (cut from {member.unbounded:.3g})"
         note = (
-            f"{made.name}: selected with the factor {member.factor:.3g}{cut}. Its ground spectrum differs from the target by "
-            f"{member.misfit:.2f} (root mean square of the logarithms)."
+            f"{made.name}: selected with the scale factor {member.factor:.3g}{cut}. Its ground spectrum differs "
+            f"from the target by {member.misfit:.2f} (root mean square of the logarithms)."
         )
         made = replace(made, notes=[*member.notes, *made.notes, note])
     return on_floor(made, model.floor)
@@ -337,7 +337,7 @@ def _record(model: models.Components, treatment: records.Treatment, folder: Path
         file = model.file if file is None else file
         place = (records.locate(file, folder), channel)
         if place in seen:
-            raise RecordError(f"{place[0]}: this file is named for two components of one record")
+            raise RecordError(f"{place[0]}: this file is given for two components of one record")
         seen.add(place)
         return records.read_record(records.read_file(file, folder), channel, treatment.columns)
 

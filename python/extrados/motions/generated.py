@@ -146,7 +146,7 @@ def generated(
     spectrum. dispersion: standard deviation of the logarithm of a further factor on each motion. window: shape over time.
     """
     if not (duration > 0.0 and step > 0.0 and window.lead >= 0.0 and window.tail >= 0.0):
-        raise ValueError("duration and step must be above zero, lead and tail 0 or above")
+        raise ValueError("`duration` and `step` must be above zero, `lead` and `tail` 0 or above")
     table = load_spectrum(spectrum, folder)
     frequency = line_frequencies(lines, spacing, table.band)
     if frequency[-1] >= 0.5 / step:

@@ -104,7 +104,7 @@ def source_of(intensity: float) -> PointSource:
 
     x, _, found, message = fsolve(miss, [3.5 + 0.45 * intensity, np.log(200.0 / intensity**1.5)], full_output=True)
     if found != 1:
-        raise ArithmeticError(f"no point source gives the median values of intensity {intensity:g}: {message}")
+        raise ArithmeticError(f"no point-source model gives the median values of intensity {intensity:g}: {message}")
     return PointSource(float(x[0]), float(np.exp(x[1])))
 
 

@@ -42,15 +42,15 @@ def drift(acceleration: np.ndarray, step: float) -> tuple[str, str]:
         mean = v / (step * (len(acceleration) - 1)) / GRAVITY
         return (
             (
-                f"at the end of the motion, the ground has a velocity of {v:.3g} m/s and a displacement of {d:.3g} m, from a mean "
-                f"acceleration of {mean:.2g} g"
+                f"at the end of the motion, the ground has a velocity of {v:.3g} m/s and a displacement of {d:.3g} m, "
+                f"because the mean acceleration is {mean:.2g} g"
             ),
-            'This mean acts on a structure as a sustained load. To remove it, give baseline = "quadratic" or low_cut.',
+            ('The mean acceleration acts on a structure as a sustained load. To remove it, give baseline = "quadratic" or `low_cut`.'),
         )
     if abs(d) > 0.5 * np.abs(displacement).max(initial=1e-300):
         return (
             f"at the end of the motion, the ground is displaced by {d:.3g} m from its initial position",
-            "This is a permanent displacement, or an error of the baseline with little effect on a structure.",
+            ("This is a permanent displacement of the ground, or an error of the baseline with little effect on a structure."),
         )
     return "", ""
 
@@ -69,7 +69,7 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
     if (low is not None and not 0.0 < low < nyquist) or (high is not None and not 0.0 < high < nyquist):
         raise ValueError(f"corner frequencies of the filter must lie between 0 and {nyquist:g} Hz (half of the sampling rate)")
     if low is not None and high is not None and low >= high:
-        raise ValueError(f"low_cut {low:g} Hz is not below high_cut {high:g} Hz")
+        raise ValueError(f"`low_cut` {low:g} Hz is not below `high_cut` {high:g} Hz")
     if low is None and high is None:
         return acceleration
     kind = "band" if low and high else "high" if low else "low"
@@ -79,7 +79,9 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
     sections = signal.butter(_ORDER, corner, kind, fs=1.0 / step, output="sos")
     # Long enough for the slowest part to die out (Converse and Brady 1992: 1.5 n / f)
     slowest = low or high or nyquist
-    pad = _countable(np.ceil(1.5 * _ORDER / slowest / step), f"a filter at {slowest:g} Hz with its run-in requires")
+    pad = _countable(
+        np.ceil(1.5 * _ORDER / slowest / step), f"a filter at {slowest:g} Hz, with its padding before and after the motion, requires"
+    )
     ends = [(0, 0)] * (acceleration.ndim - 1) + [(pad, pad)]
     filtered = signal.sosfiltfilt(sections, np.pad(acceleration, ends), axis=-1, padtype=None)
     return filtered[..., pad : pad + acceleration.shape[-1]]
@@ -103,7 +105,7 @@ def resample(acceleration: np.ndarray, step: float, new_step: float) -> np.ndarr
 def _countable(samples: float, what: str) -> int:
     """A number of samples, ValueError where there are more than memory should be taken for."""
     if not samples <= MOST_SAMPLES:
-        raise ValueError(f"{what} {samples:.3g} samples, at most {MOST_SAMPLES:,}")
+        raise ValueError(f"{what} {samples:.3g} samples, but at most {MOST_SAMPLES:,} are allowed")
     return int(samples)
 
 

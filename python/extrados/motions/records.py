@@ -130,17 +130,19 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
     if record.step is not None and step is not None and abs(record.step - step) > 1e-6 * record.step:
         # Rounded times tell the step no closer than their rounding spread over the record.
         if abs(record.step - step) * (len(record.values) - 1) > 1.001 * record.rounded:
-            raise RecordError(f"{name}: the file states a time step of {record.step:g} s, and the deck {step:g} s: remove time_step")
+            raise RecordError(
+                f"{name}: the file states a time step of {record.step:g} s, but the deck gives {step:g} s: remove `time_step`"
+            )
         notes = [note for note in notes if MEAN_STEP not in note]
-        notes.append(f"{record.name}: the time_step of the deck is used, because the times of the file are rounded")
+        notes.append(f"{record.name}: the `time_step` of the deck is used, because the times of the file are rounded")
     elif record.step is not None:
         step = record.step
     if step is None:
-        raise RecordError(f"{name}: the file gives no time step: give time_step")
+        raise RecordError(f"{name}: the file gives no time step: give `time_step`")
     units = QUANTITIES[record.quantity]
     unit = treatment.unit
     if record.unit is not None and unit is not None and units.get(record.unit) != ACCELERATION.get(unit):
-        raise RecordError(f"{name}: the file states the unit '{record.unit}', and the deck '{unit}': remove unit")
+        raise RecordError(f"{name}: the file states the unit '{record.unit}', but the deck gives '{unit}': remove `unit`")
     known = record.unit or unit
     if known is None:
         raise RecordError(f'{name}: the file states no unit, or several: give unit = "g", "m/s^2", "cm/s^2" ...')
@@ -231,5 +233,5 @@ def _together(record: Record, others: list[Record], do: Treatment, name: str) ->
     lengths = [len(row) for row in found]
     if min(lengths) < max(lengths):
         shown = ", ".join(map(str, lengths))
-        notes.append(f"{name}: the components have {shown} samples and are cut to the shortest")
+        notes.append(f"{name}: the components have {shown} samples; the longer ones are cut to the length of the shortest")
     return np.stack([row[: min(lengths)] for row in found]), step, notes

@@ -40,9 +40,9 @@ class Harmonic(Motion):
     amplitude: Acceleration = key(about="greatest amplitude")
     frequency: Frequency = key(about="in Hz, not rad/s", gt=0, le=1000)
     duration: Time = key(10.0, "how long it acts", gt=0)
-    phase: Literal["sine", "cosine"] = key("sine", "phase at the start: zero (sine) or the amplitude (cosine)")
+    phase: Literal["sine", "cosine"] = key("sine", "phase at the start. sine: starts at zero; cosine: starts at the amplitude")
     ramp: Time = key(0.0, "time over which the amplitude increases linearly from zero", ge=0)
-    carrier: Frequency | None = key(None, "frequency of a sinusoidal carrier whose amplitude is modulated", gt=0, le=1000)
+    carrier: Frequency | None = key(None, "frequency of a sinusoidal carrier, whose amplitude the motion modulates", gt=0, le=1000)
 
     @model_validator(mode="after")
     def _one_envelope(self) -> "Harmonic":
@@ -71,8 +71,8 @@ class VelocityPulse(Motion):
     starter: ClassVar = {"velocity": '"60 cm/s"', "period": "1.0"}
     velocity: Velocity = key(about="amplitude A of the velocity", source="Mavroeidis and Papageorgiou 2003")
     period: Time = key(about="prevailing period T_p", gt=0)
-    cycles: float = key(1.5, "number of cycles under the bell-shaped envelope, gamma", gt=1, le=50)
-    phase: Angle = key(0.0, "phase of the cosine, nu: 0 is symmetric, 90 antisymmetric")
+    cycles: float = key(1.5, "gamma: number of cycles under the bell-shaped envelope", gt=1, le=50)
+    phase: Angle = key(0.0, "nu: phase of the cosine; 0 is symmetric, 90 antisymmetric")
 
 
 class Treated(Motion):
@@ -82,23 +82,25 @@ class Treated(Motion):
     unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(None, "unit of the values, if the file gives none")
     columns: Literal["series", "components"] | None = key(
         None,
-        "meaning of several columns in a file without times. series: the rows form one series; components: each "
-        "column is a component, selected by `channel`",
+        "meaning of several columns in a file without times. series: the rows are one series, row after "
+        "row; components: each column is one component, chosen by `channel`",
     )
     scale: float = key(1.0, "factor on the acceleration, applied after all other processing")
     time_scale: float = key(1.0, "factor on the time axis; accelerations do not change", gt=0)
     low_cut: Frequency | None = key(None, "lower corner of a zero-phase Butterworth filter", gt=0)
     high_cut: Frequency | None = key(None, "upper corner of a zero-phase Butterworth filter", gt=0)
     baseline: Literal["none", "mean", "linear", "quadratic", "cubic"] = key(
-        "none", "degree of the trend of the acceleration that is removed, as fitted to the velocity"
+        "none", "degree of the polynomial trend of the acceleration that is removed; it is fitted to the velocity"
     )
     resample: Time | None = key(None, "new sampling step", gt=0)
     pga: Acceleration | None = key(
-        None, "scale the motion to this horizontal peak acceleration in the plane, with one factor for all components", gt=0
+        None,
+        "scale the motion to this horizontal peak acceleration in the plane of the structure, with one factor for all components",
+        gt=0,
     )
     pgv: Velocity | None = key(None, "scale the motion to this peak velocity (with one factor, as for pga)", gt=0)
     arias: Velocity | None = key(None, "scale the motion to this Arias intensity (with one factor, as for pga)", gt=0)
-    sa: Acceleration | None = key(None, "scale the motion to this pseudo-acceleration at sa_period (with one factor, as for pga)", gt=0)
+    sa: Acceleration | None = key(None, "scale the motion to this pseudo-acceleration at `sa_period` (with one factor, as for pga)", gt=0)
     sa_period: Time | None = key(None, "period for sa", gt=0)
     sa_damping: float = key(0.05, "damping ratio for sa", ge=0, le=0.5)
 
@@ -109,7 +111,7 @@ class Treated(Motion):
         if (self.sa is None) != (self.sa_period is None):
             raise ValueError("sa and sa_period go together")
         if self.low_cut is not None and self.high_cut is not None and self.low_cut >= self.high_cut:
-            raise ValueError(f"low_cut {self.low_cut:g} Hz is not below high_cut {self.high_cut:g} Hz")
+            raise ValueError(f"`low_cut` {self.low_cut:g} Hz is not below `high_cut` {self.high_cut:g} Hz")
         return self
 
 
@@ -119,21 +121,21 @@ class Components(Table):
     file: str = key(
         about="path of the record, inside the folder of the deck, or `extrados:NAME` for a shipped record", min_length=1, max_length=1024
     )
-    channel: int | str | None = key(None, "channel of a file with several channels: its number from 1, or a part of its name")
-    second: str | None = key(None, "file of the other horizontal component, perpendicular to the first", min_length=1, max_length=1024)
-    second_channel: int | str | None = key(None, "channel of the other horizontal component, in `second` or in `file`")
+    channel: int | str | None = key(None, "channel of a file with several channels: its number (from 1), or a part of its name")
+    second: str | None = key(None, "file of the second horizontal component, perpendicular to the first", min_length=1, max_length=1024)
+    second_channel: int | str | None = key(None, "channel of the second horizontal component, in the file `second` or in `file`")
     angle: Angle | None = key(
         None,
         "angle from the first component to the plane of the structure. The motion in this plane is the first component "
         "times cos(angle) plus the second component times sin(angle)",
     )
     vertical: str | None = key(None, "file of the vertical component", min_length=1, max_length=1024)
-    vertical_channel: int | str | None = key(None, "channel of the vertical component, in `vertical` or in `file`")
+    vertical_channel: int | str | None = key(None, "channel of the vertical component, in the file `vertical` or in `file`")
 
     @model_validator(mode="after")
     def _plane(self) -> "Components":
         if (self.angle is not None) != (self.second is not None or self.second_channel is not None):
-            raise ValueError("the key `angle` requires second or second_channel, which gives the other horizontal component")
+            raise ValueError("the key `angle` requires `second` or `second_channel`, which gives the second horizontal component")
         return self
 
 
@@ -146,7 +148,7 @@ class Record(Components, Treated):
 class Selection(TargetSpectrum):
     """The records of a suite whose response spectra, each times a factor, come closest to a target."""
 
-    count: int = key(about="number of records to select: those with the least misfit", ge=1, le=2000)
+    count: int = key(about="number of records to select: those that differ least from the target spectrum", ge=1, le=2000)
     shortest: Time = key(0.05, "shortest period that is compared", ge=0.01)
     longest: Time = key(2.0, "longest period that is compared", le=10)
     damping: float = key(0.05, "damping ratio of the spectra", ge=0.005, le=0.3)
@@ -154,12 +156,12 @@ class Selection(TargetSpectrum):
     greatest_factor: float = key(4.0, "greatest factor on a record", gt=0, le=100)
     flatfile: str | None = key(
         None,
-        "CSV table with a column `file` and columns with values of the records, such as magnitude, to which `limits` refer",
+        "CSV table (flatfile) with a column `file` and columns with properties of the records, such as magnitude, to which `limits` refer",
         min_length=1,
         max_length=1024,
     )
     limits: dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]] = key(
-        {}, "limits on columns of the flatfile: least and greatest value, such as `magnitude = [6, 7.5]`"
+        {}, "limits on columns of the flatfile: least and greatest value of each, such as `magnitude = [6, 7.5]`"
     )
 
     @model_validator(mode="after")
@@ -190,11 +192,11 @@ class Suite(Treated):
     starter: ClassVar = {"files": '["extrados:el-centro-1940"]'}
     files: list[str] | None = key(None, "the records", min_length=1, max_length=2000)
     pattern: str | None = key(None, "such as `records/*.AT2`", min_length=1, max_length=1024)
-    folder: str | None = key(None, "folder whose record files form the suite", min_length=1, max_length=1024)
+    folder: str | None = key(None, "folder whose records form the suite", min_length=1, max_length=1024)
     records: list[Components] | None = key(
         None, "records with several components or channels, [[motion.records]]", min_length=1, max_length=2000
     )
-    member: int = key(1, "number of the record that a single run uses, from 1", ge=1)
+    member: int = key(1, "number (from 1) of the record that a single run uses", ge=1)
     selection: Selection | None = key(
         None,
         "select only the records closest to a target spectrum, each with a scale factor, [motion.selection]",
@@ -204,7 +206,7 @@ class Suite(Treated):
     @model_validator(mode="after")
     def _selected(self) -> "Suite":
         if self.selection is not None and any(v is not None for v in (self.pga, self.pgv, self.arias, self.sa)):
-            raise ValueError("a selection gives each record its own factor: remove pga, pgv, arias and sa")
+            raise ValueError("a selection gives each record its own factor: remove `pga`, `pgv`, `arias` and `sa`")
         return self
 
     @model_validator(mode="after")
@@ -224,7 +226,7 @@ class Generated(Motion):
     mmi: float = key(about="modified Mercalli intensity", ge=1, le=12)
     duration: Time = key(about="t_d", gt=0, le=600, source="thesis Eq. 6.7")
     seed: int = key(1, "seed of the random numbers: the same seed gives the same set", ge=-(2**62), le=2**62)
-    member: int = key(1, "number of the motion of the set that a single run uses, from 1", ge=1, le=2**31)
+    member: int = key(1, "number (from 1), in the set, of the motion that a single run uses", ge=1, le=2**31)
     spectrum: str = key(
         "boore-worden",
         "Fourier spectra by intensity: `boore-worden`, or a CSV file with the columns mmi,frequency_Hz,amplitude_cm_s",
@@ -234,7 +236,7 @@ class Generated(Motion):
     )
     lines: int | list[Frequency] = key(15, "number of sine lines over the band of the spectrum, or their frequencies")
     spacing: Literal["log", "uniform"] = key(
-        "log", "spacing of the spectral lines: equal ratios of the frequencies (log), or equal distances (uniform)"
+        "log", "spacing of the spectral lines. log: equal ratios of the frequencies; uniform: equal distances"
     )
     scaling: Literal["thesis", "fourier", "energy"] = key(
         "energy",
@@ -245,15 +247,21 @@ class Generated(Motion):
     )
     factor: float = key(1.0, 'factor on the amplitudes; with scaling = "thesis", also the unit of the frequency step', gt=0)
     dispersion: float = key(
-        0.0, "scatter of the amplitude from motion to motion: standard deviation of the logarithm of a factor with median 1", ge=0, le=2
+        0.0,
+        "scatter of the amplitude from motion to motion: each is multiplied by a lognormal factor with "
+        "median 1, whose logarithm has this standard deviation",
+        ge=0,
+        le=2,
     )
     envelope: Literal["arctangent", "trapezoid", "jennings", "saragoni-hart"] = key(
-        "arctangent", "envelope of the amplitude over time", source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974"
+        "arctangent",
+        "envelope: how the amplitude varies over time",
+        source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974",
     )
     rise: Time | None = key(
         None,
-        "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time to full amplitude "
-        "(default 0.15 or 0.2 times t_d)",
+        "width of the rise of the arctangent envelope (default 0.1 s); for other envelopes, time until "
+        "the full amplitude (default 0.15 or 0.2 times t_d)",
         gt=0,
     )
     decay: Time | None = key(
@@ -281,13 +289,15 @@ class Compatible(TargetSpectrum, Motion):
     damping: float = key(0.05, "damping ratio of the spectrum", ge=0.005, le=0.3)
     shortest: Time = key(0.05, "shortest period that is matched", ge=0.02)
     longest: Time = key(2.0, "longest period that is matched", le=6)
-    tolerance: float = key(0.1, "greatest relative deviation from the target in this band", ge=0.02, le=0.5)
+    tolerance: float = key(
+        0.1, "greatest relative deviation from the target spectrum in the band from `shortest` to `longest`", ge=0.02, le=0.5
+    )
     duration: Time = key(20.0, "length of the motion", ge=2, le=200)
-    envelope: Literal["trapezoid", "jennings", "saragoni-hart"] = key("trapezoid", "envelope of the amplitude over time")
+    envelope: Literal["trapezoid", "jennings", "saragoni-hart"] = key("trapezoid", "envelope: how the amplitude varies over time")
     rise: Time | None = key(None, "time to full strength", gt=0)
     decay: Time | None = key(None, "see `generated`", gt=0)
     seed: int = key(1, "one seed gives one set", ge=-(2**62), le=2**62)
-    member: int = key(1, "number of the motion of the set that a single run uses, from 1", ge=1, le=2**31)
+    member: int = key(1, "number (from 1), in the set, of the motion that a single run uses", ge=1, le=2**31)
     time_step: Time = key(0.01, "sampling step", ge=1e-3, le=0.05)
 
     @model_validator(mode="after")
@@ -295,5 +305,5 @@ class Compatible(TargetSpectrum, Motion):
         if self.code == "ASCE7" and self.damping != 0.05:
             raise ValueError("the spectrum of ASCE 7 is defined for 5 % damping only")
         if self.longest <= 2.0 * self.shortest:
-            raise ValueError("the period longest must be more than twice the period shortest")
+            raise ValueError("the period `longest` must be more than twice the period `shortest`")
         return self

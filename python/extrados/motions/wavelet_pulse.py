@@ -101,11 +101,11 @@ def classify(acceleration: np.ndarray, step: float) -> PulseClass:
     early = _time_of(pulse, 0.10) < _time_of(velocity, 0.20)
     fails = []
     if indicator <= LIKE:
-        fails.append(f"the pulse indicator {indicator:.2f} is not above {LIKE:g}")
+        fails.append(f"the pulse indicator is {indicator:.2f}, not above {LIKE:g}")
     if not early:
         fails.append("the pulse does not arrive early in the motion")
     if pgv <= LEAST_PGV:
-        fails.append(f"the peak velocity of {100.0 * pgv:.3g} cm/s is not above {100.0 * LEAST_PGV:g} cm/s")
+        fails.append(f"the peak velocity is {100.0 * pgv:.3g} cm/s, not above {100.0 * LEAST_PGV:g} cm/s")
     return PulseClass(
         indicator,
         float(length * step / (7.0 * _CENTRE)),

@@ -19,7 +19,7 @@ class AssessHazard(ResultModel):
     kind: str = fact("kind of [motion]")
     told: str = fact("in words")
     motions: int = fact("number of motions")
-    member: int = maybe("number, from 1, of the motion in the set that strategies of a single motion use")
+    member: int = maybe("number (counted from 1), in the set of motions, of the motion that strategies with a single motion use")
     chosen_by: str = maybe("rule that selected this motion from the set")
     peak_ground_acceleration_g: float = fact("peak ground acceleration: the demand for strategies that apply a constant acceleration", "g")
     peak_told: str = fact("source of that peak")
@@ -39,9 +39,9 @@ class StrategyVerdict(ResultModel):
     demand: float | None = fact("demand, in `unit`")
     capacity: float | None = fact("capacity, in `unit`")
     unit: str = fact("unit of both")
-    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open or not-applicable")
+    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open (not decided) or not-applicable")
     bound: Bound | None = fact("type of the capacity: exact, lower bound or upper bound; null for an estimate")
-    violated: list[str] = fact("assumptions of the strategy that were checked and are violated; the outcome is then open")
+    violated: list[str] = fact("violated assumptions of the strategy; if there are any, the outcome is open (not decided)")
     margin: float | None = fact("critical scale factor of the hazard; null if not known")
     margin_at_least: float | None = fact("greatest scale factor of the hazard that was run without collapse; null if no such run")
     margin_below: float | None = fact("least scale factor of the hazard that was run with collapse; null if no such run")
@@ -81,7 +81,7 @@ class Probe(ResultModel):
     strategy: str = fact("kind of analysis")
     changed: str = fact("difference from the deck")
     outcome: Outcome = fact("its verdict")
-    value: float | None = fact("ratio of demand to capacity of this further run; null if not known")
+    value: float | None = fact("ratio of demand to capacity in this additional run; null if not known")
 
 
 class TurningValue(ResultModel):
@@ -93,12 +93,12 @@ class TurningValue(ResultModel):
     unit: str = fact("unit of the value")
     low: float = fact("a value below")
     high: float = fact("a value above")
-    tilt_base: float | None = fact("safety factor by limit analysis with the value of this key in the deck; null without a result")
-    rocking_base: float | None = fact("safety factor by rocking with the value of this key in the deck; null without a result")
-    tilt_low: float | None = fact("safety factor by limit analysis with the lower value of this key, `low`; null without a result")
-    tilt_high: float | None = fact("safety factor by limit analysis with the higher value of this key, `high`")
-    rocking_low: float | None = fact("safety factor by rocking with the lower value of this key, `low`")
-    rocking_high: float | None = fact("safety factor by rocking with the higher value of this key, `high`")
+    tilt_base: float | None = fact("safety factor by limit analysis, with the value of this key in the deck; null without a result")
+    rocking_base: float | None = fact("safety factor by rocking, with the value of this key in the deck; null without a result")
+    tilt_low: float | None = fact("safety factor by limit analysis, if this key has its lower value `low`; null without a result")
+    tilt_high: float | None = fact("safety factor by limit analysis, if this key has its higher value `high`")
+    rocking_low: float | None = fact("safety factor by rocking, if this key has its lower value `low`")
+    rocking_high: float | None = fact("safety factor by rocking, if this key has its higher value `high`")
     tilt_turns: float | None = fact(
         "value of this key at which the verdict of limit analysis changes; null if no calculated value changes the verdict"
     )
@@ -106,16 +106,14 @@ class TurningValue(ResultModel):
         "value of this key at which the verdict of rocking changes; null if no calculated value changes the verdict"
     )
     dem_base: float | None = fact(
-        "ratio of the displacement by discrete elements to the displacement that counts as collapse, with the value of "
-        "this key in the deck; null without a run"
+        "displacement by discrete elements, with the value of this key in the deck, divided by the "
+        "displacement that counts as collapse; null without a run"
     )
     dem_low: float | None = fact(
-        "ratio of the displacement by discrete elements to the displacement that counts as collapse, with the lower "
-        "value of this key, `low`"
+        "displacement by discrete elements, if this key has its lower value `low`, divided by the displacement that counts as collapse"
     )
     dem_high: float | None = fact(
-        "ratio of the displacement by discrete elements to the displacement that counts as collapse, with the higher "
-        "value of this key, `high`"
+        "displacement by discrete elements, if this key has its higher value `high`, divided by the displacement that counts as collapse"
     )
     dem_turns: float | None = fact(
         "value of this key at which the verdict of discrete elements changes; null if no calculated value changes the verdict, or if "
@@ -131,10 +129,10 @@ class Contribution(ResultModel):
     count: int = fact("number of tests")
     bias: float = fact("geometric mean of the ratio of calculated to measured values")
     scatter: float = fact("standard deviation of the natural logarithm of the ratio of calculated to measured values")
-    margin: float = fact("critical scale factor of the hazard by the strategy")
+    margin: float = fact("critical scale factor of the hazard according to this strategy")
     probability: float = fact("probability that the true critical scale factor is below 1")
-    low: float = fact("lower end of the 90 % confidence interval of this probability")
-    high: float = fact("upper end of the 90 % confidence interval of this probability")
+    low: float = fact("lower end of the 90 % confidence interval of `probability`")
+    high: float = fact("upper end of the 90 % confidence interval of `probability`")
     weight: float = fact(
         "weight of this strategy in the overall probability of collapse: its share of the experiments with which the strategies were compared"
     )
@@ -146,9 +144,9 @@ class CollapseInMotion(ResultModel):
     collapsed: int = fact("runs that collapse")
     count: int = fact("runs with a result")
     probability: float = fact("share that collapses")
-    low: float = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
-    high: float = fact("upper end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
-    violated: list[str] = fact("assumptions of the rocking analysis that are violated in these runs")
+    low: float = fact("lower end of the 95 % confidence interval (Wilson score) of the share of runs that collapse", source="Wilson 1927")
+    high: float = fact("upper end of the 95 % confidence interval (Wilson score) of the share of runs that collapse", source="Wilson 1927")
+    violated: list[str] = fact("violated assumptions of the rocking analysis in these runs")
 
 
 class CollapseProbability(ResultModel):
@@ -159,15 +157,17 @@ class CollapseProbability(ResultModel):
 
     in_motion: CollapseInMotion = maybe("probability of collapse by rocking under the motion itself")
     probability: float | None = fact(
-        "probability of collapse if the peak acted as a constant horizontal acceleration: weighted mean of the "
-        "contributions; 1 if a certificate shows collapse; null without a contribution"
+        "probability of collapse if the peak acceleration acts as a constant horizontal acceleration: weighted mean over the "
+        "strategies; 1 if a certificate proves collapse; null if no strategy contributes"
     )
-    low: float | None = fact("least of the lower ends of the 90 % confidence intervals of all contributions; null without a contribution")
+    low: float | None = fact(
+        "lowest lower end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"
+    )
     high: float | None = fact(
-        "greatest of the upper ends of the 90 % confidence intervals of all contributions; null without a contribution"
+        "highest upper end of the 90 % confidence intervals of all strategies that contribute; null if no strategy contributes"
     )
     contributions: list[Contribution] = fact("strategies whose capacity is compared with known results in the verification book")
-    without: dict[str, str] = fact("strategies without a contribution, each with the reason")
+    without: dict[str, str] = fact("strategies that do not contribute to the probability, each with the reason")
     statement: str = fact("the probability in words")
     method: str = fact("text that explains how the probability is derived")
 
@@ -175,7 +175,9 @@ class CollapseProbability(ResultModel):
 class Advice(ResultModel):
     """What to do, by limit analysis: interventions that carry the peak of the hazard as a constant horizontal acceleration."""
 
-    target_g: float = fact("constant horizontal acceleration that the interventions must carry: the peak of the hazard", "g")
+    target_g: float = fact(
+        "constant horizontal acceleration that the strengthened building must carry: the peak acceleration of the hazard", "g"
+    )
     capacity_g: float | None = fact("capacity of the existing building; null without a result", "g")
     mechanism: str = fact("governing collapse mechanism of the existing building")
     interventions: list[Intervention] = fact("alternative interventions; the cheapest that reaches the target comes first")
@@ -196,19 +198,19 @@ class Assess(KindResults):
     hazard: AssessHazard = fact("the hazard")
     verdicts: list[StrategyVerdict] = fact("one row a strategy")
     agreement: dict[str, dict[str, Agreement]] = fact(
-        "comparison of each pair of strategies with a verdict: same verdict, same verdict with very different safety "
-        "factors, different verdicts, or open"
+        "comparison of the verdicts of each pair of strategies: same verdict, same verdict with very "
+        "different safety factors, different verdicts, or open"
     )
     collapse_probability: CollapseProbability = fact("probability of collapse from the model uncertainty of the strategies")
     reasons: list[Reason] = fact("why strategies differ")
-    unexplained: list[list[str]] = fact("pairs of strategies that differ, and whose difference no rule explains")
-    parts: dict[str, str] = fact("analyses of this run that the assessment requested: name and description")
+    unexplained: list[list[str]] = fact("pairs of strategies that differ for a reason that no rule of this program explains")
+    parts: dict[str, str] = fact("analyses that the assessment added to this run: name and description")
     probes: list[Probe] = fact("further runs")
     sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts to each uncertain value; the most decisive value comes first")
     advice: Advice = maybe("strengthening, if not all strategies give the verdict `stands`")
-    not_done: list[str] = fact("steps for which the budget of time did not suffice, and further runs that did not decide anything")
+    not_done: list[str] = fact("steps that were omitted because the time `budget` was used up, and additional runs that decided nothing")
     least_margin: float | None = fact(
-        "least critical scale factor of the hazard among all strategies; 0 if the building cannot stand; null if no factor is known"
+        "lowest critical scale factor of the hazard among all strategies; 0 if the building cannot stand; null if no factor is known"
     )
     least_margin_strategy: str | None = fact("whose it is")
     budget_s: float = fact("time that it was given", "s")

@@ -17,7 +17,7 @@ LABELS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 class Assumption(ResultModel):
     """One property of the building as an analysis used it."""
 
-    value: Any = fact("the value, in `unit`; null if the deck gives no value and the analysis needs none")
+    value: Any = fact("value, in `unit`; null if the deck gives no value and the analysis needs none")
     unit: str = fact("unit of the value")
     origin: Origin = fact(
         "origin of the value: program default, table of the deck, override in the table of the analysis, or the method, "

@@ -15,11 +15,11 @@ Applied = Literal["holds", "fails", "not-applicable", ""]
 class Check(ResultModel):
     """One rule of a code."""
 
-    capacity: float | None = fact("capacity by the rule, in `unit`; null if the rule gives no capacity for this element")
+    capacity: float | None = fact("capacity according to the rule, in `unit`; null if the rule gives no capacity for this element")
     demand: float | None = fact("demand, in `unit`; null if not known")
     unit: str = fact("unit of capacity and demand")
     quantity: str = fact("quantity compared: displacement, acceleration, lateral strength, drift or slenderness")
-    verdict: Applied = fact("verdict of the rule; not-applicable outside the scope of the rule; empty without a demand")
+    verdict: Applied = fact("verdict of the rule; not-applicable if the element is outside the scope of the rule; empty without a demand")
     source: str = fact("clause of the rule, with edition and equation")
     note: str = fact("values from which capacity and demand are calculated")
     code: str = fact("code that requires the check; empty for a formula shown for comparison or for a strength")
@@ -28,8 +28,8 @@ class Check(ResultModel):
     )
     scope: str = fact("element, restraint and height to which the rule applies")
     alternative: str = fact(
-        "name of a group of alternative checks. If one check with this code, limit state and group is satisfied, the "
-        "others of the group are not required. Empty if this check must be satisfied by itself"
+        "name of a group of alternative checks: if one check of the group is satisfied (same code, same "
+        "limit state), the others are not required. Empty if this check has no alternative"
     )
     reason: str = fact("reason why the rule does not apply; empty if it applies")
 
@@ -46,27 +46,26 @@ class Checked(KindResults):
     """Rules of codes, by name, and one verdict for all."""
 
     checks: dict[str, Check] = fact("the rules by name")
-    jurisdiction: Jurisdiction = maybe("code whose rules give the verdict; NTC if the deck has no [code]")
+    jurisdiction: Jurisdiction = maybe("code whose rules give the verdict; NTC if the deck has no table [code]")
     code: str = maybe("code and edition in words")
-    by_default: bool = maybe("whether the deck has no [code]; the rules of NTC 2018 are then applied")
+    by_default: bool = maybe("whether the deck has no table [code], so that the rules of NTC 2018 are applied")
     clause: str = maybe("clause of the governing check, with edition and equation; empty without a verdict")
     zeta_E: float | None = maybe(
-        "zeta_E of NTC: ratio of the seismic action that the part can carry to the action required by the code, at SLV; "
-        "null without a demand",
+        "zeta_E of NTC at SLV: seismic action that the part can carry, divided by the action that the code requires; null without a demand",
         source="NTC 2018 8.3",
     )
     nbs_percent: float | None = maybe(
         "%NBS of NZSEE: capacity divided by demand in the governing check, in percent; null without a demand", "%"
     )
-    confidence_factor: float = maybe("confidence factor: capacities are divided by it")
+    confidence_factor: float = maybe("confidence factor, by which capacities are divided")
     behaviour_factor: float = maybe("behaviour factor q of the linear check of NTC, and of the demand on a pier")
-    bound: Bound = maybe("whether the checks give the exact capacity, a lower bound or an upper bound")
+    bound: Bound = maybe("type of the capacity by the checks: exact, lower bound or upper bound")
     margin_associated: float | None = maybe(
-        "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. The outcome is "
-        "open if this ratio is at least 1 and the check without dilatancy fails; null without a demand"
+        "if joints slide: capacity / demand of the governing check with associated (dilatant) friction. If this ratio is at least 1 but "
+        "the check without dilatancy fails, the outcome is open. Null without a demand"
     )
     violated: list[str] = maybe(
-        "assumptions on the unsafe side that are violated. If there are any, a code check that is satisfied does not decide: the outcome is open"
+        "violated assumptions on the unsafe side. If there are any, a satisfied code check gives no verdict: the outcome is open"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -102,7 +101,7 @@ class Checked(KindResults):
         decided, undecided = self.governing(), sorted({code for code, _, known in self._groups() if not known})
         remarks = f" The check is open because the deck gives no demand: {', '.join(undecided)}." if undecided else ""
         if self.by_default:
-            remarks += f" The deck names no code: the rules of {self.code} are applied. Give [code] to apply another code."
+            remarks += f" The deck has no table [code], so the rules of {self.code} are applied. Give [code] to apply another code."
         if self.confidence_factor == 1.0 and self.jurisdiction not in ("NZSEE", "none"):
             remarks += (
                 " All partial factors and confidence factors are 1: the capacity includes no margin for uncertain properties of "
@@ -116,13 +115,12 @@ class Checked(KindResults):
             if not holds and (self.margin_associated or 0.0) >= 1.0:
                 outcome = "open"
                 remarks = (
-                    f" Joints slide: the {DILATANT} satisfies the check (factor {self.margin_associated:.3g}), but the state without "
-                    f"dilatancy does not satisfy it. The outcome is open.{remarks}"
+                    f" Joints slide: with the {DILATANT} the check is satisfied (factor {self.margin_associated:.3g}), "
+                    f"without dilatancy it is not. The outcome is open.{remarks}"
                 )
             return judge(
-                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand "
-                f"{worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
-                f"{remarks}",
+                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, "
+                f"capacity {worst.capacity:.3g}{unit}.{remarks}",
                 worst.demand,
                 worst.capacity,
                 worst.unit,
@@ -140,7 +138,7 @@ class Checked(KindResults):
             )
         barred = {f"{c.code}, {n}": c.reason for n, c in self.checks.items() if c.code and c.verdict == "not-applicable"}
         if self.jurisdiction == "none":
-            return judge("No code is applied (jurisdiction none). The formulas shown for comparison give no verdict.")
+            return judge("No code is applied (`jurisdiction` is none). The formulas shown for comparison give no verdict.")
         if undecided or not barred:
             return judge(
                 f"The deck gives no seismic action, so the checks have no demand. Give the action in [code], or give a spectrum.{remarks}"
@@ -187,12 +185,12 @@ class Checked(KindResults):
 class CodeChecks(Checked):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
-    dynamic_outcome: RockingOutcome = maybe("for a block under a motion: outcome of the calculated rocking")
+    dynamic_outcome: RockingOutcome = maybe("for a block under a motion: outcome of the calculated rocking motion")
     dynamic_peak_rotation_ratio: float = maybe("ratio of the greatest rotation of the block to its critical rotation")
     peak_ground_acceleration_g: float | None = maybe(
-        "for a block: peak acceleration of the ground a_g S, the demand in the code rules", "g"
+        "for a block: peak ground acceleration a_g S, which is the demand in the code rules", "g"
     )
-    peak_ground_velocity_m_s: float | None = maybe("for a block: peak velocity of the ground, the demand in the rule of Ishiyama", "m/s")
+    peak_ground_velocity_m_s: float | None = maybe("for a block: peak ground velocity, which is the demand in the rule of Ishiyama", "m/s")
 
 
 class WallMechanism(ResultModel):
@@ -200,7 +198,9 @@ class WallMechanism(ResultModel):
 
     wall: str = fact("its name")
     gable: bool = fact("whether the part is the gable above the highest storey of the wall")
-    storey: int = fact("number, from 1, of the storey at whose foot the wall rotates; of a gable, one more than the highest")
+    storey: int = fact(
+        "number (counted from 1) of the storey at whose foot the wall rotates; for a gable, the number of the top storey plus one"
+    )
     foot_m: float = fact("height of the foot of this storey above the ground", "m")
     multiplier: float = fact("alpha_0")
     activation_acceleration_g: float = fact("a_0*", "g")
@@ -229,10 +229,10 @@ class LocalMechanism(Checked):
     ultimate_displacement_m: float | None = fact("d_SLV = 0.4 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
     collapse_displacement_m: float | None = fact("d_SLC = 0.6 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
     equivalent_period_s: float | None = fact(
-        "T_SLV: period 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
+        "T_SLV: period 1.68 pi sqrt(d_SLV/a(d_SLV)), for the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        "weight of the kinematic chain: the moving blocks, the loads on them that move with them, and the masses that push them", "N"
+        "weight of the kinematic chain: the moving blocks, the loads that move with them, and the masses that push them", "N"
     )
     base_height_m: float = fact("z: height of the mechanism above the foundation; at z = 0 the demand is the ground acceleration", "m")
     building_height_m: float = maybe("H, for a mechanism above the ground: height of the building", "m")
@@ -242,8 +242,8 @@ class LocalMechanism(Checked):
         source="Circ. 7/2019 C7.2.3",
     )
     multiplier_associated: float = maybe(
-        "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between `multiplier`, the least "
-        "state found, and this value",
+        "if joints slide: alpha_0 with associated (dilatant) friction. The capacity lies between "
+        "`multiplier` (lowest certified state) and this value",
         source="Drucker 1954",
     )
 
@@ -255,8 +255,8 @@ class LocalMechanism(Checked):
         return bends.get(self.mechanism, f"The {self.mechanism}")
 
     walls: list[WallMechanism] = maybe(
-        "for a building in plan: every wall that rotates about the foot of a storey; the worst comes first, and the "
-        "other results are those of the worst"
+        "for a building in plan: all walls that rotate about the foot of a storey, the worst first; all "
+        "other results refer to the worst wall"
     )
 
 

@@ -17,7 +17,9 @@ CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "se
 #: Slip over the length of a joint up to which the support that is left is not in doubt: half of the lever arm to the end of
 #: the joint, and so half of the resistance to overturning, is left then
 SLIP_LIMIT = 0.25
-INTERVAL = "whether blocks slide before collapse on statically indeterminate joints; each acceleration is then one value of an interval"
+INTERVAL = (
+    "whether blocks slide before collapse at statically indeterminate joints; the collapse acceleration is then one value of an interval"
+)
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
 
@@ -26,22 +28,22 @@ class Variation(ResultModel):
     """A run with another damping, stiffness or friction."""
 
     varied: Literal["damping", "stiffness", "friction"] = fact("value that was varied")
-    value: float = fact("factor on damping or stiffness, or coefficient of friction, in this run")
+    value: float = fact("factor on damping or stiffness in this run, or coefficient of friction of this run")
     beta_s: float = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
     damping_ratio_rotation: float = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, the least of all joints", source="thesis Eq. 7.13"
+        "damping ratio (fraction of critical damping) at rotational impact; least value of all joints", source="thesis Eq. 7.13"
     )
     damping_ratio_edge: float = fact(
-        "damping ratio (fraction of critical damping) at edge impact, the least of all joints", source="thesis Eq. 7.9"
+        "damping ratio (fraction of critical damping) at edge impact; least value of all joints", source="thesis Eq. 7.9"
     )
     outcome: str = fact("outcome: at-rest, slid, rocked or collapse; or the reason why this run is not reliable")
     peak_rotation_rad: float = fact("greatest rotation of any block", "rad")
     bounces: int = fact("number of times that blocks separated from the ground or from each other")
-    airborne_time_s: float = fact("total time without contact, the greatest of all blocks", "s")
-    peak_slip_m: float = fact("greatest slip of the joints that are still in contact", "m")
-    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
+    airborne_time_s: float = fact("total time that a block is without contact; greatest value of all blocks", "s")
+    peak_slip_m: float = fact("greatest slip at a joint that is still in contact", "m")
+    energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged")
 
 
 class Convergence(ResultModel):
@@ -49,10 +51,10 @@ class Convergence(ResultModel):
 
     steps: int = fact("time steps")
     open_steps: int = fact("number of time steps in which the contact solver did not converge")
-    most_rounds: int = fact("greatest number of iterations of the contact solver in a step")
+    most_rounds: int = fact("greatest number of iterations of the contact solver in one time step")
     factorisations_per_step: float = fact("sparse factorisations per step")
     worst_violation_ratio: float = fact(
-        "ratio of the greatest violation of the contact law, as a velocity, to the velocity that gravity adds in one time step"
+        "greatest violation of the contact law (a velocity), divided by the velocity that gravity adds in one time step"
     )
     worst_violation_s: float = fact("when that was", "s")
 
@@ -61,9 +63,9 @@ class TieRun(ResultModel):
     """What a run asked of a tie or a damper."""
 
     name: str = fact("its name")
-    peak_force_N: float = fact("force of greatest magnitude in any time step; tension is positive", "N")
+    peak_force_N: float = fact("greatest force in absolute value over all time steps; tension is positive", "N")
     end_force_N: float = fact("force at the end", "N")
-    plastic_elongation_m: float = fact("plastic elongation at the end; shortening is negative", "m")
+    plastic_elongation_m: float = fact("plastic elongation at the end of the run; negative for shortening", "m")
     state: Literal["slack", "elastic", "yielded", "viscous"] = fact(
         "state of the tie over the run. slack: never loaded; elastic: below its yield or slip force; yielded: yielded "
         "or slipped at least once; viscous: a viscous damper"
@@ -73,61 +75,65 @@ class TieRun(ResultModel):
 class PairWork(ResultModel):
     """Energy that a pair of blocks, or a block and its support, lost in a run."""
 
-    name: str = fact("both blocks; the ground is one support")
+    name: str = fact("names of the two blocks; the ground is given as one support")
     friction_J: float = fact("energy lost by friction", "J")
     damping_J: float = fact("energy lost in dashpots, or by impacts of rigid contacts", "J")
-    peak_force_N: float = fact("greatest force between both blocks, over the output times", "N")
+    peak_force_N: float = fact("greatest force between the two blocks, over the output times", "N")
 
 
 class BlocksRun(KindResults):
     """What the blocks of a section and those in space have in common under a motion."""
 
     outcome: DemOutcome = fact("outcome: no joint opens or slides; joints slide; joints open and the blocks stand; or collapse")
-    collapse_criterion: CollapseCriterion | None = fact("criterion of collapse, if it is not the displacement; null without collapse")
+    collapse_criterion: CollapseCriterion | None = fact(
+        "criterion of collapse, if collapse was found by another criterion than the displacement; null without collapse"
+    )
     governing_block: str = fact("block that collapsed first; without collapse, the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
     stop_time_s: float = fact("when it ended", "s")
-    still_moving: bool = fact("whether blocks still moved in the last twentieth of the run")
+    still_moving: bool = fact("whether blocks still moved during the last 5 % of the run")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse (not applied to a block that only slides)", "m")
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse; not applied to a block that only slides", "m")
     peak_displacement_m: float = fact(
-        "greatest displacement of any block from its position at rest under self-weight, less the displacement that all supports share", "m"
+        "greatest displacement of any block from its position at rest under self-weight, relative to the "
+        "common displacement of the supports",
+        "m",
     )
-    peak_slip_m: float = fact("greatest slip of the joints that are still in contact", "m")
+    peak_slip_m: float = fact("greatest slip at a joint that is still in contact", "m")
     residual_slip_m: float = fact("greatest slip of the joints at the end of the run", "m")
-    slip_ratio: float = fact("greatest ratio of the slip to the length of the joint")
+    slip_ratio: float = fact("greatest ratio of the slip of a joint to its length")
     slip_limit_ratio: float = fact(
-        "limit of the ratio of slip to joint length (0.25). Beyond it the distance from the centre of the joint to its end is "
-        "less than half, and the outcome is open (no verdict)"
+        "limit of the ratio of slip to joint length (0.25): beyond it, the distance from the middle of "
+        "the joint to its end has decreased to less than half, and the outcome is open (no verdict)"
     )
     slipped_joint: str | None = fact("joint with the greatest ratio of slip to length; null if no joint slides by 1 % of its length")
-    off_footing: list[str] = fact("blocks that slid off their footings; recorded only if the deck names no floor")
+    off_footing: list[str] = fact("blocks that slid off their footings; only recorded if the deck gives no floor")
     decided_by_last_digits: bool = fact(
-        "whether the response is chaotic: if the motion is scaled by 1 + 1e-6, the displacements change by more than "
-        "1/100 of the displacement that counts as collapse, or only one of the two runs collapses. If they change by "
-        "more than 1/1000, scale factors up to 1 + 1e-4 are tried too. False without this check"
+        "whether the response is chaotic. The motion is scaled by 1 + 1e-6: the response is chaotic if displacements change by more "
+        "than 1/100 of the displacement that counts as collapse, or if only one of the two runs collapses. If they change by more than "
+        "1/1000, scale factors up to 1 + 1e-4 are tried too. False if this was not checked"
     )
     perturbation_growth: float | None = fact(
-        "growth of a perturbation if the motion is scaled by 1 + 1e-6: ratio of the greatest change of a displacement "
-        "up to collapse to the displacement that counts as collapse, divided by 1e-6; null without this check"
+        "growth of a perturbation, if the motion is scaled by 1 + 1e-6: greatest change of a displacement before collapse, divided by "
+        "1e-6 and by the displacement that counts as collapse; null if this was not checked"
     )
-    perturbed_outcome: str | None = fact("outcome under the motion scaled by 1 + 1e-6; null without this check")
-    violated: list[str] = fact("violated assumptions that were checked, one sentence each, for instance on chaotic response")
+    perturbed_outcome: str | None = fact("outcome under the motion scaled by 1 + 1e-6; null if this was not checked")
+    violated: list[str] = fact("violated assumptions of the analysis, one sentence each, for instance a chaotic response")
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
     peak_base_shear_N: float = fact(
-        "greatest horizontal force of the ground on the blocks over the output times, at the contacts as drawn and at the anchors of ties "
-        "and dampers; contacts formed later are not included, which a warning states",
+        "greatest horizontal force of the ground on the blocks over the output times, at the initial contacts and at the anchors of "
+        "ties and dampers. Contacts formed later are not included; a warning says if there are any",
         "N",
     )
-    peak_base_shear_over_weight: float = fact("ratio of the greatest horizontal force of the ground to the weight of the structure")
-    joint_work: list[PairWork] = fact("pairs of blocks that lost most energy by friction, at most 20")
-    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
+    peak_base_shear_over_weight: float = fact("greatest horizontal force of the ground, divided by the weight of the structure")
+    joint_work: list[PairWork] = fact("the pairs of blocks (at most 20) that lost most energy by friction")
+    energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged")
     bounces: int = fact("number of times that blocks separated from the ground or from each other")
-    airborne_time_s: float = fact("total time without contact, the greatest of all blocks", "s")
+    airborne_time_s: float = fact("total time that a block is without contact; greatest value of all blocks", "s")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
@@ -136,20 +142,20 @@ class BlocksRun(KindResults):
         "edge alone carries",
         "Pa",
     )
-    ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
+    ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, the least of all joints", source="thesis Eq. 7.13"
+        "damping ratio (fraction of critical damping) at rotational impact; least value of all joints", source="thesis Eq. 7.13"
     )
-    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, the least of all joints")
+    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact; least value of all joints")
     damping_ratio_edge: float | None = fact(
-        "damping ratio (fraction of critical damping) at edge impact, the least of all joints", source="thesis Eq. 7.9"
+        "damping ratio (fraction of critical damping) at edge impact; least value of all joints", source="thesis Eq. 7.9"
     )
     steps: int = fact("time steps")
-    settling_steps: int = fact("number of time steps until the building came to rest under its weight")
+    settling_steps: int = fact("number of time steps until the building was at rest under its weight, before the motion")
     time_step_s: float = fact("time step", "s")
     critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
@@ -160,17 +166,13 @@ class BlocksRun(KindResults):
         is nearer to its limit. Open where blocks still move, slid too far, slid off a footing, or where the response is chaotic."""
         most, limit, share = self.peak_displacement_m, self.collapse_displacement_m, self.slip_ratio
         violated = [f"Block {name} slides off the end of its footing." for name in self.off_footing] + self.violated
-        unchecked = (
-            ""
-            if self.perturbation_growth is not None
-            else " The sensitivity of this outcome to small changes of the motion was not checked."
-        )
+        unchecked = "" if self.perturbation_growth is not None else " Whether the response is chaotic was not checked."
         if self.outcome == "collapse":
             how = f"{self.governing_block} collapses by {self.collapse_criterion}"
-            text = f"{how} and moves by more than the {three_figures(1e3 * limit)} mm that count as collapse.{unchecked}"
+            text = f"{how} and moves by more than {three_figures(1000.0 * limit)} mm, the displacement that counts as collapse.{unchecked}"
             return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
         if self.still_moving:
-            return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
+            return judge("The run ended before the blocks came to rest.", most, limit, "m", "open", violated=violated)
         slip = (
             f"Blocks slide by up to {three_figures(1e3 * self.peak_slip_m)} mm. This is {100 * share:.3g} % of the joint length at "
             f"{self.slipped_joint} (limit {100 * SLIP_LIMIT:g} %, at which the distance from the middle of the joint to "
@@ -180,11 +182,14 @@ class BlocksRun(KindResults):
             text = f"{slip}. The analysis does not decide whether the remaining contact suffices.{unchecked}"
             return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
         if most < limit:
-            text = f"No block moves by more than {three_figures(1e3 * most)} mm; {three_figures(1e3 * limit)} mm count as collapse."
+            text = (
+                f"No block moves by more than {three_figures(1000.0 * most)} mm; a displacement of {three_figures(1000.0 * limit)} "
+                "mm counts as collapse."
+            )
         else:
             text = (
-                f"A block moves by {three_figures(1e3 * most)} mm. This exceeds the {three_figures(1e3 * limit)} mm that count as collapse, "
-                "but the block neither rotates nor settles as in a collapse."
+                f"A block moves by {three_figures(1000.0 * most)} mm. This exceeds the displacement that counts as collapse "
+                f"({three_figures(1000.0 * limit)} mm), but the block neither rotates nor settles as in a collapse."
             )
         if self.slipped_joint is not None:
             text += f" {slip}."
@@ -197,18 +202,22 @@ class BlocksRun(KindResults):
 class DemRun(BlocksRun):
     """dem: the blocks under a motion."""
 
-    restitution_measured: float | None = fact("for a single block: median ratio of angular velocity after / before its impacts")
-    restitution_housner: float | None = fact(
-        "for a block: ratio of angular velocities after / before impact by the momentum balance", source="Housner 1963"
+    restitution_measured: float | None = fact(
+        "for a single block: median, over its impacts, of the ratio of angular velocity after / before impact"
     )
-    sensitivity: list[Variation] = maybe("further runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7")
+    restitution_housner: float | None = fact(
+        "for a block: ratio of angular velocity after / before impact, by the momentum balance", source="Housner 1963"
+    )
+    sensitivity: list[Variation] = maybe(
+        "runs that repeat the analysis with other values of damping, stiffness or friction", source="thesis Tables 7.1 to 7.7"
+    )
     friction_threshold: float | None = maybe("least coefficient of friction at which no joint slides; null if not found")
 
 
 #: What the capacity of a tilt test is where blocks slide on joints whose forces statics does not fix
 ONE_PATH = (
-    "Blocks slide before collapse. The value belongs to this load path only: without dilatancy the possible values "
-    "form an interval, and a lower value may exist."
+    "Blocks slide before collapse. Without dilatancy, the collapse acceleration then depends on the "
+    "load path: the possible values form an interval, and a lower value may exist."
 )
 
 
@@ -222,13 +231,13 @@ class BlocksTilt(KindResults):
     tilt_angle_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards +x", "deg")
     tilt_angle_opposite_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards -x", "deg")
     interval: bool = fact(INTERVAL)
-    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the total energy exchanged")
+    energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
-    ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each segment")
+    ties: list[TieRun] = maybe("force of each tie over time; for a bonded chain, the force of each of its segments")
     convergence: Convergence | None = maybe("of rigid contacts")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
 
@@ -242,7 +251,7 @@ class BlocksTilt(KindResults):
 class DemTilt(BlocksTilt):
     """dem: the constant acceleration that brings the blocks down."""
 
-    load_direction: Literal["+x"] = fact("direction of the load for which the hinges are listed")
+    load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which `hinges` are given")
     hinges: list[NamedHinge] = fact("hinges of the mechanism")
     hinges_opposite: list[NamedHinge] = fact("hinges of the collapse mechanism towards -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block; positive towards +x", "rad")
@@ -253,16 +262,16 @@ class SolidDemRun(BlocksRun):
     """dem: blocks in space under a motion."""
 
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each recorded block", "rad")
-    slip_ratio: float = fact("greatest ratio of the slip to the least width of the contact")
-    direction_deg: float = fact("direction of the horizontal motion in plan: angle from +x towards +y", "deg")
-    horizontal_components: int = fact("number of horizontal components: 2 if a second record acts perpendicular to this direction")
+    slip_ratio: float = fact("greatest ratio of the slip of a contact to its least width")
+    direction_deg: float = fact("direction of the horizontal motion in plan, as an angle from +x towards +y", "deg")
+    horizontal_components: int = fact("number of horizontal components: 2 if a second record acts perpendicular to `direction_deg`")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("greatest plastic slip of a dowel, including the slip under self-weight before the motion", "m")
+    dowel_slip_m: float = fact("greatest plastic slip of a dowel, with the slip under self-weight before the motion", "m")
     dowels_out: int = fact("number of dowels that came out of their holes")
-    final_displacement_m: float = fact("greatest displacement of any block at the end of the run", "m")
-    peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed at another point", "m")
+    final_displacement_m: float = fact("greatest displacement of a block at the end of the run", "m")
+    peak_opening_m: float = fact("greatest gap at a corner of a contact that is still closed elsewhere", "m")
 
 
 class SolidDemTilt(BlocksTilt):
@@ -274,10 +283,10 @@ class SolidDemTilt(BlocksTilt):
     tilt_angle_opposite_deg: float = fact(
         "tilt of the ground with the same effect as the collapse acceleration in the opposite direction", "deg"
     )
-    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
+    load_direction_deg: float = fact("direction of the load in plan, as an angle from +x towards +y", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    opening_contacts: list[str] = fact("contacts that open or slide at the start of collapse, at most 20; the widest comes first")
+    opening_contacts: list[str] = fact("contacts (at most 20) that open or slide at the start of collapse; the widest comes first")
     opening_contacts_opposite: list[str] = fact("contacts that open or slide under the load in the opposite direction")
 
 
@@ -287,7 +296,7 @@ Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
 class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
-    label: str = fact("name of the value that was varied, or of the other solver")
+    label: str = fact("name of the value that was varied, or name of the other solver")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "model of the joints. compliant: springs; nonsmooth: rigid contacts (without stiffness)"
     )
@@ -295,12 +304,12 @@ class DemCurve(ResultModel):
     stiffness_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
     damping_ratio_rotation: float | None = fact(
-        "damping ratio (fraction of critical damping) at rotational impact, the least of all joints"
+        "damping ratio (fraction of critical damping) at rotational impact; least value of all joints"
     )
-    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact, the least of all joints")
-    damping_ratio_edge: float | None = fact("damping ratio (fraction of critical damping) at edge impact, the least of all joints")
+    damping_ratio_corner: float | None = fact("damping ratio (fraction of critical damping) at corner impact; least value of all joints")
+    damping_ratio_edge: float | None = fact("damping ratio (fraction of critical damping) at edge impact; least value of all joints")
     shortest_durations_s: list[float | None] = fact(
-        "shortest duration that causes collapse, at each amplitude; null if no calculated duration causes collapse", "s"
+        "shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse", "s"
     )
 
 
@@ -310,7 +319,7 @@ class CellApart(ResultModel):
     amplitude_g: float = fact("amplitude", "g")
     duration_s: float = fact("duration", "s")
     fails_as_given: bool = fact("whether the solver of the deck predicts collapse")
-    fails_by_the_other: bool = fact("whether the other solver predicts collapse")
+    fails_by_the_other: bool = fact("whether the second solver (the one that the deck does not choose) predicts collapse")
 
 
 class CrossCheck(ResultModel):
@@ -328,23 +337,23 @@ class DemDomain(KindResults):
     direction_deg: float | None = maybe("for solids: direction of the motion in plan, as an angle from +x towards +y", "deg")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact(
-        "shortest duration that causes collapse, at each amplitude; null if no calculated duration causes collapse", "s"
+        "shortest tried duration that causes collapse, at each amplitude; null if no tried duration causes collapse", "s"
     )
     curves: list[DemCurve] = fact(
-        "failure curves with other damping, stiffness or friction; the first is the curve with the values of the deck"
+        "failure curves with other values of damping, stiffness or friction; the first curve has the values of the deck"
     )
     mode_II_durations_s: list[float | None] | None = maybe(
-        "shortest durations that cause collapse in the first half cycle; null if no calculated duration does", "s"
+        "shortest duration that causes collapse in the first half cycle, at each amplitude; null if no tried duration does", "s"
     )
-    convergence: Convergence | None = maybe("results of the contact solver (rigid contacts only), over all runs")
+    convergence: Convergence | None = maybe("accuracy of the contact solver over all runs (rigid contacts only)")
     cross_check: CrossCheck | None = maybe("by both solvers")
-    energy_residual_ratio: float = fact("greatest ratio, over all runs, of the error of the energy balance to the total energy exchanged")
+    energy_residual_ratio: float = fact("error of the energy balance, divided by the total energy exchanged; greatest value of all runs")
     steps: int = fact("time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(
-        "for an arch: shortest durations at which the four-hinge mechanism collapses, with or without an impact", "s"
+        "for an arch: shortest duration at which the four-hinge mechanism collapses (with or without an impact), at each amplitude", "s"
     )
     four_hinge_mode_II_durations_s: list[float | None] = maybe(
-        "for an arch: shortest durations at which the four-hinge mechanism collapses without an impact", "s"
+        "for an arch: shortest duration at which the four-hinge mechanism collapses without an impact, at each amplitude", "s"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -380,17 +389,21 @@ class DemParameters(KindResults):
     corner_frequency_rad_s: float = fact("greatest frequency of corner impact", "rad/s", source="thesis Eq. 7.18")
     edge_frequency_rad_s: float = fact("greatest frequency of edge impact", "rad/s", source="thesis Eq. 7.19")
     critical_beta_rotation_s: float = fact(
-        "critical damping at rotational impact, to which damping ratios refer", "s", source="thesis Eq. 7.17"
+        "critical damping coefficient at rotational impact, to which damping ratios refer", "s", source="thesis Eq. 7.17"
     )
-    critical_beta_corner_s: float = fact("critical damping at corner impact, to which damping ratios refer", "s", source="thesis Eq. 7.17")
-    critical_beta_edge_s: float = fact("critical damping at edge impact, to which damping ratios refer", "s", source="thesis Eq. 7.17")
+    critical_beta_corner_s: float = fact(
+        "critical damping coefficient at corner impact, to which damping ratios refer", "s", source="thesis Eq. 7.17"
+    )
+    critical_beta_edge_s: float = fact(
+        "critical damping coefficient at edge impact, to which damping ratios refer", "s", source="thesis Eq. 7.17"
+    )
     beta_s: float = fact("stiffness-proportional damping in use", "s")
     mass_damping_per_s: float = fact("mass-proportional damping in use", "1/s")
-    damping_ratio_rotation: float = fact("damping ratio (fraction of critical damping) at rotational impact, the least of all joints")
-    damping_ratio_corner: float = fact("damping ratio (fraction of critical damping) at corner impact, the least of all joints")
-    damping_ratio_edge: float = fact("damping ratio (fraction of critical damping) at edge impact, the least of all joints")
+    damping_ratio_rotation: float = fact("damping ratio (fraction of critical damping) at rotational impact; least value of all joints")
+    damping_ratio_corner: float = fact("damping ratio (fraction of critical damping) at corner impact; least value of all joints")
+    damping_ratio_edge: float = fact("damping ratio (fraction of critical damping) at edge impact; least value of all joints")
     convention: Literal["consistent", "thesis"] = fact("rule of the default stiffness")
 
     def judged(self, demand: Demand) -> Verdict:
         """Nothing is asked of the building."""
-        return judge("This analysis calculates parameters of the joints. It gives no verdict on the building.")
+        return judge("This analysis calculates parameters of the joints and gives no verdict on the building.")

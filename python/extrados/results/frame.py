@@ -12,23 +12,23 @@ class FrameMode(ResultModel):
 
     frequency_Hz: float = fact("its frequency", "Hz")
     period_s: float = fact("its period", "s")
-    mass_ratio_x: float = fact("ratio of the participating mass along x to the moving mass")
-    mass_ratio_y: float = fact("ratio of the participating mass along y to the moving mass")
+    mass_ratio_x: float = fact("participating mass along x, divided by the total mass of the levels above the ground")
+    mass_ratio_y: float = fact("participating mass along y, divided by the total mass of the levels above the ground")
 
 
 class FrameModes(KindResults):
     """frame-modes: vibration of a building as a frame of macro-elements."""
 
     modes: list[FrameMode] = fact("modes from the lowest frequency")
-    moving_mass_kg: float = fact("masses on the levels above the ground, as moved by the modes", "kg")
+    moving_mass_kg: float = fact("total mass of the levels above the ground, which the modes move", "kg")
     weight_N: float = fact("weight of walls and floors", "N")
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
-    walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
+    walls: list[str] = fact("names of the walls; the arrays number the walls in this order")
 
     def judged(self, demand: Demand) -> Verdict:
         """Modes are neither a demand nor a capacity."""
-        text = f"The first natural period is {self.modes[0].period_s:.3g} s. Modes alone do not decide a limit state."
+        text = f"The first natural period is {self.modes[0].period_s:.3g} s. Vibration modes alone do not decide a limit state."
         return judge(text, None, None, "", "not-applicable")
 
 
@@ -41,7 +41,7 @@ class Modes(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """Modes are neither a demand nor a capacity."""
-        text = f"The first natural frequency is {self.modes[0].frequency_Hz:.3g} Hz. Modes alone do not decide a limit state."
+        text = f"The first natural frequency is {self.modes[0].frequency_Hz:.3g} Hz. Vibration modes alone do not decide a limit state."
         return judge(text, None, None, "", "not-applicable")
 
 
@@ -71,32 +71,34 @@ class FramePush(ResultModel):
     direction_deg: float = fact("on the plan", "deg")
     sense: Literal["+", "-"] = fact("sense of the load. +: along the direction; -: against it")
     pattern: str = fact("of the forces")
-    eccentricity: float = fact("ratio of the accidental eccentricity to the length of the plan across the direction")
+    eccentricity: float = fact("accidental eccentricity, divided by the length of the building perpendicular to the load")
     stop: str = fact("why it ended")
-    lost_at: str = maybe("where the frame moves most at the end, if no equilibrium was found")
-    control_displacement_m: list[float] = fact("mean displacement, in the sense of the load, of the masses on the control level", "m")
+    lost_at: str = maybe("if no equilibrium was found: place where the frame moves most at the end")
+    control_displacement_m: list[float] = fact(
+        "mean displacement of the masses on the control level, positive in the direction of the load", "m"
+    )
     base_shear_N: list[float] = fact("base shear along the sense", "N")
     peak_base_shear_N: float = fact("greatest base shear", "N")
     displacement_at_peak_m: float = fact("control displacement there", "m")
     drop_displacement_m: float | None = fact(
-        "control displacement at which the base shear has decreased by 20 %; null if the curve does not reach it", "m"
+        "control displacement at which the base shear has decreased by 20 %; null if it does not decrease so far", "m"
     )
     ultimate_displacement_m: float | None = fact(
-        "ultimate displacement: the least of the displacement at 20 % decrease, of that at which all piers of one storey of a wall "
-        "are at their drift limit, and of the end of a curve without equilibrium beyond a drift limit; null if the curve reaches none",
+        "ultimate displacement, the least of three: 20 % decrease of the base shear; all piers of one storey of a wall at their drift "
+        "limit; end of the curve without equilibrium beyond a drift limit. Null if none is reached",
         "m",
     )
     stiffness_N_m: float | None = fact(
-        "secant stiffness at a tenth of the greatest base shear; null if the curve has no displacement up to there", "N/m"
+        "secant stiffness at 10 % of the greatest base shear; null if the curve has no displacement below that load", "N/m"
     )
-    period_s: float = fact("period of the mode with the greatest participating mass in the direction", "s")
+    period_s: float = fact("period of the mode with the greatest participating mass in the direction of the load", "s")
     equivalent_mass_kg: float = fact(
-        "m*: sum of the products of the masses and the mode shape, which is 1 at the control displacement", "kg"
+        "m*: sum of mass times mode shape over all masses; the mode shape is 1 at the control displacement", "kg"
     )
-    participation_factor: float = fact("Gamma: ratio of m* to the sum of the products of the masses and the squared mode shape")
-    level_mass_kg: list[float] = fact("masses on the levels, from the lowest", "kg")
-    level_shape: list[float] = fact("mean of the mode shape on each level, in the sense of the load")
-    storeys: list[PierLimits] = fact("limit events of the piers, for each storey of each wall")
+    participation_factor: float = fact("Gamma: m* divided by the sum of mass times squared mode shape")
+    level_mass_kg: list[float] = fact("mass on each level, from the lowest level upwards", "kg")
+    level_shape: list[float] = fact("mean of the mode shape on each level, positive in the direction of the load")
+    storeys: list[PierLimits] = fact("limit events of the piers (strength and drift limit), for each storey of each wall")
     failed: list[FailedElement] = fact("elements beyond their drift limits, in the order in which they reach them")
 
 
@@ -113,57 +115,65 @@ class WallDeflection(ResultModel):
     """A wall out of its plane, with its deflection, under a constant acceleration across its plane."""
 
     wall: str = fact("its name")
-    acceleration_g: float = fact("greatest constant acceleration that the wall carries; 0: no equilibrium under the weight", "g")
+    acceleration_g: float = fact(
+        "greatest constant acceleration that the wall carries; 0 if the wall has no equilibrium under its weight", "g"
+    )
     deflection_m: float = fact("greatest deflection at this acceleration", "m")
-    height_m: float = fact("height of the greatest deflection above the ground", "m")
-    reached: bool = fact("whether the acceleration decreases with further deflection; if not, it is a lower bound")
+    height_m: float = fact("height above the ground at which the deflection is greatest", "m")
+    reached: bool = fact("whether the acceleration decreases with further deflection; if not, the acceleration is a lower bound")
     rigid_acceleration_g: float | None = fact(
-        "collapse multiplier of its weakest rigid part above a storey, by local-mechanism without confidence factor, with the same position of "
-        "the hinge; null if floors hold the wall, or with a warning",
+        "collapse multiplier of the weakest rigid part of the wall above a storey (local-mechanism, without confidence factor, same "
+        "position of the hinge); null if floors restrain the wall, or with a warning",
         "g",
     )
-    held_at_m: list[float] = fact("heights at which rigid floors and props hold the wall", "m")
+    held_at_m: list[float] = fact("heights at which rigid floors or props restrain the wall", "m")
 
 
 class FramePushover(KindResults):
     """frame-pushover: a building as a frame of macro-elements under growing horizontal forces."""
 
     runs: list[FramePush] = fact("all pushovers")
-    governing: str = fact("name of the run with the least base shear")
+    governing: str = fact("name of the pushover with the least base shear")
     base_shear_N: float = fact("its greatest base shear", "N")
-    ultimate_displacement_m: float | None = fact("ultimate displacement of the governing run; null if not reached", "m")
-    failed: list[FailedElement] = fact("elements beyond their drift limits in the governing run, in order")
+    ultimate_displacement_m: float | None = fact("ultimate displacement of the governing pushover; null if not reached", "m")
+    failed: list[FailedElement] = fact(
+        "elements that exceed their drift limits in the governing pushover, in the order in which they reach them"
+    )
     weight_N: float = fact("weight of walls and floors", "N")
-    moving_mass_kg: float = fact("masses on the levels above the ground, as moved by the modes", "kg")
-    control_level: int = fact("storey whose top has the control displacement")
+    moving_mass_kg: float = fact("total mass of the levels above the ground, which the modes move", "kg")
+    control_level: int = fact("storey whose top floor gives the control displacement")
     control_height_m: float = fact("height of the control level", "m")
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
-    walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
+    walls: list[str] = fact("names of the walls; the arrays number the walls in this order")
     remarks: list[str] = fact("parts of the building that the frame model neglects")
-    ring_beam_moment_Nm: float = maybe("greatest moment of the elastic ring beams up to the peaks of all runs", "N*m")
-    out_of_plane: OutOfPlane = maybe("check of the walls out of their planes; only with a seismic action")
+    ring_beam_moment_Nm: float = maybe("greatest moment of the (elastic) ring beams in all pushovers, up to the peak of each", "N*m")
+    out_of_plane: OutOfPlane = maybe("check of the walls for out-of-plane failure; only with a seismic action")
     walls_out_of_plane: list[WallDeflection] = maybe(
-        "walls out of their planes with their deflection, cracking and crushing, under a constant acceleration, the weakest first"
+        "out-of-plane capacity of each wall under a constant acceleration, with deflection, cracking and crushing; the weakest wall first"
     )
-    verification: Verification = maybe("displacement-based verification: all runs at the limit states of the code")
+    verification: Verification = maybe("displacement-based verification: all pushovers at the limit states of the code")
+
+    @property
+    def wall_below_frame(self) -> bool:
+        """Whether the acceleration that a wall carries out of its plane is less than the base shear of the frame over the weight."""
+        return bool(self.walls_out_of_plane) and self.walls_out_of_plane[0].acceleration_g < self.base_shear_N / self.weight_N
 
     def weakest_wall(self) -> str:
         """The wall that carries the least acceleration out of its plane, in words; empty without such a calculation."""
         if not self.walls_out_of_plane:
             return ""
-        wall, ratio = self.walls_out_of_plane[0], self.base_shear_N / self.weight_N
+        wall = self.walls_out_of_plane[0]
         if not wall.acceleration_g > 0.0:
-            return f"Out of its plane wall '{wall.wall}' has no equilibrium under its weight."
-        least = "" if wall.reached else "at least "
-        before = (
-            f" This is less than the base shear of the frame over the weight, {ratio:.3g}: the wall fails first."
-            if wall.acceleration_g < ratio
-            else ""
-        )
+            return f"Out of its plane, wall '{wall.wall}' has no equilibrium under its own weight."
+        least, before = "" if wall.reached else "at least ", ""
+        if self.wall_below_frame:
+            then = "the wall fails first" if wall.reached else "either may fail first"
+            before = f" This is less than the ratio of the base shear of the frame to the weight ({self.base_shear_N / self.weight_N:.3g}), so {then}."
         return (
-            f"Out of its plane wall '{wall.wall}' carries {least}a constant acceleration of {wall.acceleration_g:.3g} g, with a deflection of "
-            f"{1e3 * wall.deflection_m:.3g} mm at a height of {wall.height_m:.3g} m, without the transverse walls.{before}"
+            f"Out of its plane, wall '{wall.wall}' carries {least}a constant acceleration of {wall.acceleration_g:.3g} "
+            f"g. Its deflection is then {1000.0 * wall.deflection_m:.3g} mm at a height of {wall.height_m:.3g} m. "
+            f"Transverse walls are not included.{before}"
         )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -171,12 +181,12 @@ class FramePushover(KindResults):
         lost = [row.name for row in self.runs if row.stop.startswith("no equilibrium") and row.drop_displacement_m is None]
         text = f"The frame can carry a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
         if self.ring_beam_moment_Nm is not None:
-            text += f" Greatest moment of the ring beams, which remain elastic: {self.ring_beam_moment_Nm / 1e3:.3g} kN m."
-        if self.walls_out_of_plane and self.walls_out_of_plane[0].acceleration_g < self.base_shear_N / self.weight_N:
+            text += f" The greatest moment of the ring beams, which are modelled as elastic, is {self.ring_beam_moment_Nm / 1e3:.3g} kN m."
+        if self.wall_below_frame:
             text += f" {self.weakest_wall()}"
         if self.out_of_plane is not None and self.out_of_plane.outcome in ("collapses", "cannot-stand"):
             factor = "" if self.out_of_plane.factor is None else f" (safety factor {self.out_of_plane.factor:.3g})"
-            text += f" A wall does not satisfy the check of out-of-plane failure{factor}. {self.out_of_plane.statement}"
+            text += f" At least one wall does not satisfy the check for out-of-plane failure{factor}. {self.out_of_plane.statement}"
         if self.verification is not None and self.verification.decides:
             return self.verification.judged(text)
         if lost:
@@ -193,10 +203,10 @@ class FrameLimitCurve(ResultModel):
     the base shear)."""
 
     limit_state: FrameLimitState = fact("strength, first-limit or collapse")
-    exceeded: int = fact("number of runs that exceed the limit state; for pushovers the motions are not scaled")
+    exceeded: int = fact("number of runs that exceed the limit state; for pushovers, under the motions as they are (not scaled)")
     share: float = fact("share of the runs that have a result")
     share_interval: list[float] = fact("interval of that share (Wilson)")
-    median_g: float | None = fact("median of the lognormal fragility curve; null if the runs do not determine a curve", "g")
+    median_g: float | None = fact("median of the lognormal fragility curve; null if the runs are not enough to fit a curve", "g")
     dispersion: float | None = fact("its logarithmic standard deviation")
     median_interval_g: list[float] | None = fact("confidence interval of the median; null if not known", "g")
     probability: list[float | None] = maybe("share of the motions that exceed the limit state, at each level of intensity")
@@ -221,12 +231,12 @@ class FrameFragility(KindResults):
     drift_84: list[float | None] = maybe(
         "84th percentile of the greatest pier drift, at each level of intensity; null if this percentile is collapse"
     )
-    confidence_factor: float = maybe("confidence factor of the code, by the knowledge level")
+    confidence_factor: float = maybe("confidence factor of the code for the knowledge level")
     design_intensity_g: float = maybe(
-        "intensity of the median motion at which the building collapses, if all strengths are divided by the confidence factor", "g"
+        "intensity of the median motion at which the building collapses, with all strengths divided by the confidence factor", "g"
     )
     weaker_share: float = maybe(
-        "share of the sampled buildings that collapse at a lower intensity than that of `code_median_g`, under the same motion"
+        "share of the sampled buildings that collapse, under the same motion, at a lower intensity than `code_median_g`"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -243,17 +253,19 @@ class FrameHistory(KindResults):
     stop: str = fact("why it ended")
     end_time_s: float = fact("end of the calculation", "s")
     peak_displacement_m: float = fact(
-        "greatest displacement, along the direction of the motion, of the control level relative to the ground", "m"
+        "greatest displacement of the control level relative to the ground, along the direction of the motion", "m"
     )
     peak_base_shear_N: float = fact("greatest base shear along the direction of the motion", "N")
     residual_displacement_m: float = fact("at the end", "m")
     peak_drift: float = fact("greatest drift (chord rotation) of a pier")
     peak_drift_element: str = fact("that pier")
-    failed: list[FailedElement] = fact("elements beyond their drift limits, in order, with the control displacement at each instant")
-    period_s: float = fact(
-        "initial period (undamaged frame at rest) of the mode with the greatest participating mass in the direction of the motion", "s"
+    failed: list[FailedElement] = fact(
+        "elements that exceed their drift limits, in the order in which they reach them, with the control displacement at that instant"
     )
-    damping: list[float] = fact("Rayleigh damping: factor of the mass [1/s] and factor of the last tangent stiffness [s]")
+    period_s: float = fact("period of the undamaged frame: mode with the greatest participating mass in the direction of the motion", "s")
+    damping: list[float] = fact(
+        "Rayleigh damping: factor of the mass matrix [1/s], and factor of the tangent stiffness of the last step [s]"
+    )
     weight_N: float = fact("weight of walls and floors", "N")
     steps: int = fact("time steps")
     first_failure_s: float = maybe("time at which the first element reaches its drift limit", "s")

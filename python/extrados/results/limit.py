@@ -41,7 +41,7 @@ class Hinge(NamedHinge):
 class Reaction(ResultModel):
     """Force of the ground on the structure at a joint."""
 
-    joint: int = fact("number of the joint at the ground")
+    joint: int = fact("number of the joint that transfers this force to the ground")
     name: str = fact("its name")
     horizontal_N: float = fact("to +x", "N")
     vertical_N: float = fact("upward", "N")
@@ -67,15 +67,19 @@ class ChainThrust(ResultModel):
 class Fracture(ResultModel):
     """Collapse to +x with the leeward buttress cracked."""
 
-    stands: bool = maybe("whether the cracked structure can stand upright; if false, no other results of the cracked state are given")
+    stands: bool = maybe(
+        "whether the cracked structure can stand without a tilt; if false, the other results of the cracked state are not given"
+    )
     cracks: bool = maybe("whether the buttress cracks before the structure collapses")
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
     tilt_angle_deg: float = maybe("tilt of the ground with the same effect as the collapse acceleration", "deg", source="thesis Eq. 3.1")
-    ratio: float = maybe("ratio of the collapse acceleration of the cracked structure to that of the uncracked structure")
+    ratio: float = maybe("collapse acceleration of the cracked structure, divided by that of the uncracked structure")
     crack_height_m: float = maybe("height above the base at which the crack begins", "m")
-    crack_height_ratio: float = maybe("ratio of the height at which the crack begins to the height of the buttress")
-    resultant_from_outer_face_ratio: float = maybe("ratio of the distance between resultant and outer face to the width at the base")
+    crack_height_ratio: float = maybe("height at which the crack begins, divided by the height of the buttress")
+    resultant_from_outer_face_ratio: float = maybe(
+        "distance of the resultant from the outer face at the base, divided by the width of the base"
+    )
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
     dilating: bool = maybe(
         "whether joints in compression slide in this mechanism; the collapse acceleration is then an upper bound (dilatant friction)"
@@ -95,11 +99,11 @@ SAME = 1e-6
 class LoadPath(ResultModel):
     """Collapse at the end of a load path: elastic joints, self-weight first, then the push, sliding without dilatancy."""
 
-    shear_stiffness_ratio: float = fact("ratio of shear stiffness to normal stiffness of the joints")
+    shear_stiffness_ratio: float = fact("shear stiffness of the joints, divided by their normal stiffness")
     collapse_acceleration_g: float | None = fact("collapse acceleration; null if the load path did not end in a collapse", "g")
     certified: bool = fact(
-        "whether the certificate is satisfied: equilibrium, shear force |s| at most friction mu N, and zero gap. It is "
-        "calculated again independently of the solver"
+        "whether the certificate is satisfied, recalculated independently of the solver: equilibrium, "
+        "shear force |s| at most friction mu N, and zero gap"
     )
     zero_gap_g: float | None = fact("as in non_dilatant", "g")
     equilibrium_residual: float | None = fact("as in non_dilatant")
@@ -128,29 +132,29 @@ class NonDilatant(ResultModel):
         "g",
         source="Drucker 1954",
     )
-    starts_g: list[float] = fact("collapse load found from each starting point; the least is the result", "g")
-    spread_g: float = fact("difference between the greatest and the least load found: such states are not unique", "g")
+    starts_g: list[float] = fact("collapse load found from each starting point; the lowest is the result", "g")
+    spread_g: float = fact(
+        "difference between the highest and the lowest collapse load found; collapse states without dilatancy are not unique", "g"
+    )
     certified: bool = fact(
-        "whether the certificate is satisfied: equilibrium, shear force |s| at most friction mu N, and zero gap. It is "
-        "calculated again independently of the solver"
+        "whether the certificate is satisfied, recalculated independently of the solver: equilibrium, "
+        "shear force |s| at most friction mu N, and zero gap"
     )
     zero_gap_g: float = fact(
-        "gap: difference between the collapse acceleration and the work of friction minus that of the weight, per "
-        "unit of work of the load; zero if forces and motion belong to the same state",
+        "gap: collapse acceleration minus (work of friction minus work of the weight), per unit of work "
+        "of the load; zero if forces and motion belong to the same state",
         "g",
     )
-    equilibrium_residual: float = fact(
-        "ratio of the greatest unbalanced force (or moment divided by the size) on a block to the total load"
-    )
-    friction_residual: float = fact("ratio of the greatest excess of the shear force |s| over the friction mu N to the total load")
-    tension_residual: float = fact("ratio of the greatest tension (or compression beyond the strength) to the total load")
-    overlap_residual: float = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest joint")
+    equilibrium_residual: float = fact("greatest unbalanced force on a block (or moment divided by the size), divided by the total load")
+    friction_residual: float = fact("greatest excess of the shear force |s| over the friction mu N, divided by the total load")
+    tension_residual: float = fact("greatest tension (or compression beyond the strength), divided by the total load")
+    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest joint")
     complementarity_residual: float = fact(
-        "error of complementarity: force and motion at the same joint (a joint that presses and also opens, or that "
-        "sticks and also slides). At each joint the lesser of both counts; the value is the greatest of all joints"
+        "error of complementarity: force and motion at the same joint (a joint that is compressed and opens, or that sticks and "
+        "slides). The lesser of force and motion counts at each joint; the value is the greatest of all joints"
     )
     work_residual: float = fact(
-        "ratio of the error of the work (work of the load minus work of weight and friction) to the work of the load"
+        "error of the work balance (work of the load minus work of weight and friction), divided by the work of the load"
     )
 
 
@@ -163,8 +167,8 @@ class Tilt(KindResults):
         "tilt of the ground with the same effect as the collapse acceleration towards +x", "deg", source="thesis Eq. 3.1"
     )
     tilt_angle_opposite_deg: float = fact("tilt of the ground with the same effect as the collapse acceleration towards -x", "deg")
-    admissible_interval_g: list[float] = fact("range of accelerations at which an admissible thrust line exists", "g")
-    load_direction: Literal["+x"] = fact("direction of the load for which hinges and friction are given")
+    admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
+    load_direction: Literal["+x"] = fact("direction of the load (+x or -x) for which hinges and friction are given")
     hinges: list[Hinge] = fact("hinges of the mechanism")
     sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism")
     hinges_opposite: list[Hinge] = fact("hinges of the collapse mechanism towards -x")
@@ -174,45 +178,48 @@ class Tilt(KindResults):
     )
     dilating_joints_opposite: list[int] = maybe("joints in compression that slide in the collapse mechanism towards -x")
     collapse_acceleration_non_associated_g: float = maybe(
-        "collapse acceleration towards +x for sliding without dilatancy: the least certified state found. It is one "
-        "value of an interval whose upper end is the associated value",
+        "collapse acceleration towards +x for sliding without dilatancy: the lowest of the certified "
+        "states that were found. It is one value of an interval whose upper end is the associated value",
         "g",
         source="Ferris and Tin-Loi 2001",
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
     collapse_acceleration_load_path_g: float = maybe(
-        "design value of the collapse acceleration towards +x if joints slide: the least of the load paths of elastic "
-        "joints with three stiffness ratios",
+        "design value of the collapse acceleration towards +x, if joints slide: the lowest of the load "
+        "paths with elastic joints and three stiffness ratios",
         "g",
-        source="collapse acceleration of elastic-frictional joints without dilatancy (incremental return mapping); the "
-        "certificate is the same as in non_dilatant",
+        source="collapse acceleration with elastic-frictional joints without dilatancy (incremental return "
+        "mapping); the certificate is the same as in `non_dilatant`",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
     load_paths: list[LoadPath] = maybe("load paths towards +x, one for each ratio of joint stiffness")
     load_paths_opposite: list[LoadPath] = maybe("load paths to -x")
-    non_associated_reason: str = maybe("reason why no state without dilatancy is given in addition to the upper bound")
-    touching_joints: list[int] = fact("joints whose end is touched by the thrust line without a hinge")
+    non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
+    touching_joints: list[int] = fact("joints at one end of which the thrust line touches the edge, but no hinge forms")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires at collapse")
     required_friction_joint: int = fact("the joint that needs it")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor upright: 1 divided by the least central part of the joints that contains a thrust line, "
-        "at most 100; null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no "
-        "horizontal demand). The part is found within 0.001"
+        "geometric safety factor without tilt: 1 divided by the least central part of the joints that "
+        "contains a thrust line (found within 0.001), at most 100. Null if not requested, or if a "
+        "thrust line passes within 1 % of the middles of all joints (no horizontal demand)"
     )
-    weight_N: float = fact("weight of the structure, including its fill", "N")
+    weight_N: float = fact("weight of the structure, with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     reactions: list[Reaction] = fact("reactions of the ground at collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse")
-    ties_opposite: list[TieForce] = maybe("forces of the ties at collapse towards -x")
+    ties_opposite: list[TieForce] = maybe("forces of the ties at collapse under load towards -x")
     thrust_min_N: float = maybe(
-        "least horizontal thrust of the first arch at its left springing under vertical loads only; at the crown of an arch with ties", "N"
+        "minimum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "or, for an arch with ties, at its crown",
+        "N",
     )
     thrust_max_N: float = maybe(
-        "greatest horizontal thrust of the first arch at its left springing under vertical loads only; at the crown of an arch with ties",
+        "maximum horizontal thrust of the first arch under vertical loads only: at its left springing "
+        "or, for an arch with ties, at its crown",
         "N",
     )
     thrusts: dict[str, ChainThrust] = maybe(
-        "least and greatest horizontal thrust of each arch under vertical loads only, by the name of the arch"
+        "minimum and maximum horizontal thrust of each arch under vertical loads only, by the name of the arch"
     )
     clear_span_m: float = maybe("clear span", "m")
     rise_m: float = maybe("rise of the intrados", "m")
@@ -222,8 +229,8 @@ class Tilt(KindResults):
     nave_span_m: float = maybe("clear span of the nave", "m")
     left_aisle_span_m: float = maybe("clear span of the left aisle", "m")
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
-    duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
-    fracture: Fracture = maybe("results of collapse with the leeward buttress cracked")
+    duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
+    fracture: Fracture = maybe("collapse with the leeward buttress cracked")
     non_dilatant: NonDilatant = maybe("sliding without dilatancy, collapse towards +x: bounds and certificate")
     non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy, collapse towards -x: bounds and certificate")
 
@@ -287,14 +294,17 @@ class Tilt(KindResults):
 def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -> Verdict:
     """An upper bound by dilatant friction [g] against the peak of the motion; reason: why no lower state is known."""
     found = judge_acceleration(capacity, demand, "upper")
-    why = f" No state without dilatancy is given: {reason}." if reason else ""
+    why = f" Collapse without dilatancy is not given: {reason}." if reason else ""
     return found.model_copy(update={"statement": f"{found.statement} Joints slide, so the capacity is an {DILATANT}.{why}"})
 
 
 def judge_ductile(capacity: float, dry: float, demand: Demand) -> Verdict:
     """An upper bound by mortar that lasts until collapse [g], beside the capacity of dry joints [g], against the peak of the motion."""
     found = judge_acceleration(capacity, demand, "upper")
-    more = f"The joints keep cohesion and tension until collapse: {DUCTILE}. Without mortar the collapse acceleration is {dry:.3g} g."
+    more = (
+        f"The joints keep their cohesion and tensile strength until collapse: {DUCTILE}. Without mortar, "
+        f"the collapse acceleration is {dry:.3g} g."
+    )
     return found.model_copy(update={"statement": f"{found.statement} {more}"})
 
 
@@ -305,18 +315,22 @@ def judge_design(design: float, least: float | None, most: float, demand: Demand
     upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "no collapse mechanism exists with dilatant friction"
     lower = "no lower value was sought" if least is None else f"the lowest value found is {least:.3g} g"
     text = (
-        f"Joints slide. The design value of the collapse acceleration (horizontal, constant) is {design:.3g} g, the least "
-        f"of the load paths; {lower}; {upper}"
+        f"Joints slide. The design value of the collapse acceleration (horizontal, constant) is {design:.3g} "
+        f"g, the lowest of the load paths; {lower}; {upper}"
     )
     if peak is None:
         return judge(f"{text}. There is no comparison with a demand, because the deck does not give exactly one motion.", None, design, "g")
     outcome: Outcome = "collapses" if peak >= most else "open" if peak >= design else "stands"
-    place = {"collapses": "at or above the upper bound", "open": "between design value and upper bound", "stands": "below the design value"}
+    place = {
+        "collapses": "at or above the upper bound",
+        "open": "between the design value and the upper bound",
+        "stands": "below the design value",
+    }
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place[outcome]}."
     if outcome == "stands" and least is not None and peak >= least:
         text += (
-            " Warning: with another initial state of stress the structure can collapse at this peak. Past settlements or "
-            "past loads can cause such a state."
+            " Warning: the structure can collapse at this peak acceleration with another initial state of "
+            "stress, which past settlements or past loads can cause."
         )
     return judge(text, peak, design, "g", outcome)
 
@@ -338,7 +352,10 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
     elif peak >= least:
         outcome, place = "open", "between both"
     elif peak >= least - spread:
-        outcome, place = ("open", f"below the lowest value found, but by less than the scatter of the values found ({spread:.3g} g)")
+        outcome, place = (
+            "open",
+            (f"below the lowest value found, but the difference is less than the scatter of the values found ({spread:.3g} g)"),
+        )
     else:
         outcome, place = "stands", "below the lowest value found"
     text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a constant horizontal acceleration, is {place}."
@@ -348,18 +365,18 @@ def judge_interval(least: float, most: float, spread: float, demand: Demand) -> 
 class ThrustLine(ResultModel):
     """One admissible thrust line."""
 
-    horizontal_N: float = maybe("horizontal thrust at the left springing of an arch, or at the base of a stack", "N")
-    horizontal_kN_per_m: float = maybe("horizontal thrust per metre of depth", "kN/m")
+    horizontal_N: float = maybe("horizontal thrust at the left springing of an arch, or at the base of a column of blocks", "N")
+    horizontal_kN_per_m: float = maybe("horizontal thrust for each metre of depth", "kN/m")
     crown_N: float = maybe(
-        "horizontal thrust at the crown of an arch whose voussoirs have ties: the thrust at the left springing plus the "
-        "tie forces. The lines of least and greatest thrust then refer to the crown",
+        "horizontal thrust at the crown of an arch whose voussoirs have ties: the thrust at the left "
+        "springing plus the tie forces. The lines of minimum and maximum thrust then refer to the crown",
         "N",
     )
-    over_weight: float = maybe("ratio of the horizontal thrust to the weight of the structure")
+    over_weight: float = maybe("horizontal thrust, divided by the weight of the structure")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line requires")
     required_friction_joint: str = fact("the joint that needs it")
     greatest_eccentricity_ratio: float = fact(
-        "greatest ratio of the eccentricity (distance from the middle of the joint) to the length of the joint"
+        "greatest eccentricity (distance from the middle of the joint), divided by the length of the joint"
     )
     reactions: list[Reaction] = fact("forces of the ground")
     ties: list[TieForce] = maybe("forces of the ties")
@@ -373,23 +390,20 @@ class Thrust(KindResults):
     """thrust: admissible thrust lines at a given horizontal acceleration."""
 
     gamma_g: float = fact("acceleration towards +x for which the thrust lines are drawn", "g")
-    chain: str | None = fact("arch or stack whose least and greatest thrust are given; null without one")
-    admissible_interval_g: list[float] = fact("range of accelerations at which an admissible thrust line exists", "g")
+    chain: str | None = fact("arch or column of blocks whose minimum and maximum thrust are given; null if there is none")
+    admissible_interval_g: list[float] = fact("accelerations between which an admissible thrust line exists", "g")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line, at most "
-        "100; null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no horizontal "
-        "demand). The part is found within 0.001"
+        "geometric safety factor: 1 divided by the least central part of the joints that contains a thrust line (found within 0.001), "
+        "at most 100. Null if not requested, or if a thrust line passes within 1 % of the middles of all joints (no horizontal demand)"
     )
-    least_part_of_joints: float = maybe(
-        "least central part of the joints that contains a thrust line: the part that the most central line needs, found within 0.001"
-    )
-    weight_N: float = fact("weight of the structure, including its fill", "N")
+    least_part_of_joints: float = maybe("least central part of the joints that contains a thrust line (found within 0.001)")
+    weight_N: float = fact("weight of the structure, with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     dilating: bool = fact(
-        "whether joints in compression slide in the mechanisms at the ends of the admissible interval. These ends are "
-        "then upper bounds (dilatant friction), and an admissible line does not exclude sliding without dilatancy"
+        "whether joints in compression slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds "
+        "(dilatant friction), and an admissible line does not exclude sliding without dilatancy"
     )
-    duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
+    duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
     central: ThrustLine = maybe("most central thrust line; if it is missing, a warning gives the reason")
@@ -400,30 +414,28 @@ class Thrust(KindResults):
         if part is None:
             return judge("The most central thrust line was not found.", None, None)
         if self.geometric_safety_factor is None:
-            text = "a thrust line passes within 1 % of the joint length from the middles of all joints: no horizontal demand."
+            text = "a thrust line passes within 1 % of the joint length from the middle of each joint: there is no horizontal demand."
             return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0, "of the joint")
         text = f"a thrust line exists within the central {100.0 * part:.3g} % of the joints."
         return judge(f"At {self.gamma_g:g} g {text}", part, 1.0, "of the joint")
 
 
 #: Beside a verdict on a load whose partial factors are all 1
-CHARACTERISTIC = "All partial factors are 1.0: loads and strengths are characteristic, without the safety margin of a code."
+CHARACTERISTIC = "All partial factors are 1.0: loads and strengths are characteristic values, without the safety margin of a code."
 
 
 class MovingLoad(KindResults):
     """moving-load: collapse load, or adequacy factor of a train, at every place along an arch or a bridge."""
 
-    chain: str | None = fact("arch that the load crosses; null if the load crosses the whole top")
-    collapse_load_N: float = fact("least collapse load over all positions; for a train, the total load on the structure at collapse", "N")
-    collapse_load_kN_per_m: float = fact("least collapse load per metre of depth", "kN/m")
+    chain: str | None = fact("arch that the load crosses; null if the load crosses the top of the whole structure")
+    collapse_load_N: float = fact("lowest collapse load of all positions; for a train, the total load on the structure at collapse", "N")
+    collapse_load_kN_per_m: float = fact("lowest collapse load for each metre of depth", "kN/m")
     worst_place_m: float = fact(
-        "x of the first axle at the governing position (least collapse load); for a train without axles, x of the point from which "
-        "its uniform loads are measured",
+        "x of the first axle at the governing position (lowest collapse load); for a train without "
+        "axles, x of the origin of its uniform loads",
         "m",
     )
-    worst_place_over_span: float = fact(
-        "ratio of the distance between this point and the left springing, at the governing position, to the span"
-    )
+    worst_place_over_span: float = fact("distance from the left springing to the governing position, divided by the span")
     worst_way: Literal["+x", "-x"] = fact("direction of travel of the train at the governing position")
     hinges: list[NamedHinge] = fact("hinges of the collapse mechanism at the governing position")
     sliding_joints: list[int] = fact("joints that slide or open in the collapse mechanism at the governing position")
@@ -432,39 +444,38 @@ class MovingLoad(KindResults):
         "the analysis assumes dilatant (associated) friction"
     )
     greatest_compression_N: float = fact("greatest compression across a joint at collapse, with the load at the governing position", "N")
-    places_without_limit: int = fact("positions at which no load of this kind causes collapse")
+    places_without_limit: int = fact("positions at which a load of this kind never causes collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
     duality_gap: float = fact(
-        "greatest difference, over all positions, between the lower bound (equilibrium) and the upper bound (mechanism), "
-        "in multiples of the self-weight"
+        "greatest difference, over all positions, between the lower bound (from equilibrium) and the "
+        "upper bound (from a mechanism), in multiples of the self-weight"
     )
     load_N: float = maybe("load given in the deck", "N")
-    safety_factor: float = maybe("ratio of the collapse load to the load given in the deck")
-    train: str = maybe(
-        'name of the train; "load" if one total force is divided among the axles, "train" if the deck gives the load of each axle'
-    )
-    adequacy_factor: float = maybe("multiple of the factored train (or load) that causes collapse")
+    safety_factor: float = maybe("collapse load, divided by the load given in the deck")
+    train: str = maybe('name of the train. "load": one total force, divided among the axles; "train": the deck gives the load of each axle')
+    adequacy_factor: float = maybe("factor on the factored train (or load) at which the bridge collapses")
     live_load_factor: float = maybe(
-        "live-load factor: partial factor times dynamic factor, applied to the train before the adequacy factor"
+        "live-load factor (partial factor times dynamic factor), with which the train is multiplied "
+        "before the adequacy factor is calculated"
     )
     permissible_factor: float = maybe(
-        "permissible limit state: multiple of the train, with its serviceability and dynamic factors, up to which a "
-        "thrust line exists with stresses below the permissible stress and with the passive pressure of service"
+        "permissible limit state: greatest multiple of the train (with serviceability and dynamic factors) for which a thrust line "
+        "exists within the permissible stress and the passive pressure of service"
     )
     permissible_place_m: float = maybe("x of the first axle at the position with the least permissible factor", "m")
     permissible_stress_Pa: float = maybe("permissible compressive stress under service loads", "Pa")
     characteristic: bool = maybe("whether all partial factors are 1.0, so that loads and strengths are characteristic values")
-    violated: list[str] = maybe("assumptions on the load on a bridge that this structure does not satisfy")
+    violated: list[str] = maybe("assumptions of the bridge load that this structure does not satisfy")
 
     def judged(self, demand: Demand) -> Verdict:
         """The adequacy factor of the train against 1, or the load of the deck against the least collapse load [N]."""
         text = f"The collapse load is {three_figures(self.collapse_load_N / 1e3)} kN at the most dangerous position"
         bound: Bound | None = "upper" if self.dilating_joints else None
-        more = f" Joints slide, so the capacity is an {DILATANT}." if self.dilating_joints else ""
+        more = f" Joints slide, so the collapse load is an {DILATANT}." if self.dilating_joints else ""
         judged = f"{more} {CHARACTERISTIC}" if self.characteristic else more
         violated = list(self.violated or ())
         if self.permissible_factor is not None:
-            judged += f" Permissible limit state: {self.permissible_factor:.3g} times the train."
+            judged += f" Permissible limit state: satisfied up to {self.permissible_factor:.3g} times the train."
             if self.permissible_factor < 1.0:
                 violated.append(
                     f"The train exceeds the permissible limit state (factor {self.permissible_factor:.3g}): repeated traffic may "
@@ -473,7 +484,7 @@ class MovingLoad(KindResults):
         if self.load_N is None and self.adequacy_factor is not None:
             factored = "" if self.characteristic else "factored "
             return judge(
-                f"The adequacy factor is {self.adequacy_factor:.3g} on the {factored}train at the most dangerous position.{judged}",
+                f"The adequacy factor of the {factored}train is {self.adequacy_factor:.3g} at the most dangerous position.{judged}",
                 1.0,
                 self.adequacy_factor,
                 "times the train",
@@ -497,7 +508,7 @@ class MovingLoad(KindResults):
 class Stage(ResultModel):
     """A change of hinges while a support moves."""
 
-    movement_m: float = fact("movement of the support at which this stage begins", "m")
+    movement_m: float = fact("support movement at the start of this stage", "m")
     hinges: list[str] = fact("the three hinges")
 
 
@@ -506,7 +517,7 @@ class JointOpening(ResultModel):
 
     joint: int = fact("number of the joint")
     name: str = fact("its name")
-    opening_mm: float = fact("opening of the joint at its wider end", "mm")
+    opening_mm: float = fact("opening of the joint at the end that opens more", "mm")
     side: OpenSide = fact("end of the joint that opens more; for arches intrados or extrados")
     slip_mm: float = fact("how far it slides", "mm")
 
@@ -515,17 +526,19 @@ class MovingSupports(KindResults):
     """supports: openings under moving supports; of an arch, until it collapses."""
 
     movement_at_fall_m: float = maybe("support movement at which the arch collapses", "m")
-    movement_at_fall_over_span: float = maybe("ratio of the support movement at collapse to the span")
-    span_change_at_fall_ratio: float = maybe("ratio of the increase of the span at collapse to the span")
+    movement_at_fall_over_span: float = maybe("support movement at collapse, divided by the span")
+    span_change_at_fall_ratio: float = maybe("increase of the span at collapse, divided by the span")
     thrust_at_rest_N: float = maybe("horizontal thrust at the start", "N")
     thrust_at_fall_N: float = maybe("horizontal thrust at collapse", "N")
     hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start of the movement")
     hinges_at_fall: list[JointHinge] = maybe("the three hinges at collapse")
-    joints_touched_at_fall: list[int] = maybe("further joints, besides the hinges, whose end is touched by the thrust line at collapse")
+    joints_touched_at_fall: list[int] = maybe(
+        "joints, besides the hinges, at one end of which the thrust line touches the edge at collapse"
+    )
     stages: list[Stage] = maybe("stages of the movement: the start, and each change of hinges")
     openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]]; the widest comes first")
     work_J: float = maybe("work of the weight during the movements of [[initial.movements]]", "J")
-    work_gap_J: float = maybe("error of the energy: work of the weight minus work on the supports; zero in theory", "J")
+    work_gap_J: float = maybe("error of the energy balance: work of the weight minus work on the supports; zero in theory", "J")
     reactions: list[Reaction] = maybe("reactions of the ground under moving supports")
     ties: list[TieForce] = maybe("forces of the ties under moving supports")
 
@@ -534,11 +547,14 @@ class MovingSupports(KindResults):
         move = self.movement_at_fall_m
         if move is None:
             return judge(
-                "Under the given movements the structure stands, with open joints. No limit of the movement is calculated.", None, None, "m"
+                "The structure stands under the given movements, with open joints. The movement at which it collapses is not calculated.",
+                None,
+                None,
+                "m",
             )
         return judge(
             f"The arch follows the movement of its support up to {move:.3g} m ({100.0 * self.movement_at_fall_over_span:.3g} "
-            "% of the span). It then collapses.",
+            "% of the span), and then collapses.",
             None,
             move,
             "m",
@@ -557,11 +573,14 @@ class Change(ResultModel):
 
     value: float = fact("value of the varied key, in the unit of the key")
     before: int | Literal["locked"] = fact(
-        'number of the mechanism that governs below this value; 0: the structure cannot stand; "locked": no collapse mechanism exists',
+        "number of the mechanism that governs below this value of the key; 0: the structure cannot "
+        'stand; "locked": no collapse mechanism exists',
         name="from",
     )
     after: int | Literal["locked"] = fact(
-        'number of the mechanism that governs above this value; 0 and "locked" have the same meaning as in `before`', name="to"
+        "number of the mechanism that governs above this value of the key; 0: the structure cannot "
+        'stand; "locked": no collapse mechanism exists',
+        name="to",
     )
     collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
 
@@ -576,7 +595,7 @@ class Gap(ResultModel):
 
     value: float = fact("value of the varied key, in the unit of the key")
     status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked (no collapse mechanism), or no-answer (no result)")
-    reason: str = fact("reason; for a structure that cannot stand, the certificate")
+    reason: str = fact("reason for this outcome; for a structure that cannot stand, the certificate")
 
 
 class Sweep(KindResults):
@@ -585,13 +604,13 @@ class Sweep(KindResults):
     vary: str = fact("the key that varies")
     unit: str = fact("its unit")
     mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
-    changes: list[Change] = fact("values of the key at which the governing mechanism changes")
-    stable_limits: list[float] = fact("values of the key, in its unit, at the ends of the range in which the structure stands")
-    locked_limits: list[float] = fact("values of the key beyond which no load of this kind causes collapse")
+    changes: list[Change] = fact("values of the key at which another mechanism begins to govern")
+    stable_limits: list[float] = fact("least and greatest value of the key (in its unit) with which the structure stands")
+    locked_limits: list[float] = fact("values of the key beyond which a load of this kind never causes collapse")
     optimum_value: float = fact("value of the key with the greatest capacity, in the unit of the key")
     optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
     optimum_tilt_angle_deg: float = fact("tilt of the ground with the same effect as the greatest collapse acceleration", "deg")
-    optimum_inside: bool = fact("whether the optimum lies inside the range, not at one of its ends")
+    optimum_inside: bool = fact("whether the optimum lies inside the calculated range, and not at one of its ends")
     values: list[float] = fact("values of the varied key, in the unit of the key")
     collapse_accelerations_g: list[float | None] = fact(
         "collapse acceleration at each value of the key; 0 for a structure that cannot stand, null without a result", "g"
@@ -601,9 +620,11 @@ class Sweep(KindResults):
     )
     gaps: list[Gap] = fact("values of the key without a mechanism: the structure cannot stand, is locked, or has no result")
     duality_gap: float = fact("greatest difference between the bounds", "g")
-    fractured_collapse_accelerations_g: list[float | None] = maybe("collapse accelerations with the leeward buttress cracked", "g")
+    fractured_collapse_accelerations_g: list[float | None] = maybe(
+        "collapse acceleration at each value of the key, with the leeward buttress cracked", "g"
+    )
     buttress_alone_accelerations_g: list[float | None] = maybe(
-        "collapse accelerations of the leeward buttress alone", "g", source="thesis Fig. 3-4b"
+        "collapse acceleration of the leeward buttress alone, at each value of the key", "g", source="thesis Fig. 3-4b"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -613,7 +634,7 @@ class Sweep(KindResults):
         text = f"Among the calculated values, {self.vary} = {self.optimum_value:.4g}{unit} gives the greatest capacity, {best:.3g} g."
         if not self.upper_bound_values:
             return judge(text, None, best, "g")
-        text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide, so the capacity is an {DILATANT}."
+        text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide, so the capacity there is an {DILATANT}."
         return judge(text, None, best, "g", bound="upper")
 
 
@@ -631,9 +652,9 @@ class Survey(KindResults):
     sections: int = fact("sections in the table")
     standing: int = fact("sections that stand")
     cannot_stand: list[NoAnswerRow] = fact(
-        "sections that cannot carry their own weight, by a certificate; the first hundred are listed, and their capacity is 0"
+        "sections that cannot carry their own weight (proven by a certificate): capacity 0; only the first hundred are listed"
     )
-    without_answer: list[NoAnswerRow] = fact("sections without a result; the first hundred are listed")
+    without_answer: list[NoAnswerRow] = fact("sections without a result; only the first hundred are listed")
     upper_bounds: int = fact(
         "number of sections in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)"
     )
@@ -645,7 +666,7 @@ class Survey(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The capacity of the weakest section that stands [g]; a survey asks for no demand."""
-        text = f"{self.standing} of {self.sections} sections stand upright, {len(self.cannot_stand)} cannot stand"
+        text = f"{self.standing} of {self.sections} sections stand under their own weight, {len(self.cannot_stand)} cannot stand"
         if self.weakest is None:
             return judge(f"{text}.", None, None, "g")
         least = self.weakest_collapse_acceleration_g
@@ -653,7 +674,7 @@ class Survey(KindResults):
         if not self.upper_bounds:
             return judge(text, None, least, "g")
         return judge(
-            f"{text} In {self.upper_bounds} sections joints slide, and the capacity is an {DILATANT}.", None, least, "g", bound="upper"
+            f"{text} In {self.upper_bounds} sections joints slide; the capacity of these is an {DILATANT}.", None, least, "g", bound="upper"
         )
 
 
@@ -661,21 +682,17 @@ class Imperfections(KindResults):
     """imperfections: capacities of random geometries of the same stones, the lesser of the two senses of each."""
 
     count: int = fact("number of random geometries")
-    deviation_m: float = fact("greatest distance of each point of a random geometry from its position in the given geometry", "m")
-    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry that the deck gives", "g")
+    deviation_m: float = fact("greatest distance of a point of a random geometry from its position in the deck", "m")
+    given_collapse_acceleration_g: float = fact("collapse acceleration of the geometry in the deck", "g")
     median_collapse_acceleration_g: float = fact("median capacity", "g")
-    low_collapse_acceleration_g: float = fact(
-        "5th percentile of the capacity: lower end of the band that contains 90 % of the random geometries", "g"
-    )
-    high_collapse_acceleration_g: float = fact(
-        "95th percentile of the capacity: upper end of the band that contains 90 % of the random geometries", "g"
-    )
-    least_collapse_acceleration_g: float = fact("least capacity; 0 if a geometry cannot stand", "g")
+    low_collapse_acceleration_g: float = fact("5th percentile of the capacity of the random geometries: lower end of the 90 % band", "g")
+    high_collapse_acceleration_g: float = fact("95th percentile of the capacity of the random geometries: upper end of the 90 % band", "g")
+    least_collapse_acceleration_g: float = fact("least capacity of the random geometries; 0 if one of them cannot stand", "g")
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
     cannot_stand: int = fact(
-        "number of random geometries that cannot carry their own weight, by a certificate; they count with a capacity of 0 g"
+        "number of random geometries that cannot carry their own weight (proven by a certificate); they count with a capacity of 0 g"
     )
-    without_answer: int = fact("number of random geometries for which the linear programmes gave no result; they are not counted")
+    without_answer: int = fact("number of random geometries without a result (no solution of the linear programmes); they are not counted")
     upper_bounds: int = fact(
         "number of random geometries in whose mechanism joints in compression slide; their capacity is an upper bound (dilatant friction)"
     )

@@ -78,7 +78,7 @@ def manual(results: ResultFacts) -> str:
         "# Results reference",
         "",
         "Generated from the result models by `extrados explain --results`. Keys are those of `summary.json`;",
-        "`[]` denotes the rows of a list, `.NAME` for the entries of a table of names. From Python they read as",
+        ("`[]` denotes the rows of a list, and `.NAME` an entry of a table of names. From Python they read as"),
         '`run["tilt"].collapse_acceleration_g` or `run["tilt"]["collapse_acceleration_g"]`.',
         "",
         "## Every analysis",

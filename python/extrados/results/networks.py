@@ -19,38 +19,53 @@ class ThrustNetwork(KindResults):
     nodes: int = fact("nodes of the diagram")
     branches: int = fact("branches of the diagram")
     supports: int = fact("nodes on the ground")
-    least_thrust_N: float | None = fact("least sum of the outward thrusts of all supports; null if no network was found", "N")
-    least_thrust_bound_N: float | None = fact("lower bound of this sum for all networks on the diagram; null without one", "N")
-    greatest_thrust_N: float | None = fact(
-        "greatest sum of the outward thrusts of all supports; null if no network was found, or without a limit", "N"
+    least_thrust_N: float | None = fact("least sum of the outward thrusts at all supports; null if no network was found", "N")
+    least_thrust_bound_N: float | None = fact(
+        "lower bound of `least_thrust_N` for all networks on this form diagram; null without a bound", "N"
     )
-    greatest_thrust_bound_N: float | None = fact("upper bound of this sum for all networks on the diagram; null without a limit", "N")
-    central_thrust_N: float = fact("sum of the outward thrusts of all supports in the most central network", "N")
-    least_part_of_depth: float = fact("part of the vertical depth, about its middle, that holds the most central network found")
-    least_part_bound: float | None = fact("part of the depth that holds no network on the diagram; null without one")
+    greatest_thrust_N: float | None = fact(
+        "greatest sum of the outward thrusts at all supports; null if no network was found, or if the thrust has no limit", "N"
+    )
+    greatest_thrust_bound_N: float | None = fact(
+        "upper bound of `greatest_thrust_N` for all networks on this form diagram; null if the thrust has no limit", "N"
+    )
+    central_thrust_N: float = fact("sum of the outward thrusts at all supports in the most central network", "N")
+    least_part_of_depth: float = fact("least central part of the vertical depth within which a network was found")
+    least_part_bound: float | None = fact(
+        "central part of the vertical depth within which no network on this form diagram exists; null without a bound"
+    )
     vertical_safety_factor: float | None = fact(
-        "1 divided by the part of the vertical depth that the most central network needs; null without a demand. Where the surfaces are "
-        "steep, as near the springing of a dome, it exceeds the geometric safety factor, which refers to the thickness"
+        "1 divided by the part of the vertical depth that the most central network needs; null without a demand. Where surfaces are "
+        "steep (near the springing of a dome), it exceeds the geometric safety factor, which refers to the thickness"
     )
     load_direction_deg: float = fact("direction of the horizontal load in plan", "deg")
     horizontal_load_g: float | None = fact(
-        "greatest horizontal load, at the nodes, that a network found carries, divided by the weight; null if no network was found, or "
-        "without a limit. The collapse load can be less: at the centroids of the blocks the load has other moments",
+        "greatest horizontal load (at the nodes, divided by the weight) that a network carries; null if no network was found, or if the "
+        "load has no limit. With the load at the centroids of the blocks, the collapse load can be less",
         "g",
     )
-    horizontal_load_bound_g: float | None = fact("upper bound of this load for all networks on the diagram; null without a limit", "g")
+    horizontal_load_bound_g: float | None = fact(
+        "upper bound of `horizontal_load_g` for all networks on this form diagram; null if the load has no limit", "g"
+    )
     weight_N: float = fact("weight of the structure", "N")
-    equilibrium_residual: float = fact("ratio of the greatest unbalanced force at a node to the weight")
+    equilibrium_residual: float = fact("greatest unbalanced force at a node, divided by the weight")
     thickness_m: float = fact("median thickness of the blocks across the branches of the most central network", "m")
     central_outside_m: float = fact(
-        "greatest distance by which a branch that carries force leaves the blocks between its nodes, in the most central network", "m"
+        "greatest distance by which branches with a force leave the blocks between two nodes, in the most central network", "m"
     )
-    least_outside_m: float | None = fact("this distance in the network of least thrust; null without this network", "m")
-    greatest_outside_m: float | None = fact("this distance in the network of greatest thrust; null without this network", "m")
+    least_outside_m: float | None = fact(
+        "greatest distance by which branches leave the blocks, in the network of least thrust; null without this network", "m"
+    )
+    greatest_outside_m: float | None = fact(
+        "greatest distance by which branches leave the blocks, in the network of greatest thrust; null without this network", "m"
+    )
     horizontal_outside_m: float | None = fact(
-        "this distance in the network of the greatest horizontal load; null without this network", "m"
+        "greatest distance by which branches leave the blocks, in the network of the greatest horizontal load; null without this network",
+        "m",
     )
-    least_friction: float | None = fact("least coefficient of friction of the joints, which is not compared; null if sliding is excluded")
+    least_friction: float | None = fact(
+        "least coefficient of friction of the joints, for information only (sliding is not checked); null if sliding is excluded"
+    )
 
     def leaves(self, outside: float | None) -> bool:
         """Whether branches leave the blocks by a distance [m] that counts; None: no network."""
@@ -62,15 +77,18 @@ class ThrustNetwork(KindResults):
         part = self.least_part_of_depth
         if part > 1.0:
             return judge(
-                f"No network found on this diagram lies within the structure: it needs {part:.2f} times the depth.", outcome="open"
+                f"No network found on this form diagram lies within the structure: the best one needs {part:.2f} times the depth.",
+                outcome="open",
             )
         violated = []
         if self.least_friction is not None:
             violated.append(f"Sliding of the joints is not checked (coefficient of friction {self.least_friction:.3g}).")
         if self.leaves(self.central_outside_m):
-            violated.append(f"Between its nodes this network leaves the blocks by up to {1e3 * self.central_outside_m:.3g} mm.")
+            violated.append(
+                f"Between its nodes, the most central network leaves the blocks by up to {1000.0 * self.central_outside_m:.3g} mm."
+            )
         text = (
-            f"A network on this diagram stays within the middle {100.0 * part:.3g} % of the vertical depth. Where the "
-            "surfaces are steep, this is less than the part of the thickness."
+            f"A network on this form diagram stays within the middle {100.0 * part:.3g} % of the vertical depth. "
+            "Where surfaces are steep, the network needs a greater part of the thickness."
         )
         return judge(text, part, 1.0, violated=violated)

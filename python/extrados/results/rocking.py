@@ -39,23 +39,23 @@ class Conditions(ResultModel):
 
     friction: float | None = maybe("least coefficient of friction of the joints; null if sliding is excluded")
     required_friction: float | None = maybe(
-        "greatest coefficient of friction that the joints require during rocking; null if a joint is in tension"
+        "greatest coefficient of friction that a joint requires during rocking; null if a joint is in tension"
     )
-    slides_first: JointTime = maybe("for one run: location and time at which friction at a joint is first insufficient")
+    slides_first: JointTime = maybe("for one run: joint and time at which friction first becomes insufficient")
     leaves_first: JointTime = maybe(
-        "for one run: location and time at which the thrust line first passes outside a joint by more than 1 % of its length"
+        "for one run: joint and time at which the thrust line is first outside a joint by more than 1 % of its length"
     )
     thrust_line_outside: float | None = maybe(
-        "for one run: greatest ratio of the distance of the thrust line beyond the end of a joint to the length of the "
-        "joint; negative if the line stays inside; null if a joint is in tension"
+        "for one run: greatest distance of the thrust line beyond the end of a joint, divided by the "
+        "length of the joint; negative if the line stays inside; null if a joint is in tension"
     )
     sliding: int = maybe("for many runs: number of runs in which blocks slide")
     sliding_share: float = maybe("for many runs: share of the runs in which blocks slide")
-    hinges_elsewhere: int = maybe("for many runs: number of runs in which hinges form at other joints")
-    hinges_elsewhere_share: float = maybe("for many runs: share of the runs in which hinges form at other joints")
+    hinges_elsewhere: int = maybe("for many runs: number of runs in which hinges form outside the rocking mechanism")
+    hinges_elsewhere_share: float = maybe("for many runs: share of the runs in which hinges form outside the rocking mechanism")
     energy_astray: float = maybe(
-        "after a plastic impact at all joints: share of the kinetic energy that does not belong to the mechanism of the "
-        "subsequent rocking; if it exceeds 0.2, hinges form at other joints at impacts",
+        "after a plastic impact at all joints: share of the kinetic energy that does not belong to the mechanism in which rocking "
+        "continues. If this share exceeds 0.2, impacts cause hinges outside the mechanism",
         source="Moreau 1988",
     )
     not_checked: str = fact("conditions that are not checked, with the reason; empty if all are checked")
@@ -65,10 +65,10 @@ class Conditions(ResultModel):
 class RuleOutcome(ResultModel):
     """What the motion does under an impact rule."""
 
-    rule: str = fact("impact rule: a word of [joints] restitution, or a number used by discrete elements")
+    rule: str = fact("impact rule: a value of [joints] `restitution`, or a number found with discrete elements")
     restitution: float = fact(
-        "coefficient of restitution (angular velocity after / before impact), limited to 0 to 1; for a mechanism, at the "
-        "impact that starts rocking towards +x"
+        "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
+        "to 1; for a mechanism, at the impact that starts rocking towards +x"
     )
     outcome: WholeOutcome = fact("outcome: no rocking, sliding alone, rocking and recovery, or collapse")
 
@@ -79,18 +79,20 @@ class RestraintForces(ResultModel):
     name: str = fact("as the deck calls it")
     least_force_N: float = maybe("least force of a tie or damper; tension is positive", "N")
     greatest_force_N: float = maybe("greatest force of a tie or damper; tension is positive", "N")
-    permanent_elongation_m: float = maybe("permanent elongation of a tie or damper at the end, by yield or slip", "m")
+    permanent_elongation_m: float = maybe("permanent elongation of a tie or damper at the end of the run, by yield or slip", "m")
     least_moment_Nm: float = maybe(
         "least moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint", "N*m"
     )
-    greatest_moment_Nm: float = maybe("greatest moment of an added hinge", "N*m")
-    permanent_turn_rad: float = maybe("permanent rotation of an added hinge at the end, by yield", "rad")
+    greatest_moment_Nm: float = maybe(
+        "greatest moment of an added hinge; positive for counter-clockwise rotation of the first of the two blocks at the joint", "N*m"
+    )
+    permanent_turn_rad: float = maybe("permanent rotation of an added hinge at the end of the run, by yield", "rad")
 
 
 class ModeShare(ResultModel):
     """How long two stacked blocks rock in a mode."""
 
-    mode: str = fact("mode: which contacts are open, and to which side", source="Psycharis 1990")
+    mode: str = fact("mode: contacts that are open, and the side to which they open", source="Psycharis 1990")
     share: float = fact("share of the rocking time")
 
 
@@ -99,7 +101,7 @@ class StackRocking(ResultModel):
 
     peak_rotation_upper_rad: float = fact("greatest rotation of the upper block; positive towards +x", "rad")
     critical_rotation_upper_rad: float = fact("slenderness angle of the upper block alone", "rad")
-    uplift_as_one_g: float = fact("horizontal acceleration at which both blocks together begin to rock, as one body", "g")
+    uplift_as_one_g: float = fact("horizontal acceleration at which both blocks begin to rock together, as one body", "g")
     uplift_upper_g: float = fact("horizontal acceleration at which the upper block begins to rock alone", "g")
     impacts_on_ground: int = fact("impacts on the ground")
     impacts_between: int = fact("impacts at the joint between")
@@ -110,35 +112,35 @@ class SoftBaseRocking(ResultModel):
     """What a block on a compliant base has besides its rotation."""
 
     foundation: Literal["winkler", "two-spring"] = fact(
-        "model of the base. winkler: springs along the whole base; two-spring: springs under its two edges"
+        "model of the base. winkler: springs along the whole base; two-spring: springs at its two edges"
     )
-    rocking_period_s: float = fact("natural period of small rocking with the whole base in contact, undamped", "s")
-    vertical_period_s: float = fact("natural period of the vertical vibration, undamped", "s")
+    rocking_period_s: float = fact("natural period of small rocking vibrations with the whole base in contact, without damping", "s")
+    vertical_period_s: float = fact("natural period of the vertical vibration, without damping", "s")
     sinking_at_rest_m: float = fact("settlement of the base under self-weight, below the centre of mass", "m")
     lift_rotation_rad: float = fact("rotation at which an edge lifts off under static load", "rad")
-    capacity_g: float = fact("collapse acceleration (horizontal, constant), with part of the base lifted", "g")
+    capacity_g: float = fact("collapse acceleration (horizontal, constant), at which part of the base is lifted", "g")
     peak_sinking_m: float = fact("greatest settlement; of either sign", "m")
-    greatest_pressure_Pa: float = maybe("for a Winkler base: greatest pressure at an edge", "Pa")
-    greatest_edge_force_N: float = maybe("for springs under the edges: greatest force of a spring", "N")
+    greatest_pressure_Pa: float = maybe("for a Winkler base: greatest pressure, at an edge", "Pa")
+    greatest_edge_force_N: float = maybe("for springs at the edges: greatest force of a spring", "N")
     lifted_share: float = fact("share of the time during which part of the base is lifted")
     free_share: float = fact("share of the time during which the whole base is lifted")
     energy_taken_up_J: float = fact("energy dissipated by the dashpots of the base", "J")
-    rigid_outcome: RockingOutcome | None = fact("outcome on a rigid base with Housner's impact rule; null without a result")
-    rigid_peak_rotation_rad: float | None = fact("greatest rotation on a rigid base; null without a result", "rad")
+    rigid_outcome: RockingOutcome | None = fact("outcome on a rigid base with Housner's impact rule, for comparison; null without a result")
+    rigid_peak_rotation_rad: float | None = fact("greatest rotation on a rigid base, for comparison; null without a result", "rad")
 
 
 class HandOver(ResultModel):
     """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
 
     time_s: float = fact(
-        "time of the transfer to rigid contacts, just before a condition is violated; positions and velocities of the "
-        "blocks are then transferred",
+        "time at which the run with rigid contacts takes over, just before a condition is violated; it "
+        "starts from the positions and velocities of the blocks at this time",
         "s",
     )
     reason: str = fact("condition that fails, and where")
     outcome: WholeOutcome = fact("outcome of the whole motion")
     fixed_hinges_outcome: RockingOutcome = fact("outcome that the analysis with fixed hinges and without sliding would give")
-    contacts: DemRun = fact("run of the blocks with rigid contacts; its times are the times of the motion", source="Moreau 1988")
+    contacts: DemRun = fact("run of the blocks with rigid contacts; its times are those of the motion", source="Moreau 1988")
 
 
 class Rocking(KindResults):
@@ -146,23 +148,26 @@ class Rocking(KindResults):
 
     rotation_of: str = fact("body whose rotation is given")
     outcome: WholeOutcome = fact(
-        "outcome: no rocking, sliding only, rocking and recovery, or collapse; by rigid contacts, if these continued the run"
+        "outcome: no rocking, sliding only, rocking and recovery, or collapse. If the run was continued "
+        "with rigid contacts, the outcome is theirs"
     )
     settled: bool = fact("whether the structure came to rest, or collapsed, before the run ended; if false, the outcome is open")
     collapse_half_cycle: int | None = fact("half cycle of the collapse")
-    collapse_time_s: float | None = fact("time after which the rotation can no longer recover", "s")
+    collapse_time_s: float | None = fact("time after which the structure can no longer recover", "s")
     half_cycles: int = fact("half cycles of rocking")
     impacts: int = fact("number of impacts")
     impact_times_s: list[float] = fact("when they happen", "s")
     peak_rotation_rad: float = fact("greatest rotation, positive to +x", "rad")
-    peak_rotation_ratio: float = fact("ratio of the greatest rotation to the critical rotation, beyond which gravity causes collapse")
+    peak_rotation_ratio: float = fact("greatest rotation, divided by the critical rotation (beyond it, gravity causes collapse)")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     energy_taken_up_J: float = maybe("energy dissipated by dampers and yielding restraints", "J")
     restraints: list[RestraintForces] = maybe("restraints besides self-weight")
-    rebound: float = maybe("rocking against a wall: angular velocity after / before the rebound, as given or by three impacts")
-    energy_residual_ratio: float = fact("ratio of the greatest error of the energy balance to the energy in motion")
+    rebound: float = maybe(
+        "rocking against a wall: ratio of angular velocity after / before the rebound, from the deck or from three impacts"
+    )
+    energy_residual_ratio: float = fact("greatest error of the energy balance, divided by the energy in motion")
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("rejected steps")
     restitution: float | None = fact(
@@ -172,37 +177,37 @@ class Rocking(KindResults):
     restitution_to_left: float = maybe(
         "for a block or a mechanism: coefficient of restitution at the impact that starts rocking towards -x"
     )
-    energy_ratio: float = maybe("for a block: kinetic energy after / before an impact", source="thesis Eq. 6.2")
-    critical_rotation_rad: float = fact("critical rotation towards +x: beyond it, the self-weight overturns the structure", "rad")
+    energy_ratio: float = maybe("for a block: ratio of kinetic energy after / before an impact", source="thesis Eq. 6.2")
+    critical_rotation_rad: float = fact("critical rotation towards +x, beyond which gravity overturns the structure", "rad")
     critical_rotation_left_rad: float = maybe("for a block or a mechanism: critical rotation towards -x", "rad")
     frequency_parameter_rad_s: float = maybe("for a block or a frame: frequency parameter p", "rad/s", source="Housner 1963")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    required_friction: float | None = fact("greatest coefficient of friction that the joints require; null if a joint is in tension")
-    hinges: list[RockingHinge] = maybe("for a mechanism: hinges of the rocking towards +x")
-    hinges_opposite: list[RockingHinge] = maybe("for a mechanism: hinges of the rocking towards -x")
+    required_friction: float | None = fact("greatest coefficient of friction that a joint requires; null if a joint is in tension")
+    hinges: list[RockingHinge] = maybe("for a mechanism: its hinges when it rocks towards +x")
+    hinges_opposite: list[RockingHinge] = maybe("for a mechanism: its hinges when it rocks towards -x")
     restitution_thesis: float = maybe(
-        "for an arch: coefficient of restitution by the momentum balance of the thesis", source="thesis Eq. 5.3"
+        'for an arch: coefficient of restitution by the impact rule "thesis" (momentum balance)', source="thesis Eq. 5.3"
     )
     restitution_energy_safe: float = maybe("for an arch: coefficient of restitution by the energy-safe projection")
     restitution_inelastic: float = maybe("for an arch: coefficient of restitution by a plastic impact at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe(
-        "outcome under each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3. If "
-        "the plastic impact is unsafe, also with the energy that discrete elements keep"
+        "outcome by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3. If "
+        "a plastic impact is unsafe, an outcome with the energy that discrete elements keep is added"
     )
     decided_by_last_digits: bool = fact(
-        "whether the response is chaotic: a perturbation of the motion by 1e-6 grows by a factor of more than 1e4, or a "
-        "perturbation of 1e-6 to 1e-4 changes the outcome"
+        "whether the response is chaotic: a perturbation of the motion by 1e-6 grows by a factor of more "
+        "than 1e4, or a perturbation between 1e-6 and 1e-4 changes the outcome"
     )
     perturbation_growth: float = fact(
-        "growth of a perturbation if the motion is scaled by 1 + 1e-6 or 1 - 1e-6: ratio of the greatest difference of "
-        "the rotations to the critical rotation, divided by 1e-6"
+        "growth of a perturbation, if the motion is scaled by 1 + 1e-6 or 1 - 1e-6: greatest difference "
+        "of the rotations, divided by 1e-6 and by the critical rotation"
     )
-    conditions: Conditions = maybe("check of the conditions: whether joints slide or hinges form at other joints")
+    conditions: Conditions = maybe("check of the assumptions: whether joints slide, or hinges form outside the rocking mechanism")
     hand_over: HandOver = maybe(
-        "only if joints slide or hinges form at other joints: the rest of the motion, calculated with rigid contacts. "
-        "All other results of the mechanism end at this time"
+        "given if joints slide or hinges form outside the rocking mechanism: rest of the motion, "
+        "calculated with rigid contacts. All other results of the mechanism end at `hand_over.time_s`"
     )
-    violated: list[str] = fact("further violated assumptions that were checked, one sentence each: chaotic response, impact rules")
+    violated: list[str] = fact("other violated assumptions, one sentence each (chaotic response, impact rules)")
     stack: StackRocking = maybe("of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("results of a compliant base ([supports] stiffness)")
     thrust_line_residual_m: float = maybe("for an arch: greatest error of closure of the thrust line", "m")
@@ -216,7 +221,9 @@ class Rocking(KindResults):
         outcome: Outcome = "collapses" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
             "collapses": "Collapse under the motion",
-            "stands": f"No collapse under the motion. The greatest rotation is {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation",
+            "stands": (
+                f"No collapse under the motion. The greatest rotation is {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation"
+            ),
             "open": "The run ended before the structure came to rest",
         }[outcome]
         broken = [] if self.conditions is None else self.conditions.violated
@@ -228,10 +235,10 @@ class ModeCurve(ResultModel):
 
     durations_s: list[float] = fact("durations, or periods, of the pulses", "s")
     amplitudes_g: list[float | None] = fact(
-        "lowest amplitude that causes collapse, at each duration; null if it exceeds the cap of the deck", "g"
+        "lowest amplitude that causes collapse, at each duration; null if it exceeds `max_amplitude`", "g"
     )
     amplitude_ratios: list[float | None] = maybe(
-        "for a block: ratios of the lowest amplitudes that cause collapse to the uplift acceleration on a rigid base"
+        "for a block: lowest amplitude that causes collapse, divided by the uplift acceleration on a rigid base"
     )
 
 
@@ -252,11 +259,11 @@ class RuleCurve(ResultModel):
 
     rule: str = fact("word of [joints] restitution")
     restitution: float = fact(
-        "coefficient of restitution (angular velocity after / before impact), limited to 0 to 1; for a mechanism, at the "
-        "impact that starts rocking towards +x"
+        "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
+        "to 1; for a mechanism, at the impact that starts rocking towards +x"
     )
     amplitudes_g: list[float | None] = fact(
-        "lowest amplitude that causes collapse, at each duration; null if it exceeds the cap of the deck", "g"
+        "lowest amplitude that causes collapse, at each duration; null if it exceeds `max_amplitude`", "g"
     )
 
 
@@ -267,38 +274,40 @@ class FailureDomain(KindResults):
         "lowest amplitude of the map at which blocks slide, at each duration; null if they slide at no amplitude", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        "lowest amplitude of the map at which hinges form at other joints, at each duration; null if this occurs at no amplitude", "g"
+        "lowest amplitude of the map at which hinges form outside the rocking mechanism, at each "
+        "duration; null if this occurs at no amplitude",
+        "g",
     )
-    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all pulses of the map")
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all pulses of the map")
     handed_over: int = maybe(
-        "number of pulses of the map that were decided with rigid contacts, because joints slide or hinges form at other "
-        "joints; the failure curve is accurate to one cell of the map there"
+        "number of pulses of the map that were continued with rigid contacts, because joints slide or hinges form outside the rocking "
+        "mechanism; there, the failure curve is accurate to one cell of the map"
     )
     amplitudes_by_rule: list[RuleCurve] = maybe(
-        "failure curve by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
+        "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
     )
     rule_ratio: float | None = maybe(
-        "greatest ratio, over all durations, of the failure amplitudes by two impact rules at the same duration; null if "
-        "no duration has failure amplitudes by two rules"
+        "greatest ratio of the failure amplitudes by two impact rules at the same duration; null if no "
+        "duration has failure amplitudes by two rules"
     )
     pulse: Pulse = fact("shape of the pulses")
-    mode_I: ModeCurve = fact("lowest amplitudes that cause collapse, with or without an impact")
-    mode_II: ModeCurve = fact("lowest amplitudes that cause collapse in the first half cycle, without an impact")
+    mode_I: ModeCurve = fact("lowest amplitude that causes collapse, with or without an impact, at each duration")
+    mode_II: ModeCurve = fact("lowest amplitude that causes collapse in the first half cycle (without an impact), at each duration")
     pocket_begins_g: list[float | None] = fact(
         "amplitude at which the first safe region above the failure curve begins; null if there is no such region", "g"
     )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     natural_time_s: float = fact("time by which the durations are scaled: sqrt(R/g) for an arch, 1/p for a block", "s")
-    safe_pockets: int = fact("number of durations at which some amplitude above the lowest one that causes collapse is safe again")
+    safe_pockets: int = fact("number of durations at which an amplitude above the lowest one that causes collapse is safe again")
     at_amplitudes: AtAmplitudes = maybe(
-        "shortest durations that cause collapse, at the amplitudes given in the deck, for fixed hinges without sliding"
+        "shortest durations that cause collapse at the amplitudes given in the deck; calculated with fixed hinges and without sliding"
     )
     frequency_ratio: list[float] = maybe("for a block: frequency ratio omega/p of the pulses")
     pocket_begins_ratio: list[float | None] = maybe(
-        "for a block: ratio of the amplitude at which the first safe region begins to the uplift acceleration on a rigid base"
+        "for a block: amplitude at which the first safe region begins, divided by the uplift acceleration on a rigid base"
     )
-    mode_names: str = maybe("for a block: names of the two modes in the literature")
+    mode_names: str = maybe("for a block: names of modes I and II in the literature")
 
     def _violated(self, duration: float, amplitude: float) -> list[str]:
         """What does not hold of the assumptions for a pulse [s, g]: conditions at the neighbouring durations of the map, and impact
@@ -308,10 +317,12 @@ class FailureDomain(KindResults):
         slides = least_beside(places, self.sliding_from_g, duration)
         decided = self.handed_over is not None and not self.conditions.violated  # rigid contacts decided all of these
         if slides is not None and amplitude >= slides and not decided:
-            found.append(f"Blocks slide from {slides:.3g} g upwards at this duration. Use dem, or check the friction.")
+            found.append(f"At this duration, blocks slide from an amplitude of {slides:.3g} g upwards. Use dem, or check the friction.")
         elsewhere = least_beside(places, self.hinges_elsewhere_from_g, duration)
         if elsewhere is not None and amplitude >= elsewhere and not decided:
-            found.append(f"Hinges form at other joints from {elsewhere:.3g} g upwards at this duration. Use dem.")
+            found.append(
+                f"At this duration, hinges form outside the rocking mechanism from an amplitude of {elsewhere:.3g} g upwards. Use dem."
+            )
         curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
         fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
         if len(set(fails.values())) > 1:
@@ -329,7 +340,8 @@ class FailureDomain(KindResults):
             if capacity is not None:
                 word = "stays below" if amplitude < capacity else "reaches"
                 return judge(
-                    f"The motion ({amplitude:.3g} g for {duration:.3g} s) {word} the failure curve ({capacity:.3g} g there).",
+                    f"The motion ({amplitude:.3g} g for {duration:.3g} s) {word} the failure curve, which gives {capacity:.3g} g "
+                    "at this duration.",
                     amplitude,
                     capacity,
                     "g",
@@ -365,8 +377,8 @@ class CurveFit(ResultModel):
     t_min_s: float = fact("period T_min below which no sine causes collapse", "s")
     gamma_g: float = fact("asymptote of the curve: acceleration at which rocking starts", "g")
     greatest_misfit: float | None = fact(
-        "greatest relative difference between fitted and calculated amplitude, between 1.03 and 2.3 times gamma; null if "
-        "no point lies in this range"
+        "greatest relative difference between fitted and calculated amplitude, for amplitudes from 1.03 "
+        "to 2.3 times gamma; null if no point lies in this range"
     )
 
 
@@ -375,37 +387,38 @@ class FailureCurve(ResultModel):
 
     label: str = fact("difference from the other curves")
     durations_s: list[float] = fact("durations, or periods, of the pulses", "s")
-    amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null if it exceeds the cap of the deck", "g")
+    amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null if it exceeds `max_amplitude`", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     natural_time_s: float = fact("time by which the durations are scaled: sqrt(R/g) for an arch, 1/p for a block", "s")
     cycles: int = fact("number of cycles of a train of sines; 1 for all other pulses")
     static_verdicts: list[Literal["stands", "fails"]] = fact(
-        "for each motion: comparison of its peak acceleration with the uplift acceleration"
+        "for each motion: its peak acceleration, compared with the uplift acceleration"
     )
     curve_verdicts: list[Literal["stands", "fails"] | None] = fact(
-        "for each motion: comparison of its primary impulse with the failure curve; null if the period of the impulse "
-        "lies outside the curve"
+        "for each motion: its primary impulse, compared with the failure curve; null if the period of the impulse is outside the curve"
     )
     run_outcomes: list[RockingOutcome | None] = fact("for each motion: outcome of the whole motion; null without a result")
     sliding_from_g: list[float | None] = fact(
-        "lowest amplitude, tried up to the failure curve, at which blocks slide, at each duration; null if they slide at none", "g"
+        "lowest tried amplitude (up to the failure curve) at which blocks slide, at each duration; null if they slide at none", "g"
     )
     hinges_elsewhere_from_g: list[float | None] = fact(
-        "lowest amplitude, tried up to the failure curve, at which hinges form at other joints, at each duration; null "
-        "if this occurs at none",
+        "lowest tried amplitude (up to the failure curve) at which hinges form outside the rocking "
+        "mechanism, at each duration; null if this occurs at none",
         "g",
     )
-    conditions: Conditions = fact("number of points of the curve below which blocks slide or hinges form at other joints")
+    conditions: Conditions = fact("number of points of the curve below which blocks slide, or hinges form outside the rocking mechanism")
     amplitudes_by_rule: list[RuleCurve] = maybe(
-        "failure curve by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
+        "failure curve by each impact rule, given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
     )
     rule_ratio: float | None = maybe(
-        "greatest ratio, over all durations, of the failure amplitudes by two impact rules at the same duration; null if "
-        "no duration has failure amplitudes by two rules"
+        "greatest ratio of the failure amplitudes by two impact rules at the same duration; null if no "
+        "duration has failure amplitudes by two rules"
     )
-    fit: CurveFit = maybe("Eq. 5.5 fitted to this curve (radius not scaled); not given for fewer than four points")
-    criterion: CurveFit = maybe("Eq. 5.8 with interpolated coefficients of Table 5.3; not given outside the range of the table")
+    fit: CurveFit = maybe("Eq. 5.5 of the thesis fitted to this curve (not scaled by the radius); not given for fewer than four points")
+    criterion: CurveFit = maybe(
+        "Eq. 5.8 of the thesis with interpolated coefficients of its Table 5.3; not given outside the range of the table"
+    )
 
 
 class FailureCurves(KindResults):
@@ -415,11 +428,11 @@ class FailureCurves(KindResults):
     curves: list[FailureCurve] = fact("failure curves, one for each variant and number of cycles")
     impulses: list[MotionImpulse] = fact("primary impulses of the motions in the deck; empty without a motion")
     agreement: float | None = fact(
-        "share of the verdicts by the curves that agree with the run of the whole motion; null without a comparison"
+        "share of the verdicts by the curves that agree with the run under the whole motion; null without a comparison"
     )
     scaling_misfit: float | None = fact(
-        "greatest relative difference of amplitude between two curves, if durations are divided by the natural time and "
-        "amplitudes by the uplift acceleration; null with one curve, or with curves for different trains",
+        "greatest relative difference of amplitude between two curves, with durations divided by the natural time and amplitudes by the "
+        "uplift acceleration; null with one curve, or with curves for different trains",
         source="thesis Eq. 5.7",
     )
 
@@ -428,7 +441,7 @@ class FailureCurves(KindResults):
         lowest = [(min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])]
         if not lowest:
             every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
-            return judge("None of the calculated pulses causes collapse of any variant.", None, None, "g", violated=every)
+            return judge("None of the calculated pulses causes collapse of a variant.", None, None, "g", violated=every)
         least, label = min(lowest)
         violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(
@@ -446,7 +459,7 @@ class Coefficients(ResultModel):
     C1: float = fact("factor C1", source="thesis Eq. 5.8")
     C2: float = fact("exponent C2", source="thesis Eq. 5.8")
     T_min_s: float = fact("period below which no sine causes collapse, for R = 1 m", "s", source="thesis Eq. 5.8")
-    gamma: float = fact("asymptote: amplitude in g at which long impulses cause collapse", source="thesis Eq. 5.8")
+    gamma: float = fact("asymptote: amplitude (in g) at which long impulses cause collapse", source="thesis Eq. 5.8")
 
 
 class PrimaryImpulse(ResultModel):
@@ -464,15 +477,15 @@ class AssessedImpulse(PrimaryImpulse):
     """An impulse of the motion against the failure curve."""
 
     rank: int = fact("1 for the primary impulse")
-    explained: float = fact("share of the integral of the squared acceleration of the whole motion that this impulse explains")
+    explained: float = fact("share of the integral of the squared acceleration of the motion that this impulse explains")
     failing_amplitude_g: float | None = fact(
         "amplitude that causes collapse at the period of the impulse; null if the period is too short to cause collapse", "g"
     )
-    failing_amplitude_own_g: float | None = fact("amplitude that causes collapse, by the curve fitted to this structure", "g")
+    failing_amplitude_own_g: float | None = fact("amplitude that causes collapse, from the curve fitted to this structure", "g")
     margin: float | None = fact(
-        "safety factor: failure amplitude divided by the amplitude of the impulse; null if its period is too short to cause collapse"
+        "safety factor: failure amplitude divided by the amplitude of the impulse; null if the period is too short to cause collapse"
     )
-    verdict: Literal["stands", "fails"] = fact("whether the impulse causes collapse by the criterion")
+    verdict: Literal["stands", "fails"] = fact("whether the impulse causes collapse according to the failure curve")
 
 
 class Assessment(KindResults):
@@ -480,25 +493,27 @@ class Assessment(KindResults):
 
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
-    static_verdict: Literal["stands", "fails"] = fact("outcome of the peak acceleration applied as a constant horizontal acceleration")
-    coefficients: Coefficients = fact("coefficients of the failure curve that is used")
+    static_verdict: Literal["stands", "fails"] = fact("outcome if the peak acceleration acts as a constant horizontal acceleration")
+    coefficients: Coefficients = fact("coefficients of the failure curve with which the impulses are compared")
     coefficients_source: str = fact("source of the impulse")
     coefficients_of_this_arch: Coefficients = fact("coefficients of the failure curve fitted to this structure")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    impulses: list[AssessedImpulse] = fact("strongest impulses of the motion, and their comparison with the failure curve")
-    verdict: Literal["stands", "fails"] = fact("whether an impulse of the motion causes collapse by the criterion")
-    run_outcome: RockingOutcome | None = fact("outcome of the whole motion by the equation of motion")
-    margin: float | None = fact("least ratio of failure amplitude to amplitude of an impulse; null if no impulse can cause collapse")
-    conditions: Conditions = fact("whether blocks slide or hinges form at other joints under the whole motion")
+    impulses: list[AssessedImpulse] = fact("strongest impulses of the motion, each compared with the failure curve")
+    verdict: Literal["stands", "fails"] = fact("whether an impulse of the motion causes collapse according to the failure curve")
+    run_outcome: RockingOutcome | None = fact("outcome under the whole motion, from the equation of motion")
+    margin: float | None = fact(
+        "lowest safety factor of all impulses (failure amplitude divided by amplitude); null if no impulse can cause collapse"
+    )
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, under the whole motion")
     margins_by_rule: dict[str, float | None] = maybe(
-        "safety factor by each impact rule, from a curve fitted with that rule, if the coefficients c_v of the rules "
+        "safety factor by each impact rule (each with its own fitted curve), given if the coefficients of restitution c_v of the rules "
         "differ by a factor of more than 1.3; null if no impulse can cause collapse"
     )
     margin_conditions: list[str] = fact(
-        "assumptions that are satisfied under the motion and violated under the motion times the safety factor, one "
-        "sentence each; the safety factor then holds only under these assumptions"
+        "assumptions, one sentence each, that hold under the motion but not under the motion times the "
+        "safety factor; the safety factor is valid only under these assumptions"
     )
-    violated: list[str] = fact("further violated assumptions that were checked, one sentence each")
+    violated: list[str] = fact("other violated assumptions, one sentence each")
     primary_impulse: PrimaryImpulse | None = fact("strongest impulse of the motion; null if the motion has none")
 
     def judged(self, demand: Demand) -> Verdict:

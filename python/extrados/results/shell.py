@@ -16,8 +16,8 @@ class WallShare(ResultModel):
     shear_N: float = fact("in-plane shear force of the wall, along the load", "N")
     share: float = fact("part of the base shear")
     normal_N: float = fact("compression is negative", "N")
-    normal_change_N: float = fact("change of the normal force relative to the constant loads; uplift is positive", "N")
-    elastic_share: float = fact("share of the wall in the base shear before cracking")
+    normal_change_N: float = fact("change of the normal force from that under the constant loads; uplift is positive", "N")
+    elastic_share: float = fact("share of the base shear that the wall carries before cracking")
     drifts: list[float | None] = fact("drift of each storey; null for a storey that the wall does not have")
 
 
@@ -36,28 +36,28 @@ class JointMotion(ResultModel):
     """How far a joint between walls, or a bed joint in a wall, has come apart."""
 
     joint: str = fact("its name")
-    wall: str = fact("wall that contains the joint, or that abuts at the joint")
-    opening_m: float = fact("greatest opening along the joint at the greatest load", "m")
-    slip_m: float = fact("greatest sliding along the joint at the greatest load", "m")
-    last_opening_m: float = fact("greatest opening along the joint in the last equilibrium state", "m")
-    last_slip_m: float = fact("greatest sliding along the joint in the last equilibrium state", "m")
+    wall: str = fact("wall that contains the joint, or that abuts on another wall at the joint")
+    opening_m: float = fact("greatest opening of the joint, at the greatest load", "m")
+    slip_m: float = fact("greatest sliding of the joint, at the greatest load", "m")
+    last_opening_m: float = fact("greatest opening of the joint, in the last equilibrium state", "m")
+    last_slip_m: float = fact("greatest sliding of the joint, in the last equilibrium state", "m")
     first_base_shear_N: float | None = fact("base shear at which the bond of the joint first fails; null without failure", "N")
-    broken_share: float = fact("share of the joint area that has lost some of its bond in the last equilibrium state")
+    broken_share: float = fact("share of the joint area where bond is partly or fully lost, in the last equilibrium state")
 
 
 class SeatMotion(ResultModel):
     """How far a floor has moved off a wall on which it rests by friction."""
 
-    floor: str = fact("the floor, by its number in the deck and its storey")
+    floor: str = fact("floor, as its number in the deck and its storey")
     wall: str = fact("wall on which the floor rests")
-    normal_N: float = fact("load of the floor on the seat under the constant loads; compression is positive", "N")
+    normal_N: float = fact("load of the floor on its support on the wall, under the constant loads; compression is positive", "N")
     friction_N: float = fact("friction times this load", "N")
     length_m: float = fact("length of the seat", "m")
-    slip_m: float = fact("greatest displacement of an end of the floor relative to the wall, off the seat", "m")
-    slip_along_m: float = fact("greatest displacement of an end of the floor along the wall", "m")
-    slid_off: bool = fact("whether an end of the floor has moved off by more than the length of the seat")
-    slid_off_displacement_m: float | None = fact("control displacement at which it slid off", "m")
-    slid_off_base_shear_N: float | None = fact("base shear at which it slid off", "N")
+    slip_m: float = fact("greatest displacement of an end of the floor away from its support on the wall", "m")
+    slip_along_m: float = fact("greatest displacement of an end of the floor along its support on the wall", "m")
+    slid_off: bool = fact("whether an end of the floor has moved by more than the length of its support")
+    slid_off_displacement_m: float | None = fact("control displacement at which the floor slid off", "m")
+    slid_off_base_shear_N: float | None = fact("base shear at which the floor slid off", "N")
 
     @property
     def told(self) -> str:
@@ -69,17 +69,17 @@ class FootForce(ResultModel):
     """What a foot of a vault presses on the ground with, at the greatest load or at the end of a settlement."""
 
     foot: str = fact("its name")
-    thrust_N: float = fact("outward thrust of the foot; for a dome, the sum around the circumference", "N")
+    thrust_N: float = fact("outward thrust at the foot; for a dome, the sum around its circumference", "N")
     vertical_N: float = fact("downward", "N")
 
 
 class Flanges(ResultModel):
     """Walls across the push, at the peak."""
 
-    share: float = fact("share of the base shear that is not carried in-plane by the walls along the load")
-    uplift_N: float = fact("vertical force at the feet of the walls across the load: tension and relieved compression", "N")
+    share: float = fact("share of the base shear that the walls parallel to the load do not carry in-plane")
+    uplift_N: float = fact("vertical force at the feet of the walls perpendicular to the load: tension, and loss of compression", "N")
     pressure_N: float = fact("compression added to them", "N")
-    working: bool = fact("whether these walls carry more than 1/20 of the weight as upward or downward force")
+    working: bool = fact("whether the walls perpendicular to the load carry an upward or downward force of more than 1/20 of the weight")
 
 
 class SlidingLevel(ResultModel):
@@ -98,22 +98,22 @@ class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
     capacity_N: float | None = fact(
-        "greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, and for a moving ground", "N"
+        "greatest base shear, or the sliding limit if this is lower; null without an equilibrium state, or under a ground motion", "N"
     )
-    sliding_capacity_N: float = maybe("least base shear at which a level slides by Coulomb's law", "N")
+    sliding_capacity_N: float = maybe("lowest base shear at which a level slides by Coulomb's law", "N")
     sliding_level: str = maybe("the level that slides first")
-    sliding: list[SlidingLevel] = maybe("sliding limits of all levels; not given without walls, or if friction excludes sliding")
+    sliding: list[SlidingLevel] = maybe("sliding limits of all levels; not given without walls, or if sliding is excluded")
     base_shear_coefficient: float | None = fact("capacity over the weight")
-    roof_drift: float | None = fact("roof drift: ratio of the control displacement at the greatest load to the height")
+    roof_drift: float | None = fact("roof drift: control displacement at the greatest load, divided by the height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
     walls: list[WallShare] = fact("base shear of each wall at the greatest load")
-    flanges: Flanges = maybe("whether the transverse walls (flanges) contribute")
-    first_crack: FirstCrack = maybe("location of the first crack; not given without cracks")
+    flanges: Flanges = maybe("contribution of the transverse walls (flanges) to the base shear")
+    first_crack: FirstCrack = maybe("location of the first crack; not given if nothing cracks")
     joints: list[JointMotion] = maybe("greatest opening and sliding of each joint")
-    seats: list[SeatMotion] = maybe("load and slip of the seats of floors; not given without seats")
+    seats: list[SeatMotion] = maybe("load and slip of the floors on their supports; not given without such supports")
     feet: list[FootForce] = maybe("for a vault or dome: forces of its feet on the ground")
     cracked_points_by_storey: list[int] = fact(
-        "number of cracked integration points in the planes of the walls at the greatest load, by storey"
+        "number of integration points in the planes of the walls that are cracked at the greatest load, by storey"
     )
 
 
@@ -123,9 +123,7 @@ class StageOfPush(PushCurve):
 
     name: str = fact("its name, or its number")
     of: Literal["push", "settlement"] = fact("quantity")
-    prefix: str = fact(
-        "prefix of the array names of this stage; empty for the stage whose results are reported as the results of the analysis"
-    )
+    prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 
@@ -133,8 +131,10 @@ class StageOfPush(PushCurve):
 class FrameCapacity(ResultModel):
     """What the piers of the weakest storey bear by the formulas of a code."""
 
-    code: str = fact("code; the least strength among its formulas counts for a pier")
-    base_shear_N: float = fact("base shear at which the shear in the weakest storey equals the sum of the strengths of its piers", "N")
+    code: str = fact("code; if it has several formulas, the least strength counts for a pier")
+    base_shear_N: float = fact(
+        "base shear at which the shear force in the weakest storey equals the sum of the strengths of its piers", "N"
+    )
     storey: int = fact("the weakest storey, from 1")
 
 
@@ -145,7 +145,7 @@ class Variation(ResultModel):
     factors: dict[str, float] = fact("by the deck")
     greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
     passed: bool = fact("whether that was a peak")
-    base_shear_coefficient: float | None = fact("ratio of the base shear to the weight of this variant")
+    base_shear_coefficient: float | None = fact("base shear, divided by the weight of this variant")
 
 
 class Pushover(PushCurve, KindResults):
@@ -155,29 +155,29 @@ class Pushover(PushCurve, KindResults):
     reference_load_N: float = fact("base shear at load multiplier 1", "N")
     pattern: str = fact("of the horizontal forces")
     direction_deg: float = fact("direction of the load in plan", "deg")
-    frequency_Hz: float = maybe("frequency of the mode whose shape distributes the load", "Hz")
+    frequency_Hz: float = maybe("frequency of the mode that gives the distribution of the load", "Hz")
     modal_mass_ratio: float = maybe("participating mass ratio of this mode")
     cracking: str = fact("how cracked material behaved")
     layers: int = fact("number of integration points through the thickness of the walls")
     nodes: int = fact("nodes of the mesh")
     elements: int = fact("elements of the mesh")
     equations: int = fact("equations")
-    points: int = fact("number of integration points, with those of bars")
+    points: int = fact("number of integration points, including those of bars")
     factor_bytes: int = fact("memory of the matrix factors, in bytes")
-    minus: PushCurve = maybe("capacity curve of the load in the second (opposite) sense")
+    minus: PushCurve = maybe("capacity curve under the load in the opposite direction")
     stages: list[StageOfPush] = maybe(
-        "for a run in stages: results of each stage; if no stage is named, the results of the analysis are those of the main stage"
+        "for a run in stages: results of each stage. If the deck names no stage, the results of the analysis are those of the main stage"
     )
     frame: list[FrameCapacity] = maybe("strengths of the piers by code formulas, in the direction of the load")
-    variants: list[Variation] = maybe("results of the first sense under other assumptions")
-    verification: Verification = maybe("displacement-based verification of a building that is given by its plan")
-    band_N: list[float] = maybe("least and greatest base shear of all variants and of the deck itself", "N")
+    variants: list[Variation] = maybe("results under other assumptions, for the first direction of the load")
+    verification: Verification = maybe("displacement-based verification of a building given by its plan")
+    band_N: list[float] = maybe("least and greatest base shear of the deck and all variants", "N")
 
     def judged(self, demand: Demand) -> Verdict:
         """The verification by displacement; without one the lesser capacity of the two senses, without an outcome."""
         curves = [c for c in (self, self.minus) if c is not None]
         if any(c.capacity_N is None for c in curves):
-            return judge(f"No equilibrium state with a base shear was found. The run ended for this reason: {self.stop}.", None, None, "N")
+            return judge(f"No equilibrium state with a base shear was found. Reason for the end of the run: {self.stop}.", None, None, "N")
         least = min(curves, key=lambda c: c.capacity_N or 0.0)
         load, capacity = least.greatest_load_N or 0.0, least.capacity_N or 0.0
         slides, reached = capacity < load, least.greatest_acceleration_g
@@ -189,10 +189,13 @@ class Pushover(PushCurve, KindResults):
         if slides:
             text = f"Sliding at {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
             violated = [
-                f"The model excludes this sliding and carries {three_figures(load / 1e3)} kN, {load / capacity:.3g} times the sliding limit."
+                (
+                    f"The model, which excludes this sliding, carries {three_figures(load / 1000.0)} kN: {load / capacity:.3g} "
+                    "times the sliding limit."
+                )
             ]
             return capacity_alone(text, value, unit, "upper", violated)
         if least.peak_load_N is None:
-            text = f"The base shear has reached {told} without a peak. The capacity is therefore not known."
+            text = f"The base shear has reached {told}, and the run ended before it decreased. The capacity is therefore not known."
             return capacity_alone(text, value, unit, "lower")
         return capacity_alone(f"The building can carry a base shear of {told}.{fallen}", value, unit)

@@ -20,7 +20,8 @@ class Bilinear(ResultModel):
     yield_load_N: float = fact("load of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
     ultimate_displacement_m: float = fact(
-        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement", "m"
+        "ultimate displacement: displacement at which the load has decreased to 80 % of the peak, or the last displacement if it has not",
+        "m",
     )
     ductility: float = fact("ultimate over yield displacement")
 
@@ -28,10 +29,10 @@ class Bilinear(ResultModel):
 class Makeup(ResultModel):
     """Fingerprints of what a stored damage rests on; a run goes on from another with the same ones alone."""
 
-    stiffness: str = fact("fingerprint (checksum) of moduli, Poisson's ratios, thicknesses and elements")
-    tension: str = fact("fingerprint (checksum) of the tensile laws: teeth of their saw-tooth curves, and crack bands")
-    compression: str = fact("fingerprint (checksum) of the crushing laws: teeth of their saw-tooth curves, and crack bands")
-    cracking: str = fact("fingerprint (checksum) of the options for cracking")
+    stiffness: str = fact("checksum of the elastic data: moduli, Poisson's ratios, thicknesses and elements")
+    tension: str = fact("checksum of the tensile laws: teeth of their saw-tooth curves, and crack bands")
+    compression: str = fact("checksum of the crushing laws: teeth of their saw-tooth curves, and crack bands")
+    cracking: str = fact("checksum of the options for cracking")
 
 
 class BarForce(ResultModel):
@@ -39,18 +40,17 @@ class BarForce(ResultModel):
 
     name: str = fact("name of the bar; bars of the wall have numbers as names")
     force_at_greatest_load_N: float | None = fact(
-        "force of the bar at the greatest load in equilibrium; for an embedded bar, at the section with the greatest "
-        "force; null if this state was not saved",
+        "force of the bar at the greatest load in equilibrium; for an embedded bar, the greatest force "
+        "of its sections; null if this state was not saved",
         "N",
     )
-    last_force_N: float | None = fact(
-        "force of the bar in the last state; for an embedded bar, at the section with the greatest force", "N"
-    )
+    last_force_N: float | None = fact("force of the bar in the last state; for an embedded bar, the greatest force of its sections", "N")
     greatest_force_N: float | None = maybe(
-        "force of greatest magnitude in all equilibrium states, for a bar that is attached only at its ends", "N"
+        "greatest force in absolute value over all equilibrium states, for a bar that is attached only at its ends", "N"
     )
     state: Literal["slack", "carries", "yielded"] = fact(
-        "state of the bar at the end. slack: no force; carries: loaded; yielded: beyond a tooth of its strength at some point"
+        "state of the bar at the end. slack: no force; carries: loaded, strength not reached; yielded: "
+        "strength reached at one point or more"
     )
 
 
@@ -59,21 +59,21 @@ class SlaCurve(ResultModel):
 
     sense: Literal["+", "-"] = fact("sense of the reference loads")
     peak_load_N: float | None = fact(
-        "peak load: greatest load in equilibrium that is followed by a decrease of the load or by a mechanism; null without a peak", "N"
+        "peak load: greatest load in equilibrium, after which the load decreases or a mechanism forms; null without a peak", "N"
     )
     peak_displacement_m: float | None = fact("control displacement at the peak", "m")
     displacement_of_constant_loads_m: float = fact("control displacement under the constant loads only", "m")
     peak_event: int | None = fact("number of the event at the peak load, counted from 1")
-    greatest_load_N: float | None = fact("greatest load of all states, with or without a peak; null without a state", "N")
+    greatest_load_N: float | None = fact("greatest load in all equilibrium states, with or without a peak; null without such a state", "N")
     greatest_load_displacement_m: float | None = fact("control displacement at the greatest load", "m")
     greatest_load_event: int | None = fact("number of the event at the greatest load, counted from 1")
     first_event_load_N: float | None = fact("load of the first event", "N")
     events: int = fact("events of this run")
-    events_before_resume: int = fact("number of events of the earlier runs that this run continues")
+    events_before_resume: int = fact("number of events in the earlier runs that this run continues")
     events_without_equilibrium: int = fact("number of events for which no load multiplier is admissible at all integration points")
     events_out_of_reach: int = fact(
-        "number of events that are not valid states: displacements above 1/10 of the size of the structure, or loads "
-        "above ten times the peak load"
+        "number of events that are not valid states: a displacement exceeds 1/10 of the size of the "
+        "structure, or a load exceeds ten times the peak load"
     )
     first_event_without_equilibrium: int | None = fact("number of the first event without equilibrium, counted from 1")
     stop: str = fact("why the run ended")
@@ -83,81 +83,81 @@ class SlaCurve(ResultModel):
     crushing_events: int = fact("events of crushing")
     last_load_N: float | None = fact("load of the last event that is in equilibrium", "N")
     last_displacement_m: float | None = fact("control displacement of that event", "m")
-    energy_residual_ratio: float = fact("ratio of the error of the energy balance to the work of the loads")
+    energy_residual_ratio: float = fact("error of the energy balance, divided by the work of the loads")
     external_work_J: float | None = fact(
-        "work of all loads up to the last event in equilibrium, along straight lines from event to event", "J"
+        "work of all loads up to the last event in equilibrium, if displacements change linearly between events", "J"
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        "dissipated energy up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
-        "the stored energy, from one equilibrium state to the next, with friction. For events without equilibrium, the "
-        "area of their teeth is used",
+        "dissipated energy (with friction) up to the last event in equilibrium; it never decreases. It is the work of the loads minus "
+        "the stored energy, summed from one equilibrium state to the next. Events without equilibrium count with the area of their teeth",
         "J",
     )
     crack_energy_J: float = fact(
-        "crack energy: area of the teeth that were passed across cracks and along joints, in all events. It follows from "
-        "the material laws (fracture energy), without friction and without the energy lost between states, so it can "
-        "differ from dissipated_energy_J",
+        "crack energy: area of the saw-tooth teeth that were passed at cracks and joints, in all events. "
+        "It depends on the material laws only (fracture energy). Friction and energy lost between "
+        "states are not included, so it can differ from `dissipated_energy_J`",
         "J",
     )
     residual_ratio: float | None = fact("greatest measured residual of the equations; null if it was not measured")
     guard_checks: int = fact("number of times that the residual was measured during the run")
     guard_resolutions: int = fact("number of times that the equations were solved again because of the residual")
     guard_new_factors: int = fact("number of times that the matrix was factorised again because of the residual")
-    equilibrium_steps: int = maybe("number of steps by equilibrium iterations, after equilibrium was lost under the constant loads")
+    equilibrium_steps: int = maybe("number of steps with equilibrium iterations, used after equilibrium was lost under the constant loads")
     staggered_steps: int = maybe(
-        "number of these steps in which damage was frozen and updated in turn, because Newton's method did not converge"
+        "number of steps with equilibrium iterations in which damage was frozen and updated in turn, "
+        "because Newton's method did not converge"
     )
-    unbalanced_steps: int = maybe("number of these steps whose residual exceeds the tolerance; they are not equilibrium states")
-    equilibrium_solutions: int = maybe("number of linear systems solved in these steps")
+    unbalanced_steps: int = maybe(
+        "number of steps with equilibrium iterations whose residual exceeds the tolerance; they are not equilibrium states"
+    )
+    equilibrium_solutions: int = maybe("number of linear systems solved in the steps with equilibrium iterations")
     equilibrium_from_m: float = maybe("control displacement at which the equilibrium iterations began", "m")
     step_residual_ratio: float = maybe(
-        "greatest ratio, over the states in these steps, of the residual to the largest nodal force of an element"
+        "residual divided by the greatest nodal force of an element: greatest value of all states in steps with equilibrium iterations"
     )
     step_balance_ratio: float = maybe(
-        "greatest ratio, over these states, of the error of the energy balance (work of all loads minus stored and "
-        "dissipated energy) to the work"
+        "error of the energy balance (work of all loads minus stored and dissipated energy) divided by "
+        "the work: greatest value of all states in steps with equilibrium iterations"
     )
     released_energy_J: float = maybe(
-        "energy released as motion in these steps when the load drops to another equilibrium; part of dissipated_energy_J", "J"
+        "energy released as motion when the load drops to another equilibrium, in the steps with "
+        "equilibrium iterations; part of `dissipated_energy_J`",
+        "J",
     )
     drift_height_m: float = maybe(
-        "height to which drifts refer (extent of the structure perpendicular to the control displacement): drift is "
-        "displacement divided by this height",
-        "m",
+        "length to which drifts refer: extent of the structure perpendicular to the control displacement (for a wall, its height)", "m"
     )
     peak_drift: float | None = maybe("drift at the peak")
     drop_displacement_m: float | None = maybe(
-        "control displacement at which the envelope has decreased to 80 % of the peak; null if not reached", "m"
+        "control displacement at which the envelope of the load has decreased to 80 % of the peak; null if not reached", "m"
     )
     drop_drift: float | None = maybe("drift there")
     axial_loss_displacement_m: float | None = maybe(
-        "control displacement of the last state at which the constant loads were still carried; null if they are carried to the end", "m"
+        "last control displacement at which the constant loads are still carried; null if they are carried to the end", "m"
     )
     axial_loss_drift: float | None = maybe("drift there")
     seconds_per_event: float = fact("computing time of an event", "s")
     events_of_constant_loads: int = fact("number of events during the application of the constant loads")
     probe_loads_N: list[float | None] = maybe(
-        "load of the envelope at the requested displacements; null beyond the end of the envelope", "N"
+        "load of the envelope at the displacements given in the deck; null beyond the end of the envelope", "N"
     )
     initial_stiffness_N_m: float = maybe(
-        "stiffness before the first event; not given for a stage that began with equilibrium iterations", "N/m"
+        "stiffness before the first event; not given for a stage that begins with equilibrium iterations", "N/m"
     )
     peak_acceleration_g: float | None = maybe("peak load as a horizontal acceleration, if the load is an acceleration of the masses", "g")
     greatest_acceleration_g: float | None = maybe(
         "greatest load as a horizontal acceleration, if the load is an acceleration of the masses", "g"
     )
     bars: list[BarForce] = maybe("forces of bars and ties")
-    bilinear: Bilinear = maybe("bilinear idealisation of the envelope; only if the envelope rises and has passed its peak")
+    bilinear: Bilinear = maybe("bilinear idealisation of the envelope of the load; given if the envelope rises and has passed its peak")
 
 
 class SlaStage(SlaCurve):
     """One stage of several; loads are those in the direction of its own, with what stages before have left on."""
 
     name: str = fact("its name, or its number")
-    prefix: str = fact(
-        "prefix of the array names of this stage; empty for the stage whose results are reported as the results of the analysis"
-    )
+    prefix: str = fact("prefix of the array names of this stage; empty for the stage that gives the results of the analysis")
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 
@@ -176,15 +176,15 @@ class Scatter(ResultModel):
 class Comparison(ResultModel):
     """The envelope over the mean of a measured curve."""
 
-    peak_ratio: float = fact("ratio of the greatest calculated load to the greatest measured load")
+    peak_ratio: float = fact("greatest calculated load, divided by the greatest measured load")
     tail_ratios: list[float | None] = fact(
-        "ratios of calculated to measured load where the measured load has decreased to 75, 50 and 25 % of its peak; "
-        "null if one of the curves ends before"
+        "calculated load divided by measured load, after the peak, where the measured load has decreased "
+        "to 75, 50 and 25 % of its peak; null if one of the curves ends before"
     )
     inside_ratio: float | None = fact(
-        "share of the measured points at which the envelope lies between the least and the greatest measured load"
+        "share of the measured points at which the calculated envelope lies between the least and the greatest measured load"
     )
-    half_band_ratio: float = fact("ratio of the mean half width of the measured band to the mean measured load")
+    half_band_ratio: float = fact("mean half width of the measured band, divided by the mean measured load")
 
 
 class Sla(SlaCurve, KindResults):
@@ -192,29 +192,32 @@ class Sla(SlaCurve, KindResults):
 
     reference_load_N: float = fact("reference load: the load at multiplier 1", "N")
     cracking: Literal["rotating", "orthotropic", "isotropic"] = fact("how cracked material behaved")
-    teeth: list[int] = fact("least and greatest number of teeth in the saw-tooth laws")
+    teeth: list[int] = fact("least and greatest number of teeth of a saw-tooth law")
     nodes: int = fact("nodes of the mesh")
     elements: int = fact("elements of the mesh")
     equations: int = fact("equations")
-    points: int = fact("number of integration points, with those of bars")
+    points: int = fact("number of integration points, including those of bars")
     makeup: Makeup = maybe("values that resume_from compares")
-    minus: SlaCurve = maybe("capacity curve of the load in the second (opposite) sense")
+    minus: SlaCurve = maybe("capacity curve under the load in the opposite direction")
     stages: list[SlaStage] = maybe(
-        "for a run in stages: results of each stage; if no stage is named, the results of the analysis are those of the last or main stage"
+        "for a run in stages: results of each stage. If the deck names no stage, the results of the "
+        "analysis are those of the last or main stage"
     )
-    measured: Comparison = maybe("measured curve of the deck, compared with the calculated curve of the first sense")
+    measured: Comparison = maybe("measured curve of the deck, compared with the calculated curve in the first direction of the load")
     scatter: Scatter = maybe("repetitions with other seeds")
     verification: Verification = maybe(
         "displacement-based verification of a wall that is loaded by the horizontal forces of its own masses"
     )
-    stones: bool = fact("whether the model consists of blocks with joints; its peak acceleration is then a static limit load")
-    hinges: list[str] = maybe("for blocks: joints that, at the peak, are open except at an edge")
+    stones: bool = fact(
+        "whether the model consists of blocks with joints; the greatest load, as an acceleration, is then a static limit load"
+    )
+    hinges: list[str] = maybe("for blocks: joints that are open, except at an edge, at the peak load")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
         curves = [c for c in (self, self.minus) if c is not None]
         if any(c.greatest_load_N is None for c in curves):
-            text = f"No equilibrium state with a load was found. The run ended for this reason: {self.stop}."
+            text = f"No equilibrium state with a load was found. Reason for the end of the run: {self.stop}."
             return judge(text, None, None, "N", "open" if self.stones and demand.peak_g is not None else None)
         least = min(curves, key=lambda c: c.greatest_load_N or 0.0)
         reached, load = least.greatest_acceleration_g, f"{three_figures((least.greatest_load_N or 0.0) / 1e3)} kN"
@@ -222,16 +225,16 @@ class Sla(SlaCurve, KindResults):
             peaks = least.peak_load_N is not None
             if self.verification is not None and self.verification.decides:
                 return self.verification.judged(f"The greatest base shear is {load}.")
-            text = f"The wall {'can carry' if peaks else 'has carried, without a peak,'} {load} ({abs(reached):.3g} g times its masses)."
+            text = f"The wall {('can carry' if peaks else 'has carried, without a peak,')} {load} ({abs(reached):.3g} g times its masses)."
             return capacity_alone(text, abs(reached), "g", None if peaks else "lower")
         if any(c.peak_load_N is None for c in curves):
-            text = f"The load has reached {load} without a peak, so the capacity of the building is not known"
+            text = f"The load has reached {load}, and the run ended before it decreased, so the capacity of the building is not known"
             if reached is None or demand.peak_g is None:
                 return judge(f"{text}.", None, None, "N" if reached is None else "g")
             if demand.peak_g < reached:
                 return judge_acceleration(reached, demand)
             return judge(
-                f"{text}. The demand of the motion is {demand.peak_g:.3g} g, and the load reached {reached:.3g} g.",
+                f"{text}. The demand of the motion is {demand.peak_g:.3g} g; the load has reached {reached:.3g} g.",
                 demand.peak_g,
                 None,
                 "g",
@@ -239,4 +242,4 @@ class Sla(SlaCurve, KindResults):
             )
         if reached is not None:
             return judge_acceleration(abs(reached), demand)
-        return judge(f"The capacity of the building is {load} of the load that is increased.", None, least.greatest_load_N, "N")
+        return judge(f"The capacity of the building is {load}, expressed as the load that is increased.", None, least.greatest_load_N, "N")

@@ -15,10 +15,10 @@ class OpenContact(ResultModel):
     joint: int = fact("number of the contact")
     name: str = fact("its name")
     opening: float = fact(
-        "ratio of the rate at which the contact opens, at its fastest corner, to the velocity of the fastest point of the mechanism"
+        "opening rate at the fastest corner of the contact, divided by the velocity of the fastest point of the mechanism"
     )
     sliding: float = fact(
-        "ratio of the rate at which the contact slides, at its fastest corner, to the velocity of the fastest point of the mechanism"
+        "sliding rate at the fastest corner of the contact, divided by the velocity of the fastest point of the mechanism"
     )
     x_m: float = fact("x of its middle", "m")
     y_m: float = fact("y of its middle", "m")
@@ -30,10 +30,12 @@ class Pyramids(ResultModel):
 
     sides: int = fact("sides of the pyramids")
     lower_g: float | None = fact(
-        "lower bound, with pyramids inscribed in the friction cones; null if the structure cannot stand with them", "g"
+        "lower bound of the collapse acceleration, with pyramids inscribed in the friction cones; null if the structure then cannot stand",
+        "g",
     )
     upper_g: float | None = fact(
-        "upper bound, with pyramids circumscribed about the friction cones; null without a collapse mechanism", "g"
+        "upper bound of the collapse acceleration, with pyramids circumscribed about the friction cones; null without a collapse mechanism",
+        "g",
     )
 
 
@@ -43,7 +45,7 @@ class BlockSize(ResultModel):
     change: str = fact("key of the structure that is changed, with the new value")
     blocks: int | None = fact("number of blocks after this change; null if the change is not possible")
     collapse_acceleration_g: float | None = fact("upper bound of the collapse acceleration along the direction; null without a result", "g")
-    relative_change: float | None = fact("relative change of the upper bound from that of the blocks in the deck")
+    relative_change: float | None = fact("relative difference of this upper bound from the upper bound with the blocks of the deck")
     reason: str | None = fact("why there is no value")
 
 
@@ -54,92 +56,98 @@ class SolidNonDilatant(ResultModel):
     """
 
     direction_deg: float = fact("direction of the load in plan", "deg")
-    associated_g: float | None = fact("upper bound, with dilatant sliding; null without a collapse mechanism", "g")
-    load_path_g: float | None = fact("design value: the least of the certified load paths; null without one", "g")
+    associated_g: float | None = fact(
+        "upper bound of the collapse acceleration, with dilatant sliding; null without a collapse mechanism", "g"
+    )
+    load_path_g: float | None = fact("design value: lowest collapse acceleration of the certified load paths; null without one", "g")
     load_paths: list[LoadPath] = fact("load paths of elastic joints, one for each stiffness ratio")
     least_g: float | None = fact(
-        "least certified state found from any initial state of stress (serves as a warning); null without one", "g"
+        "lowest collapse acceleration of a certified state, from any initial state of stress (serves as a warning); null without one", "g"
     )
-    starts_g: list[float] = fact("loads of the certified states found from each starting point; the least is used", "g")
-    spread_g: float | None = fact("difference between the greatest and the least of these loads", "g")
+    starts_g: list[float] = fact("collapse acceleration of the certified state found from each starting point; the lowest is used", "g")
+    spread_g: float | None = fact("difference between the highest and the lowest collapse acceleration in `starts_g`", "g")
     zero_gap_g: float | None = fact(
-        "for the least state: difference between the collapse acceleration and the work of friction minus that of the "
-        "weight, per unit of work of the load",
+        "for the lowest state found: collapse acceleration minus (work of friction minus work of the weight), per unit of work of the load",
         "g",
     )
     equilibrium_residual: float | None = fact(
-        "for the least state: ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight"
+        "for the lowest state found: greatest unbalanced force on a block (or moment divided by the size), divided by the weight"
     )
-    friction_residual: float | None = fact("ratio of the greatest excess of shear over friction, or of the greatest tension, to the weight")
-    overlap_residual: float | None = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest contact")
+    friction_residual: float | None = fact("greatest excess of shear over friction, or greatest tension, divided by the weight")
+    overlap_residual: float | None = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
 
 
 class SolidTilt(KindResults):
     """tilt of solids: the constant horizontal acceleration, in a direction in plan, at which they become a mechanism."""
 
     collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant) along the direction", "g")
-    collapse_acceleration_opposite_g: float = fact("collapse acceleration opposite to the load direction (horizontal, constant)", "g")
+    collapse_acceleration_opposite_g: float = fact("collapse acceleration (horizontal, constant) opposite to the load direction", "g")
     tilt_angle_deg: float = fact(
         "tilt of the ground with the same effect as the collapse acceleration along the load direction", "deg", source="thesis Eq. 3.1"
     )
     tilt_angle_opposite_deg: float = fact(
         "tilt of the ground with the same effect as the collapse acceleration in the opposite direction", "deg"
     )
-    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
-    least_acceleration_g: float = fact("least collapse acceleration in all directions that were searched", "g")
-    least_direction_deg: float = fact("direction of the least collapse acceleration", "deg")
+    load_direction_deg: float = fact("direction of the load in plan, as an angle from +x towards +y", "deg")
+    least_acceleration_g: float = fact("lowest collapse acceleration of all directions that were searched", "g")
+    least_direction_deg: float = fact("direction of the load with the lowest collapse acceleration", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    moving_blocks: int = fact("blocks that move in the mechanism: faster than 1/1000 of the fastest block")
+    moving_blocks: int = fact("blocks that move in the mechanism, at more than 1/1000 of the speed of the fastest block")
     fastest_block: str = fact("block whose centroid moves fastest")
-    opening_contacts: list[OpenContact] = fact("contacts that open or slide most; at most 20 are listed")
-    weight_N: float = fact("weight of the structure, including the weights that rest on it", "N")
-    upper_bound_g: float = fact("upper bound of the collapse acceleration, by the virtual work of the mechanism", "g")
-    duality_gap: float = fact("greatest difference between the lower bound (equilibrium) and the upper bound (mechanism)", "g")
-    equilibrium_residual: float = fact("ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight")
+    opening_contacts: list[OpenContact] = fact("contacts that open or slide; the 20 fastest are listed")
+    weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
+    upper_bound_g: float = fact("upper bound of the collapse acceleration, from the virtual work of the mechanism", "g")
+    duality_gap: float = fact("greatest difference between the lower bound (from equilibrium) and the upper bound (from a mechanism)", "g")
+    equilibrium_residual: float = fact("greatest unbalanced force on a block (or moment divided by the size), divided by the weight")
     friction_residual: float = fact(
         "greatest violation at a corner of a contact (shear above friction, or tension), divided by the weight of the structure"
     )
-    overlap_residual: float = fact("ratio of the greatest rate of overlap in the mechanism to the rate of the fastest contact")
+    overlap_residual: float = fact("greatest rate of overlap in the mechanism, divided by the rate of the fastest contact")
     dilating_contacts: int = fact(
-        "contacts in compression that slide in the mechanisms (along the direction, opposite, and of the least "
-        "capacity). If there are any, the capacity is an upper bound (dilatant friction)"
+        "contacts in compression that slide in the three mechanisms (along the load direction, opposite, "
+        "lowest capacity). If there are any, the capacity is an upper bound (dilatant friction)"
     )
     collapse_acceleration_load_path_g: float = maybe(
-        "design value of the collapse acceleration along the direction if contacts slide: the least of the load paths of elastic joints",
+        "design value of the collapse acceleration along the load direction, if contacts slide: the "
+        "lowest of the load paths with elastic joints",
         "g",
     )
     collapse_acceleration_load_path_opposite_g: float = maybe(
-        "design value of the collapse acceleration in the opposite direction if contacts slide", "g"
+        "design value of the collapse acceleration opposite to the load direction, if contacts slide", "g"
     )
     collapse_acceleration_non_associated_g: float = maybe(
-        "collapse acceleration along the direction for sliding without dilatancy: the least certified state found", "g"
+        "collapse acceleration along the load direction for sliding without dilatancy: the lowest of the certified states that were found",
+        "g",
     )
     collapse_acceleration_non_associated_opposite_g: float = maybe(
-        "collapse acceleration in the opposite direction for sliding without dilatancy", "g"
+        "collapse acceleration opposite to the load direction for sliding without dilatancy", "g"
     )
     non_dilatant: list[SolidNonDilatant] = maybe(
-        "sliding without dilatancy, for each direction: along, opposite, and that of least capacity; all directions with "
-        'friction_rule = "non-associated"'
+        "sliding without dilatancy, for each direction: along the load direction, opposite, and lowest "
+        'capacity; with `friction_rule` = "non-associated", for all directions'
     )
-    non_associated_reason: str = maybe("reason why no state without dilatancy is given in addition to the upper bound")
+    non_associated_reason: str = maybe("reason why no collapse state without dilatancy is given besides the upper bound")
     collapse_acceleration_face_law_g: float = maybe(
-        "upper bound along the direction by the face law: friction of whole faces under uniform pressure (torsion). The "
-        "corner law, which gives collapse_acceleration_g, allows the pressure to concentrate",
+        "upper bound along the load direction by the face law (friction and torsion of whole faces under uniform pressure). "
+        "`collapse_acceleration_g` follows the corner law, which allows the pressure to concentrate",
         "g",
         source="after Orduna and Lourenco 2005",
     )
-    collapse_acceleration_face_law_opposite_g: float = maybe("upper bound in the opposite direction by the face law", "g")
-    face_law_spread_g: float = maybe("greatest range of the last iterations of the face law (a fixed-point iteration)", "g")
+    collapse_acceleration_face_law_opposite_g: float = maybe("upper bound opposite to the load direction by the face law", "g")
+    face_law_spread_g: float = maybe(
+        "scatter of the last iterations of the face law: greatest minus least value (fixed-point iteration)", "g"
+    )
     face_law_reason: str = maybe("reason why the face law gives no value")
     ties: list[TieForce] = maybe("forces of ties, chains and hoops at the collapse acceleration; for bonded ones, of each segment")
     crushing_contacts: int = maybe("contacts that crush in the mechanism; null without a compressive strength")
     collapse_acceleration_dry_g: float = maybe(
-        'collapse acceleration along the direction without mortar, for mortar = "ductile"; 0 if the blocks then cannot stand', "g"
+        'collapse acceleration along the load direction without mortar, given if `mortar` = "ductile"; 0 if the blocks then cannot stand',
+        "g",
     )
-    collapse_acceleration_dry_opposite_g: float = maybe("collapse acceleration in the opposite direction without mortar", "g")
-    least_acceleration_dry_g: float = maybe("least collapse acceleration without mortar in all directions that were searched", "g")
-    block_sizes: list[BlockSize] = maybe("upper bounds for blocks of half the length in each direction, and for the other bond")
+    collapse_acceleration_dry_opposite_g: float = maybe("collapse acceleration opposite to the load direction without mortar", "g")
+    least_acceleration_dry_g: float = maybe("lowest collapse acceleration without mortar of all directions that were searched", "g")
+    block_sizes: list[BlockSize] = maybe("upper bounds with blocks of half the length in each direction, and with the other bond")
     pyramids: Pyramids = maybe("bounds of the collapse acceleration by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -164,37 +172,39 @@ class SectionThrust(ResultModel):
     """Horizontal thrust of a section of blocks in space: the sum over its contacts."""
 
     name: str = fact("its name")
-    direction: str = fact("direction of the thrust of each contact: in plan, or outward from the middle of the structure")
+    direction: str = fact("direction of the thrust at each contact: a direction in plan, or outward from the middle of the structure")
     contacts: int = fact("contacts of the section")
-    least_N: float | None = fact("least thrust, summed over the contacts; null if the thrust has no least value", "N")
-    central_N: float | None = fact("thrust of the most central state; null without one", "N")
-    greatest_N: float | None = fact("greatest thrust; null if the thrust has no greatest value, as between rigid supports", "N")
+    least_N: float | None = fact("minimum thrust, summed over the contacts; null if the thrust has no minimum", "N")
+    central_N: float | None = fact("thrust in the most central state; null without such a state", "N")
+    greatest_N: float | None = fact(
+        "maximum thrust, summed over the contacts; null if the thrust has no maximum, as between rigid supports", "N"
+    )
 
 
 class SolidThrust(KindResults):
     """thrust of solids: admissible states of stress at a given horizontal acceleration."""
 
     gamma_g: float = fact("horizontal acceleration along the direction", "g")
-    load_direction_deg: float = fact("direction of the load in plan: angle from +x towards +y", "deg")
-    admissible_interval_g: list[float] = fact("accelerations along the direction between which a state is admissible", "g")
+    load_direction_deg: float = fact("direction of the load in plan, as an angle from +x towards +y", "deg")
+    admissible_interval_g: list[float] = fact("accelerations along the load direction between which an admissible state exists", "g")
     sections: list[SectionThrust] = fact("thrust of each section")
     geometric_safety_factor: float | None = fact(
-        "geometric safety factor: 1 divided by the smallest central part of the contacts that permits a state in "
-        "equilibrium; null if this part is below 1 % (no horizontal demand), or if it was not found"
+        "geometric safety factor: 1 divided by the least central part of the contacts in which an equilibrium state exists; null if "
+        "this part is below 1 % (no horizontal demand), or if it was not found"
     )
     least_part_of_joints: float | None = fact("central part of the contacts that the most central state needs")
     required_friction: float | None = fact("greatest coefficient of friction that the most central state needs")
     required_friction_contact: str | None = fact("contact with this greatest requirement")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
+    weight_N: float = fact("weight of the structure and of the weights placed on it", "N")
     dilating: bool = fact(
-        "whether contacts slide in the mechanisms at the ends of the admissible interval. These ends are then upper "
-        "bounds (dilatant friction), and an admissible state does not exclude sliding without dilatancy"
+        "whether contacts slide in the mechanisms at the ends of `admissible_interval_g`. These ends are then upper bounds (dilatant "
+        "friction), and an admissible state does not exclude sliding without dilatancy"
     )
-    ties: list[TieForce] = maybe("ties, chains and hoops in the most central state")
-    duality_gap: float = fact("ratio of the greatest difference between the bounds of the thrusts to the weight")
-    equilibrium_residual: float = fact("ratio of the greatest unbalanced force (or moment divided by the size) on a block to the weight")
+    ties: list[TieForce] = maybe("forces of ties, chains and hoops in the most central state")
+    duality_gap: float = fact("greatest difference between the bounds of the thrusts, divided by the weight")
+    equilibrium_residual: float = fact("greatest unbalanced force on a block (or moment divided by the size), divided by the weight")
     friction_residual: float = fact(
         "greatest violation at a corner of a contact (shear above friction, or tension), divided by the weight of the structure"
     )
@@ -203,10 +213,14 @@ class SolidThrust(KindResults):
         """The part of the contacts that the most central state needs against the whole; the ratio is the safety factor."""
         part = self.least_part_of_joints
         if part is None:
-            return judge("The most central state was not found.", None, None)
+            return judge("The most central equilibrium state was not found.", None, None)
         if self.geometric_safety_factor is None:
-            return judge(f"At {self.gamma_g:g} g a state runs through the middles of all contacts, within 1 % of them.", 0.0, 1.0)
-        return judge(f"At {self.gamma_g:g} g a state of stress stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0)
+            return judge(
+                f"At {self.gamma_g:g} g, the resultants of an equilibrium state pass within 1 % of the middles of all contacts.", 0.0, 1.0
+            )
+        return judge(
+            f"At {self.gamma_g:g} g, an equilibrium state stays within the middle {100.0 * part:.3g} % of the contacts.", part, 1.0
+        )
 
 
 #: What `tilt` and `thrust` give: of a plane section, or of solids

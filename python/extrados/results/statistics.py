@@ -1,4 +1,4 @@
-"""Results of the statistics: fragility, dem-fragility, resonance, rocking-spectrum, harmonic-map."""
+"""Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
 from typing import Literal
 
@@ -10,11 +10,13 @@ from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judg
 class Sensitivity(ResultModel):
     """Sobol indices of one uncertain value: its own share of the variance, and that of all in which it is involved."""
 
-    rotation_first: float | None = fact("first-order Sobol index of the greatest rotation, in which collapse counts as 1")
+    rotation_first: float | None = fact("first-order Sobol index of the greatest rotation; a run that collapses counts as 1")
     rotation_first_interval: list[float | None] = fact("its bootstrap interval")
     rotation_total: float | None = fact("total Sobol index of the greatest rotation")
     rotation_total_interval: list[float | None] = fact("its bootstrap interval")
-    collapse_first: float | None = fact("first-order Sobol index of the collapse (1 or 0); null if all runs have the same outcome")
+    collapse_first: float | None = fact(
+        "first-order Sobol index of the outcome (collapse 1, otherwise 0); null if all runs have the same outcome"
+    )
     collapse_first_interval: list[float | None] = fact("its bootstrap interval")
     collapse_total: float | None = fact("total index of the collapse")
     collapse_total_interval: list[float | None] = fact("its bootstrap interval")
@@ -27,16 +29,16 @@ class Annual(KindResults):
         "mean annual rate of collapse", "1/year", source="Cornell and Krawinkler 2000, PEER Center News 3(2)"
     )
     annual_collapse_rate_interval: list[float | None] = maybe(
-        "interval of the annual collapse rate due to the uncertainty of the fitted curve", "1/year"
+        "confidence interval of the annual collapse rate, due to the uncertainty of the fitted fragility curve", "1/year"
     )
     annual_collapse_rate_left_out: float = maybe(
-        "possible contribution to the collapse rate from intensities beyond the ends of the hazard curve", "1/year"
+        "part of the collapse rate that intensities beyond the ends of the hazard curve may add", "1/year"
     )
     collapse_return_period_years: float | None = maybe("its inverse", "year")
-    years: float = maybe("number of years for the probability of collapse given below", "year")
-    collapse_probability_in_years: float = maybe("probability of collapse within these years, if events are independent")
+    years: float = maybe("number of years to which `collapse_probability_in_years` refers", "year")
+    collapse_probability_in_years: float = maybe("probability of collapse within `years`, if earthquakes are independent events")
     collapse_probability_in_years_interval: list[float | None] = maybe("its interval")
-    decisive_intensity: float = maybe("intensity whose neighbourhood contributes most to the collapse rate, in intensity_unit")
+    decisive_intensity: float = maybe("intensity at which the contribution to the collapse rate is greatest, in `intensity_unit`")
     acceptable_annual_rate: float | None = maybe("rate that the deck accepts", "1/year")
 
     def judged_by_rate(self, violated: list[str]) -> Verdict | None:
@@ -58,8 +60,8 @@ class Annual(KindResults):
 class RotationLimit(ResultModel):
     """The curve of rotations beyond a limit."""
 
-    rotation_ratio: float = fact("ratio of the limit of the rotation to the critical rotation")
-    median: float = fact("median of the lognormal fragility curve for this limit, in intensity_unit")
+    rotation_ratio: float = fact("limit of the rotation, divided by the critical rotation")
+    median: float = fact("median of the lognormal fragility curve for this limit, in `intensity_unit`")
     dispersion: float = fact("its dispersion, of the logarithm")
     median_interval: list[float | None] = fact("profile-likelihood interval of that median")
     annual_rate: float = maybe("mean annual rate at which the limit is exceeded", "1/year")
@@ -74,10 +76,10 @@ class MeasureDispersion(ResultModel):
     median: float = fact("median of the lognormal collapse fragility curve in terms of this measure, in `unit`")
     dispersion: float = fact("its dispersion, of the logarithm")
     amplitude_dispersion: float = fact(
-        "dispersion per unit of the amplitude of the motion: half of the dispersion for a measure that is proportional "
-        "to the square of the amplitude"
+        "dispersion in terms of the amplitude of the motion, comparable between measures: half of "
+        "`dispersion` for a measure that grows with the square of the amplitude"
     )
-    deviance: float = fact("-2 ln(likelihood) of the outcomes: the measure with the least value predicts best")
+    deviance: float = fact("-2 ln(likelihood) of the outcomes, given this measure; the measure with the least value predicts collapse best")
 
 
 class Ensemble(Annual):
@@ -92,38 +94,40 @@ class Ensemble(Annual):
     uplift_probability: float | None = fact("share of the runs in which rocking starts")
     uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
     mean_peak_rotation_ratio: float | None = fact(
-        "mean ratio of the peak rotation to the critical rotation; a run that collapses counts as 1"
+        "mean of the peak rotation divided by the critical rotation; a run that collapses counts as 1"
     )
-    deviation_peak_rotation_ratio: float | None = fact("standard deviation of the ratio of the peak rotation to the critical rotation")
-    median_peak_rotation_ratio: float | None = fact("median ratio of the peak rotation to the critical rotation")
+    deviation_peak_rotation_ratio: float | None = fact("standard deviation of the peak rotation divided by the critical rotation")
+    median_peak_rotation_ratio: float | None = fact("median of the peak rotation divided by the critical rotation")
     confidence: float = fact("level of all intervals")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
+    critical_rotation_rad: float = fact("critical rotation, beyond which gravity causes collapse", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     motions: int = fact("number of motions")
-    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
     handed_over: int = maybe(
-        "number of runs that were decided with rigid contacts, because joints slide or hinges form at other joints", source="Moreau 1988"
+        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
+        source="Moreau 1988",
     )
     collapse_probability_by_rule: dict[str, float] = maybe(
-        "share of the runs that collapse by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
+        "share of the runs that collapse, by each impact rule; given if the coefficients of restitution "
+        "c_v of the rules differ by a factor of more than 1.3"
     )
-    median_pga_g: float | None = fact("median peak acceleration of the runs", "g")
-    median_pgv_m_s: float | None = fact("median peak velocity of the runs", "m/s")
-    median_arias_m_s: float | None = fact("median Arias intensity of the runs", "m/s")
+    median_pga_g: float | None = fact("median, over all runs, of the peak ground acceleration", "g")
+    median_pgv_m_s: float | None = fact("median, over all runs, of the peak ground velocity", "m/s")
+    median_arias_m_s: float | None = fact("median, over all runs, of the Arias intensity", "m/s")
     expected_pga_g: float = maybe(
-        "for generated motions: median peak acceleration observed at their intensity", "g", source="Worden et al. 2012"
+        "for generated motions: median peak acceleration observed in earthquakes of their intensity", "g", source="Worden et al. 2012"
     )
     expected_pgv_m_s: float = maybe(
-        "for generated motions: median peak velocity observed at their intensity", "m/s", source="Worden et al. 2012"
+        "for generated motions: median peak velocity observed in earthquakes of their intensity", "m/s", source="Worden et al. 2012"
     )
 
     sensitivity: dict[str, Sensitivity] = maybe(
         "Sobol indices of each uncertain value; `motion` is the random choice of the motion", source="Saltelli and others 2010"
     )
-    sensitivity_runs: int = maybe("number of additional runs for these indices, not included in `count`")
-    intensity: str = maybe("for a cloud: intensity measure of the fragility curves; medians are in its unit")
+    sensitivity_runs: int = maybe("number of runs added for these indices; they are not included in `count`")
+    intensity: str = maybe("for a cloud analysis: intensity measure of the fragility curves; medians are in its unit")
     intensity_unit: str = maybe("unit of the intensities and of the medians")
     median: float | None = maybe(
         "median of the lognormal collapse fragility curve over the intensities of the motions", source="Jalayer and others 2017"
@@ -133,7 +137,7 @@ class Ensemble(Annual):
     dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
     rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
     measures: list[MeasureDispersion] = maybe(
-        "for a cloud: intensity measures, ranked by how well they separate collapse from survival; the best comes first",
+        "for a cloud analysis: intensity measures, ranked by how well they separate collapse from survival; the best comes first",
         source="Luco and Cornell 2007",
     )
 
@@ -158,8 +162,8 @@ class RuleShares(ResultModel):
 
     rule: str = fact("word of [joints] restitution")
     restitution: float = fact(
-        "coefficient of restitution (angular velocity after / before impact), limited to 0 to 1; for a mechanism, at the "
-        "impact that starts rocking towards +x"
+        "coefficient of restitution (angular velocity after / before impact), limited to values from 0 "
+        "to 1; for a mechanism, at the impact that starts rocking towards +x"
     )
     collapse_probability: list[float] = fact("share of the motions that cause collapse, at each level of intensity")
 
@@ -176,27 +180,30 @@ class LevelShares(Annual):
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each level of intensity")
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each level of intensity")
-    confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
+    confidence_interval: list[list[float]] = fact(
+        "95 % confidence intervals (Wilson score) of the probability of collapse", source="Wilson 1927"
+    )
     uplifted: list[int] = fact("number of motions under which rocking starts, at each level of intensity")
     uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each level of intensity")
     uplift_confidence_interval: list[list[float]] = fact(
-        "score intervals of the share of motions under which rocking starts", source="Wilson 1927"
+        "95 % confidence intervals (Wilson score) of the share of motions under which rocking starts", source="Wilson 1927"
     )
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level of intensity", "g")
     confidence: float = fact("level of all intervals")
     median: float | None = maybe(
-        "median of the lognormal curve of the probability of collapse at a level, in intensity_unit", source="Baker 2015"
+        "median of the lognormal curve of the probability that a motion of a given level causes collapse, in `intensity_unit`",
+        source="Baker 2015",
     )
     dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     deviance: float | None = maybe("deviance of that curve")
     degrees_of_freedom: int = maybe("its degrees of freedom")
     goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
-    median_interval: list[float | None] = maybe("bootstrap interval of this median; motions are drawn together with all their levels")
+    median_interval: list[float | None] = maybe("bootstrap confidence interval of `median`; each motion is drawn with all its levels")
     dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
     first_collapse_median: float | None = maybe(
-        "median of the lognormal curve of the least intensity at which a motion causes collapse, in intensity_unit",
+        "median of the lognormal curve of the lowest intensity at which a motion causes collapse, in `intensity_unit`",
         source="interval-censored likelihood: Burridge 1981",
     )
     first_collapse_dispersion: float | None = maybe(
@@ -205,30 +212,30 @@ class LevelShares(Annual):
     first_collapse_deviance: float | None = maybe("deviance of that curve")
     first_collapse_degrees_of_freedom: int = maybe("its degrees of freedom")
     first_collapse_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
     first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
     first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
     uplift_median: float | None = maybe(
-        "median of the lognormal curve of the probability that rocking starts, in intensity_unit", source="Baker 2015"
+        "median of the lognormal curve of the probability that rocking starts, in `intensity_unit`", source="Baker 2015"
     )
     uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     uplift_deviance: float | None = maybe("deviance of that curve")
     uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
     uplift_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
     overturning_given_uplift_median: float | None = maybe(
-        "median of the lognormal curve of collapse, given that rocking starts, in intensity_unit", source="Baker 2015"
+        "median of the lognormal curve of the probability of collapse if rocking starts, in `intensity_unit`", source="Baker 2015"
     )
     overturning_given_uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
     overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
     overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
     overturning_given_uplift_goodness_p_value: float | None = maybe(
-        "p-value of the goodness of fit: probability of a greater deviance if the fitted curve were true"
+        "p-value of the goodness of fit: probability that the deviance is greater, if the fitted curve is true"
     )
     motions_that_collapse: int = fact("number of motions that cause collapse at one or more levels")
-    resurrections: int = fact("number of motions that cause collapse at one level and not at a higher level")
+    resurrections: int = fact("number of motions that cause collapse at one level but not at a higher level")
 
     def judged_over_levels(self, violated: list[str]) -> Verdict:
         """The fitted median is the capacity; levels are questions, not a demand."""
@@ -240,8 +247,8 @@ class LevelShares(Annual):
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
-                f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}. No fragility "
-                "curve could be fitted.",
+                f"At the highest level of {self.intensity}, {100.0 * share[-1]:.3g} % of the motions cause collapse. "
+                "No fragility curve could be fitted.",
                 None,
                 None,
                 self.intensity_unit,
@@ -261,48 +268,50 @@ class LevelShares(Annual):
 class OverLevels(LevelShares):
     """fragility: one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
 
-    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
     handed_over: int = maybe(
-        "number of runs that were decided with rigid contacts, because joints slide or hinges form at other joints", source="Moreau 1988"
+        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
+        source="Moreau 1988",
     )
     hinges_elsewhere_share: list[float | None] = fact(
-        "share of the motions in which hinges form at other joints, at each level of intensity"
+        "share of the motions for which hinges form outside the rocking mechanism, at each level of intensity"
     )
     mean_peak_rotation_ratio: list[float | None] = fact(
-        "mean ratio of the peak rotation to the critical rotation, at each level; a motion that causes collapse counts as 1"
+        "mean of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     deviation_peak_rotation_ratio: list[float | None] = fact(
-        "standard deviation of the ratio of the peak rotation to the critical rotation, at each level"
+        "standard deviation of the peak rotation divided by the critical rotation, at each level"
     )
     median_peak_rotation_ratio: list[float | None] = fact(
-        "median ratio of the peak rotation to the critical rotation, at each level; a motion that causes collapse counts as 1"
+        "median of the peak rotation divided by the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
     peak_rotation_ratio_16: list[float | None] = fact(
-        "16th percentile of the ratio of the peak rotation to the critical rotation, at each level; null if this percentile is collapse",
+        "16th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse",
         source="Vamvatsikos and Cornell 2002",
     )
     peak_rotation_ratio_50: list[float | None] = fact(
-        "median of the ratio of the peak rotation to the critical rotation, at each level; null if the median is collapse"
+        "median of the peak rotation divided by the critical rotation, at each level; null if the median is collapse"
     )
     peak_rotation_ratio_84: list[float | None] = fact(
-        "84th percentile of the ratio of the peak rotation to the critical rotation, at each level; null if this percentile is collapse"
+        "84th percentile of the peak rotation divided by the critical rotation, at each level; null if this percentile is collapse"
     )
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
+    critical_rotation_rad: float = fact("critical rotation, beyond which gravity causes collapse", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     collapse_by_rule: list[RuleShares] = maybe(
-        "probability of collapse by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
+        "probability of collapse by each impact rule; given if the coefficients of restitution c_v of "
+        "the rules differ by a factor of more than 1.3"
     )
-    rule_band: float = maybe("greatest difference between the probabilities of collapse by two impact rules at one level")
+    rule_band: float = maybe("greatest difference, at one level, between the probabilities of collapse by two impact rules")
 
     def judged(self, demand: Demand) -> Verdict:
         """The fitted median is the capacity; levels are questions, not a demand."""
         violated = list(self.conditions.violated)
         if self.rule_band:
             violated.append(
-                "The outcome depends on the impact rule: at one level the probabilities of collapse differ by up to "
-                f"{100.0 * self.rule_band:.3g} %."
+                "The outcome depends on the impact rule: the probabilities of collapse at one level differ by up "
+                f"to {100.0 * self.rule_band:.3g} %."
             )
         return self.judged_over_levels(violated)
 
@@ -341,25 +350,28 @@ class OverDurations(KindResults):
     """fragility: generated motions of several durations; lists hold one value a duration."""
 
     durations_s: list[float] = fact("durations of the motions", "s")
-    mean_peak_rotation_ratio: list[float | None] = fact("mean ratio of the peak rotation to the critical rotation, at each duration")
+    mean_peak_rotation_ratio: list[float | None] = fact("mean of the peak rotation divided by the critical rotation, at each duration")
     deviation_peak_rotation_ratio: list[float | None] = fact(
-        "standard deviation of the ratio of the peak rotation to the critical rotation, at each duration"
+        "standard deviation of the peak rotation divided by the critical rotation, at each duration"
     )
     collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each duration")
     uplift_probability: list[float | None] = fact("share of the motions under which rocking starts, at each duration")
-    confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
+    confidence_interval: list[list[float]] = fact(
+        "95 % confidence intervals (Wilson score) of the probability of collapse", source="Wilson 1927"
+    )
     confidence: float = fact("level of these intervals")
     count: list[int] = fact("number of motions with a result, at each duration")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("number of motions that cause collapse, at each duration")
     uplifted: list[int] = fact("number of motions under which rocking starts, at each duration")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    critical_rotation_rad: float = fact("critical rotation: beyond it gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
+    critical_rotation_rad: float = fact("critical rotation, beyond which gravity causes collapse", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     median_pga_g: list[float | None] = fact("median peak acceleration of the motions, at each duration", "g")
-    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all runs")
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all runs")
     handed_over: int = maybe(
-        "number of runs that were decided with rigid contacts, because joints slide or hinges form at other joints", source="Moreau 1988"
+        "number of runs that were continued with rigid contacts, because joints slide or hinges form outside the rocking mechanism",
+        source="Moreau 1988",
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -385,34 +397,36 @@ class Resonance(KindResults):
     cap_g: float = fact("cap of the ground acceleration", "g")
     cap_ratio: float = fact("cap over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    initial_rotation_ratio: float = fact("ratio of the rotation at the start to the critical rotation")
+    initial_rotation_ratio: float = fact("rotation at the start, divided by the critical rotation")
     half_cycles: int = fact("number of changes of sign of the motion")
-    collapse_time_s: float | None = fact("time after which the rotation can no longer recover", "s")
+    collapse_time_s: float | None = fact("time after which the structure can no longer recover", "s")
     switch_times_s: list[float] = fact("when the motion changes sign", "s")
     switch_spacing_s: list[float] = fact("time between them", "s")
     peak_rotation_rad: list[float] = fact("rotation at the start, and at each change of sign of the motion", "rad")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    conditions: Conditions = fact("whether blocks slide or hinges form at other joints under this motion")
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, under this motion")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
-        "for a block, by number of half cycles: least limit on the acceleration of the motion, as a ratio to the uplift acceleration, at which "
-        "collapse occurs within this number"
+        "for a block, by number of half cycles: lowest limit of the acceleration, divided by the uplift "
+        "acceleration, at which the block collapses within this number"
     )
     least_cap_g: float | None = maybe(
-        "for a block: least limit on the acceleration of the motion at which the rotation grows; null if the two toes differ", "g"
+        "for a block: lowest limit of the acceleration at which the rotation grows; null if the two toes differ", "g"
     )
-    least_cap_ratio: float | None = maybe("ratio of the least limit on the acceleration to the uplift acceleration")
+    least_cap_ratio: float | None = maybe(
+        "lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration"
+    )
     least_cap_ratios: list[list[float]] = maybe(
-        "ratios of the least limits on the acceleration to the uplift acceleration, for each aspect ratio (rows) and each "
-        "initial ratio of the rotation (columns)",
+        "lowest limits of the acceleration at which the rotation grows, divided by the uplift "
+        "acceleration. Rows: aspect ratios B/H; columns: initial rotations",
         source="thesis Fig. 6-3",
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
-    initial_ratios: list[float] = maybe("ratios of the rotations at the start to the critical rotation", source="thesis Fig. 6-3")
+    initial_ratios: list[float] = maybe("rotations at the start, divided by the critical rotation", source="thesis Fig. 6-3")
     impulse_amplitude_g: float = maybe("for a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
     share_of_starts_that_add: dict[str, float] = maybe(
-        "share of the initial states in which an impulse adds energy, for each ratio of its period to the natural period",
+        "share of the initial states in which an impulse adds energy, for each ratio of impulse period to natural period",
         source="thesis Fig. 6-4",
     )
 
@@ -426,7 +440,7 @@ class Resonance(KindResults):
         else:
             outcome = "stands" if least is not None and self.cap_g < least else "open"
             does = f"does not cause collapse within {self.half_cycles} half cycles"
-        known = "" if least is None else f"; above {least:.3g} g the rotation grows"
+        known = "" if least is None else f"; above a limit of {least:.3g} g the rotation grows"
         return judge(
             f"The worst motion with accelerations up to {self.cap_g:.3g} g {does}{known}.",
             self.cap_g,
@@ -448,16 +462,18 @@ class RuleSpectrum(ResultModel):
 class RockingSpectrum(KindResults):
     """rocking-spectrum: greatest rotation of blocks or arches of many sizes under a motion."""
 
-    family: list[str] = fact("families of structures: slenderness of the blocks, or shape of the arch")
-    overturned: list[int] = fact("number of members of each family that collapse")
+    family: list[str] = fact("families of structures: blocks of one slenderness, or arches of one shape")
+    overturned: list[int] = fact("number of members that collapse, for each family")
     longest_overturning_period_s: list[float | None] = fact(
-        "longest period 2 pi/p among the members that collapse; null if none collapses", "s"
+        "longest period 2 pi/p of the members that collapse; null if none collapses", "s"
     )
     size_m: list[float] = fact("sizes: half-diagonals of the blocks, or radii of the arches", "m")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
-    conditions: list[Conditions] = fact("for each family: number of sizes in which blocks slide or hinges form at other joints")
+    conditions: list[Conditions] = fact(
+        "for each family: number of sizes for which blocks slide, or hinges form outside the rocking mechanism"
+    )
     by_rule: list[RuleSpectrum] = maybe(
-        "spectrum by each impact rule, if the coefficients c_v of the rules differ by a factor of more than 1.3"
+        "spectrum by each impact rule; given if the coefficients of restitution c_v of the rules differ by a factor of more than 1.3"
     )
     decided_by_rule: int = maybe("number of sizes whose outcome depends on the impact rule")
 
@@ -467,9 +483,7 @@ class RockingSpectrum(KindResults):
         violated = [f"{name}: {text}" for name, one in zip(self.family, self.conditions, strict=True) for text in one.violated]
         if self.decided_by_rule:
             violated.append(f"The outcome of {self.decided_by_rule} sizes depends on the impact rule.")
-        return judge(
-            f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes that were calculated.", violated=violated
-        )
+        return judge(f"The motion overturns {sum(self.overturned)} of the {total} calculated sizes and shapes.", violated=violated)
 
 
 class HarmonicMap(KindResults):
@@ -482,11 +496,12 @@ class HarmonicMap(KindResults):
     lowest_overturning_amplitude_g: list[float | None] = fact(
         "lowest amplitude that causes collapse, at each frequency; null if none does", "g"
     )
-    safe_pocket_cells: int = fact("number of cells of the map that are safe although a lower amplitude causes collapse")
+    safe_pocket_cells: int = fact("number of cells of the map without collapse, although a lower amplitude causes collapse")
     restitution: float | None = fact("coefficient of restitution: angular velocity after / before an impact; null on a compliant base")
-    conditions: Conditions = fact("whether blocks slide or hinges form at other joints, over all cells of the map")
+    conditions: Conditions = fact("whether blocks slide, or hinges form outside the rocking mechanism, over all cells of the map")
     handed_over: int = maybe(
-        "number of cells of the map that were decided with rigid contacts, because joints slide or hinges form at other joints",
+        "number of cells of the map that were continued with rigid contacts, because joints slide or "
+        "hinges form outside the rocking mechanism",
         source="Moreau 1988",
     )
 
@@ -494,8 +509,8 @@ class HarmonicMap(KindResults):
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""
         least = min((a for a in self.lowest_overturning_amplitude_g if a is not None), default=None)
         text = (
-            "No harmonic motion of the map causes collapse."
+            "None of the harmonic motions of the map causes collapse."
             if least is None
-            else f"The lowest harmonic amplitude that causes collapse is {least:.3g} g."
+            else f"The lowest amplitude of a harmonic motion that causes collapse is {least:.3g} g."
         )
         return judge(text, None, least, "g", violated=self.conditions.violated)

@@ -514,7 +514,7 @@ def _on_disk(path: Path, group: str, title: str, length: int, dtype: np.dtype) -
             except Unreadable as error:
                 raise StoreError(f"{path}: cannot be read: {error}") from None
             if rows.shape != (end - first,) or rows.dtype != dtype:
-                raise StoreError(f"{path}: '{title}' was changed after the folder was read")
+                raise StoreError(f"{path}: the array '{title}' was changed after the folder was read")
             yield rows
 
     return Streamed(length, dtype, pieces)
@@ -529,7 +529,7 @@ def _array(path: Path, group: str, title: str, found: dict[str, Any]) -> Array:
         data = np.array([str(text) for text in data], dtype=object).reshape(found["shape"])
     dims, marks = (tuple(str(text) for text in found[key]) for key in ("dims", "marks"))
     if len(dims) != data.ndim:
-        raise ValueError(f"'{title}' has {data.ndim} axes, but {len(dims)} names of axes were given")
+        raise ValueError(f"array '{title}' has {data.ndim} axes, but {len(dims)} axis names were given")
     return Array(data, dims, *marks)
 
 
@@ -555,7 +555,7 @@ def read(folder: str | Path) -> Stored:
             name: {title: _array(place.absolute(), name, title, one) for title, one in group.items()} for name, group in found.items()
         }
         if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
-            raise StoreError(f"{place}: this file contains '{min(untold)}', which is not listed in {SUMMARY}")
+            raise StoreError(f"{place}: this file contains the array '{min(untold)}', which is not listed in {SUMMARY}")
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, partial(dict, head), summary["analyses"], arrays)
     except files.BadFile as error:

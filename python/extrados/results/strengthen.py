@@ -10,11 +10,11 @@ from extrados.schema.quantities import engineering
 class GoverningRange(ResultModel):
     """A mechanism that governs over a range of the size of an intervention."""
 
-    first: float = fact("size from which this mechanism governs, in the unit of the intervention")
-    last: float = fact("size at which another mechanism begins to govern, or at which the curve ends")
-    capacity_first: float = fact("capacity at the size from which this mechanism governs, in the unit of the target")
-    capacity_last: float = fact("capacity at the size up to which this mechanism governs, in the unit of the target")
-    direction: str = fact("direction of the load: +x or -x; in space, its angle in plan")
+    first: float = fact("size from which this mechanism governs, in the unit of the sizes")
+    last: float = fact("size up to which this mechanism governs: the next mechanism, or the end of the curve, begins there")
+    capacity_first: float = fact("capacity at the lower end of this range of sizes, in the unit of the target")
+    capacity_last: float = fact("capacity at the upper end of this range of sizes, in the unit of the target")
+    direction: str = fact("direction of the load: +x or -x; in space, the angle in plan")
     mechanism: str = fact("the mechanism in words")
 
 
@@ -34,7 +34,7 @@ class OtherVerdict(ResultModel):
     before: Outcome = fact("verdict on the existing building")
     after: Outcome = fact("verdict on the strengthened building")
     margin_before: float | None = fact(
-        "critical scale factor of the hazard before the intervention, or the lower end of its range; null if not known"
+        "critical scale factor of the hazard before the intervention (or lower end of its interval); null if not known"
     )
     margin_after: float | None = fact("the same after")
 
@@ -44,38 +44,39 @@ class Intervention(ResultModel):
 
     name: str = fact("its name")
     kind: Literal["tie", "strut", "spring", "ring-beam", "hoop", "chain", "change"] = fact(
-        "kind of intervention: tie, strut, spring in tension and compression, ring beam with its weight, hoop or chain "
-        "in space, or change of a key"
+        "kind of intervention: tie, strut, spring (tension and compression), ring beam with its weight, "
+        "hoop or chain in space, or change of a key"
     )
     key: str = maybe("key of the deck that the intervention changes")
-    place: str = fact("place of the intervention, or existing value of the changed key")
-    start_m: list[float] = maybe("first end of a tie: [x, y], in space [x, y, z]; for a hoop, a point at its height", "m")
+    place: str = fact("place of the intervention; for a changed key, its present value")
+    start_m: list[float] = maybe("first end of a tie: [x, y], in space [x, y, z]; for a hoop, a point at the height of the hoop", "m")
     via_m: list[list[float]] = maybe("points through which a chain runs", "m")
     stiffness_N_m: float = maybe(
-        "axial stiffness EA/L of the tie in the runs: that of the deck; if the deck gives none, that of a steel bar with the least section",
-        "N/m",
+        "axial stiffness EA/L of the tie in the runs, from the deck; default: that of a steel bar with the least section", "N/m"
     )
     end_m: list[float] = maybe("second end of the tie; not given for a hoop", "m")
     unit: str = fact("unit of the sizes")
     meets_target: bool = fact("whether any of the calculated sizes meets the target")
     required_size: float | None = fact("least size that meets the target, in `unit`; null if none does")
     required_N: float | None = maybe("least yield force of the tie that meets the target; null if none does", "N")
-    depth_m: float = maybe("depth out of plane to which the tie force refers", "m")
+    depth_m: float = maybe("depth out of plane that one tie serves", "m")
     greatest_capacity: float | None = fact(
-        "greatest value reached, in the unit of the target; null if no collapse mechanism remains, or without a result"
+        "greatest value with any of the sizes, in the unit of the target; null if no collapse mechanism remains, or without a result"
     )
-    capacity_after: float | None = fact("value with the required size, in the unit of the target")
+    capacity_after: float | None = fact("value of the target quantity with the required size, in the unit of the target")
     safety_factor_after: float | None = fact("safety factor with the required size: value divided by demand")
-    next_mechanism: str = fact("mechanism that governs with the required size; if no size suffices, with the greatest size")
+    next_mechanism: str = fact("governing mechanism with the required size; if no size meets the target, with the greatest size")
     bound: Literal["exact", "upper"] | None = fact(
-        "type of the capacity after strengthening: exact; upper bound, if joints in compression slide (dilatant "
-        "friction); null for an estimate by runs"
+        "type of the capacity after strengthening. exact; upper bound: joints in compression slide "
+        "(dilatant friction); null: estimate by runs"
     )
     ranges: list[GoverningRange] = fact("governing mechanisms in order of increasing size")
     length_m: float = fact("length of tie", "m")
     force_N: float = fact("force of tie", "N")
     volume_m3: float = fact("volume of masonry that is added or injected", "m^3")
-    cost: float | None = fact("cost by the weights in the deck; null if the target is not met, or if no weight applies to this change")
+    cost: float | None = fact(
+        "relative cost by the weights in the deck; null if the target is not met, or if no weight applies to this change"
+    )
     anchorage: list[AnchorageCheck] = maybe("checks of bar and anchorage under the required force")
     adverse: list[str] = fact("adverse effects")
     verdicts: list[OtherVerdict] = maybe("verdicts of all strategies before and after the intervention")
@@ -97,10 +98,10 @@ class FragilityPair(ResultModel):
     levels: list[float] = fact("factors on the motions")
     motions: int = fact("number of motions")
     before: list[float | None] = fact("share of the motions that cause collapse of the existing building")
-    before_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
+    before_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of `before`", source="Wilson 1927")
     before_high: list[float] = fact("upper end", source="Wilson 1927")
     after: list[float | None] = fact("share of the motions that cause collapse of the strengthened building")
-    after_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of this share", source="Wilson 1927")
+    after_low: list[float] = fact("lower end of the 95 % confidence interval (Wilson score) of `after`", source="Wilson 1927")
     after_high: list[float] = fact("upper end", source="Wilson 1927")
 
 
@@ -108,14 +109,14 @@ class Strengthen(KindResults):
     """strengthen: alternatives that meet a target, side by side."""
 
     by: str = fact("analysis that measures the target")
-    quantity: str = fact("name of the target quantity in words")
-    unit: str = fact("unit of the target and of the values; empty for a factor or a probability")
+    quantity: str = fact("name of the target quantity, in words")
+    unit: str = fact("unit of the target and of all values of its quantity; empty for a factor or a probability")
     target: float = fact("the target, in `unit`")
-    demand: float | None = fact("demand to which safety factors refer, in `unit`; null without a demand")
+    demand: float | None = fact("demand by which values are divided to give safety factors, in `unit`; null without a demand")
     direction: Literal["both", "+x", "-x"] | None = fact(
-        "direction of the load in limit analysis; null in space, where `ranges` gives the directions"
+        "direction of the load in limit analysis; null in space, where each entry of `ranges` gives its direction"
     )
-    value_before: float | None = fact("value of the existing building; null without a result")
+    value_before: float | None = fact("value of the target quantity for the existing building; null without a result")
     safety_factor_before: float | None = fact("safety factor of the existing building: value divided by demand")
     met_before: bool = fact("whether the existing building already meets the target")
     mechanism_before: str = fact("governing collapse mechanism of the existing building")
@@ -123,9 +124,9 @@ class Strengthen(KindResults):
     combination: list[CombinedTie] = maybe("combination of ties with the least total force, if more than one tie carries a force")
     combination_cost: float = maybe("its cost")
     combination_meets_target: bool = maybe(
-        "whether the combination meets the target; if joints in compression slide, also without dilatancy"
+        "whether the combination meets the target; if joints in compression slide, whether it does so without dilatancy too"
     )
-    fragility: FragilityPair = maybe("fragility before and after the cheapest intervention")
+    fragility: FragilityPair = maybe("probability of collapse before and after the cheapest intervention")
 
     def judged(self, demand: Demand) -> Verdict:
         """The existing building against the target; a target is no demand, so that no outcome follows."""
@@ -147,7 +148,7 @@ class Strengthen(KindResults):
         if best is None:
             return f"{text} None of the calculated interventions meets the target."
         word = "Intervention" if best.cost is None else "Intervention of least relative cost"
-        return f"{text} {word} that meets it: {best.name}, {size_told(best)}."
+        return f"{text} {word} that meets the target: {best.name}, {size_told(best)}."
 
 
 def works_in(one: Intervention) -> str:

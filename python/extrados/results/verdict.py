@@ -36,12 +36,12 @@ class Verdict(ResultModel):
     capacity: float | None = fact("capacity of the building; null if the analysis gives none")
     unit: str = fact("unit of demand and capacity")
     ratio: float | None = fact("safety factor: capacity / demand; null without a demand or a capacity")
-    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open or not-applicable")
+    outcome: Outcome = fact("outcome: stands, collapses, cannot-stand, open (not decided) or not-applicable")
     bound: Bound | None = fact(
         "type of the capacity: exact; upper bound (true capacity is at most this value); lower bound (at least this "
         "value); null for an estimate"
     )
-    violated: list[str] = fact("violated assumptions of the analysis that were checked; the outcome is then open")
+    violated: list[str] = fact("violated assumptions of the analysis; if there are any, the outcome is open (not decided)")
     statement: str = fact("the verdict in one or two sentences")
 
 
@@ -90,7 +90,7 @@ Model = TypeVar("Model", bound=KindResults)
 def as_model(results: KindResults, model: type[Model]) -> Model:
     """Results as a model of their kind; TypeError where they are of another."""
     if not isinstance(results, model):
-        raise TypeError(f"these are results of {type(results).__name__}, not of {model.__name__}")
+        raise TypeError(f"these are results of the type {type(results).__name__}, not of the type {model.__name__}")
     return results
 
 
@@ -101,9 +101,10 @@ class SelfWeight(KindResults):
     collapse_acceleration_g: float = fact("always 0: the building carries no horizontal acceleration", "g")
     safety_factor: float = fact("always 0: the building collapses before the demand acts")
     certificate: str = fact(
-        "certificate of collapse, with the joints or blocks at which equilibrium fails; if the collapse is not proven, the reason for which the run ended"
+        "certificate of collapse, with the joints or blocks at which equilibrium fails; if collapse is "
+        "not proven, the reason why the run ended"
     )
-    proven: bool = fact("whether a certificate proves the collapse; otherwise the outcome is open")
+    proven: bool = fact("whether a certificate proves the collapse; if not, the outcome is open")
     neglected: list[str] = fact(
         "strengths, restraints and pressures of the deck that the certificate neglects; if there are any, the outcome is open"
     )
@@ -111,13 +112,16 @@ class SelfWeight(KindResults):
     def statement(self) -> str:
         """The result in words."""
         if not self.proven:
-            return f"Whether the structure carries its constant loads is open: no certificate proves that it collapses. {self.certificate}."
+            return (
+                "The analysis does not decide whether the structure carries its constant loads: no certificate "
+                f"proves that it collapses. {self.certificate}."
+            )
         if not self.neglected:
             return f"The structure cannot stand: it collapses under its own weight. {self.certificate}."
         strengths = " and ".join(self.neglected)
         return (
-            f"The structure can stand only with the contribution of {strengths}. Without it the structure collapses under its "
-            f"own weight. {self.certificate}."
+            f"The structure can stand only with the contribution of {strengths}; without it, the structure "
+            f"collapses under its own weight. {self.certificate}."
         )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -170,9 +174,8 @@ def judge(
 def capacity_alone(carried: str, capacity: float, unit: str, bound: Bound | None = None, violated: Sequence[str] = ()) -> Verdict:
     """A base shear that a structure carries which vibrates and yields: no verdict follows from the peak ground acceleration."""
     text = (
-        f"{carried} This is a capacity without a verdict: the structure amplifies the motion and yields, so the peak "
-        "ground acceleration is not comparable with this capacity. To get a verdict from a displacement demand by the "
-        "response spectrum, give the seismic action in [code]."
+        f"{carried} This capacity gives no verdict: the structure amplifies the motion and yields, so the peak ground acceleration "
+        "cannot be compared with it. For a verdict by displacement demand (response spectrum), give the seismic action in [code]."
     )
     return judge(text, None, capacity, unit, "not-applicable", bound, violated)
 

@@ -12,10 +12,10 @@ Method = Literal["N2", "capacity-spectrum", "coefficient"]
 class IdealisedCurve(ResultModel):
     """A capacity curve as an elastic-plastic oscillator; displacements are those of the control point."""
 
-    push: str = fact("sense of the push, or name of the pushover")
+    push: str = fact("direction of the push, or name of the pushover")
     equivalent_mass_kg: float = fact("m* = sum m phi", "kg", source="NTC 2018 C7.3.4.2")
-    participation_factor: float = fact("participation factor: Gamma = m*/sum m phi^2, with phi = 1 at the control point")
-    mass_ratio: float = fact("mass ratio: ratio of the participating mass m* Gamma to the total mass")
+    participation_factor: float = fact("participation factor Gamma = m*/sum(m phi^2), with phi = 1 at the control point")
+    mass_ratio: float = fact("mass ratio: participating mass m* Gamma divided by the total mass")
     period_s: float = fact("T* = 2 pi sqrt(m*/k*)", "s")
     yield_load_N: float = fact("base shear of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
@@ -31,20 +31,22 @@ class IdealisedCurve(ResultModel):
 class DisplacementCheck(ResultModel):
     """Displacement demand and capacity of one curve at one limit state."""
 
-    push: str = fact("sense of the push, or name of the pushover")
+    push: str = fact("direction of the push, or name of the pushover")
     limit_state: str = fact("limit state: SLO, SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; ULS")
     demand_m: float | None = fact("displacement demand at the control point; null without a demand, or beyond collapse", "m")
     capacity_m: float | None = fact("displacement capacity at the control point; null if the code gives none", "m")
-    strength_ratio: float | None = fact("strength ratio q*: ratio of elastic force to yield force; null without a demand")
+    strength_ratio: float | None = fact("strength ratio q*: elastic force divided by yield force; null without a demand")
     greatest_strength_ratio: float | None = fact("greatest q* that the code allows; null without a limit")
     factor: float | None = fact(
-        "factor on the seismic action at which the check of displacement and q* is just satisfied; null if not found"
+        "factor on the seismic action at which the check (displacement and q*) is just satisfied; null if not found"
     )
-    demand_pga_g: float | None = fact("peak ground acceleration of the seismic action: a_g S", "g")
-    capacity_pga_g: float | None = fact("peak ground acceleration that is carried: a_g S times the factor; their ratio is alpha_PGA", "g")
+    demand_pga_g: float | None = fact("demand: peak ground acceleration a_g S of the seismic action", "g")
+    capacity_pga_g: float | None = fact("capacity: peak ground acceleration a_g S times the factor; capacity / demand is alpha_PGA", "g")
     return_period_years: float | None = fact("return period of the seismic action; null if not known", "year")
     capacity_return_period_years: float | None = fact(
-        "return period of the action that is carried, interpolated between the limit states of [code]; null outside their range", "year"
+        "return period of the action that the building can carry, interpolated between the limit states "
+        "of [code]; null outside their range",
+        "year",
     )
     verdict: Literal["holds", "fails", ""] = fact("verdict of the check; empty without a demand or a capacity")
     clause: str = fact("clauses of demand and capacity")
@@ -53,9 +55,9 @@ class DisplacementCheck(ResultModel):
 class BuildingFragility(ResultModel):
     """Lognormal fragility by N2 over a set of motions, each scaled; its scatter is that of the motions alone."""
 
-    limit_state: str = fact("limit state whose displacement capacity a curve reaches first")
+    limit_state: str = fact("limit state whose displacement capacity the capacity curve reaches first")
     motions: int = fact("motions that were used")
-    median_pga_g: float = fact("median of the peak ground accelerations that the building carries", "g")
+    median_pga_g: float = fact("median of the peak ground accelerations that the building can carry", "g")
     dispersion: float = fact("standard deviation of their logarithms")
 
 
@@ -64,16 +66,19 @@ class Verification(ResultModel):
 
     jurisdiction: Jurisdiction = fact("code whose rules decide")
     code: str = fact("code and edition in words")
-    by_default: bool = fact("whether the deck has no [code]; the rules of NTC 2018 are then applied")
+    by_default: bool = fact("whether the deck has no table [code], so that the rules of NTC 2018 are applied")
     method: Method = fact("method of the displacement demand")
     confidence_factor: float | None = fact("confidence factor by which strengths were divided; null without a demand")
     curves: list[IdealisedCurve] = fact("each curve as an oscillator")
     checks: list[DisplacementCheck] = fact("checks of each capacity curve at each limit state")
-    zeta_E: float | None = fact("zeta_E of NTC: least factor on the seismic action at SLV; null without a demand", source="NTC 2018 8.3")
+    zeta_E: float | None = fact(
+        "zeta_E of NTC at SLV: least factor on the seismic action for which the check is satisfied; null without a demand",
+        source="NTC 2018 8.3",
+    )
     nbs_percent: float | None = maybe("NZSEE: %NBS, the least factor", "%")
     fragility: list[BuildingFragility] = maybe("fragility of the building for the motions of the deck")
     violated: list[str] = fact(
-        "assumptions on the unsafe side that are violated. If there are any, a code check that is satisfied does not decide: the outcome is open"
+        "violated assumptions on the unsafe side. If there are any, a satisfied code check gives no verdict: the outcome is open"
     )
 
     def governing(self) -> DisplacementCheck | None:
@@ -120,7 +125,7 @@ class Verification(ResultModel):
         ratio = ""
         limit = check.greatest_strength_ratio
         if limit is not None and check.strength_ratio is not None and check.factor * check.strength_ratio > 0.999 * limit:
-            ratio = f", limited by q* ({check.strength_ratio:.3g}; at most {limit:g})"
+            ratio = f", governed by q* ({check.strength_ratio:.3g}; at most {limit:g})"
         return (
             f"{self.code} at {check.limit_state}: the displacement check {check.verdict} (push {check.push}, {self.method}). "
             f"Demand {demand}, capacity {1e3 * check.capacity_m:.3g} mm; {index} {value}{ratio}; peak ground acceleration "
@@ -133,7 +138,7 @@ class Verification(ResultModel):
             known = [c for c in self.checks if c.demand_m is not None]
             told = ", ".join(f"{1e3 * (c.demand_m or 0.0):.3g} mm at {c.limit_state}, push {c.push}" for c in known)
             return (
-                "ASCE 41 accepts piers by their individual drifts (Table 11-4). This program does not include that table, so "
-                f"there is no verdict.{f' Target displacement {told}.' if told else ''}"
+                "ASCE 41 checks the drift of each pier (Table 11-4). This program does not include that table, "
+                f"so there is no verdict.{(f' Target displacement {told}.' if told else '')}"
             )
-        return "The code gives no displacement capacity at the limit states of the deck, so there is no verdict."
+        return "The code gives no displacement capacity for the limit states of the deck, so there is no verdict."

@@ -48,7 +48,7 @@ def table_of(title: str, keys: Sequence[str], rows: Sequence[Mapping[str, Any]],
     body = "".join(
         "<tr>" + "".join(f'<td style="{STYLE}">{html.escape(_cell(row.get(name)))}</td>' for name in names) + "</tr>" for row in shown
     )
-    left = f"<p>{len(rows) - len(shown)} more members: use frame().</p>" if len(rows) > len(shown) else ""
+    left = f"<p>{len(rows) - len(shown)} more runs: use frame().</p>" if len(rows) > len(shown) else ""
     return f"<div><b>{html.escape(title)}</b><table><tr>{head}</tr>{body}</table>{left}</div>"
 
 

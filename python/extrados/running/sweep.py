@@ -135,7 +135,7 @@ class Sweep:
     def __repr__(self) -> str:
         over = ", ".join(self.keys)
         told = f"; {self.stopped}" if self.stopped else ""
-        return f"<Sweep over {over}: {len(self)} of {self.members} members, {len(self.columns)} columns{told}>"
+        return f"<Sweep over {over}: {len(self)} of {self.members} runs, {len(self.columns)} columns{told}>"
 
     def _repr_html_(self) -> str:
         """In a notebook: the first members, with their verdicts."""
@@ -177,9 +177,7 @@ class Sweep:
         if self.shape is None:
             coords = {name: (dims, self.column(name), self._told(name)) for name in self.keys}
         elif len(self.rows) < self.members:
-            raise ValueError(
-                f"{self.members - len(self.rows)} members are missing ({self.stopped}), so that the grid is incomplete: use frame()"
-            )
+            raise ValueError(f"{self.members - len(self.rows)} runs are missing ({self.stopped}), so the grid is incomplete: use frame()")
         else:
             dims, shape = tuple(self.keys), self.shape
             coords = {}
@@ -256,7 +254,7 @@ def _members(over: Any) -> tuple[list[str], list[list[Any]], tuple[int, ...] | N
         if short or not axes:
             raise DeckError([f"over: {key}: expected a list of values" for key in short] or ["over: expected at least one key"])
         if (count := math.prod(map(len, axes.values()))) > MOST_MEMBERS:
-            raise DeckError([f"over: all combinations of the values are {count:,} members, more than the {MOST_MEMBERS:,} allowed"])
+            raise DeckError([f"over: all combinations of the values give {count:,} runs, more than the {MOST_MEMBERS:,} allowed"])
         return list(axes), [list(row) for row in itertools.product(*axes.values())], tuple(map(len, axes.values()))
     given = [dict(row) for row in over]
     if not given or any(set(row) != set(given[0]) or not row for row in given):

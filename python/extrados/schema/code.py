@@ -73,25 +73,25 @@ class Code(Table):
     """The code of the report: one jurisdiction, whose rules alone decide. Without this table the rules of NTC 2018 are applied."""
 
     jurisdiction: Jurisdiction = key(
-        about="NTC (Italy), EN1998 (Eurocode 8), ASCE41 (United States), NZSEE (New Zealand), or none (no code: formulas of "
-        "mechanics and research only)"
+        about="code of the checks: NTC (Italy), EN1998 (Eurocode 8), ASCE41 (United States), NZSEE (New "
+        "Zealand), or none (no code: formulas of mechanics and research only)"
     )
     edition: str | None = key(None, "edition of the code: NTC 2018, EN1998 2004, ASCE41 2013, NZSEE 2017")
-    nominal_life: Years = key(50.0, "nominal life V_N in years (NTC)", source="NTC 2018, 2.4.1")
+    nominal_life: Years = key(50.0, "nominal life V_N of the building in years (NTC)", source="NTC 2018, 2.4.1")
     importance: Literal["I", "II", "III", "IV"] | None = key(
         None,
         "class of use (NTC: coefficient C_U) or importance class (EN 1998-1: factor gamma_I); default II",
         source="NTC 2018 Table 2.4.II; EN 1998-1 4.2.5",
     )
     limit_states: list[Literal["SLO", "SLD", "SLV", "SLC", "DL", "SD", "NC", "IO", "LS", "CP", "ULS"]] = key(
-        [], "limit states to check; default SLV (NTC), SD (EN 1998), LS (ASCE 41) or ULS (NZSEE)", max_length=4
+        [], "limit states that are checked; default SLV (NTC), SD (EN 1998), LS (ASCE 41) or ULS (NZSEE)", max_length=4
     )
     return_periods: list[Years] = key([], "return period in years of each limit state; default for NTC: from V_N and C_U", max_length=4)
     knowledge_level: Literal["LC1", "LC2", "LC3", "KL1", "KL2", "KL3", "minimum", "usual", "comprehensive"] | None = key(
-        None, "knowledge level of the masonry; default: the lowest of the code"
+        None, "knowledge level of the masonry; default: the lowest level of the code"
     )
     confidence_factor: float | None = key(
-        None, "confidence factor, by which mean strengths are divided; default: that of the knowledge level", ge=1, le=2
+        None, "confidence factor, by which mean strengths are divided; default: from the knowledge level", ge=1, le=2
     )
     ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (NTC, EN 1998-1) or site subsoil class (NZS 1170.5)")
     topography: float = key(1.0, "topographic amplification S_T, of NTC", ge=1, le=2)
@@ -109,7 +109,9 @@ class Code(Table):
     )
     long_period: Time = key(8.0, "T_L of ASCE 7", gt=0)
     hazard_factor: Annotated[float, Field(gt=0, le=1)] | None = key(None, "hazard factor Z of NZS 1170.5")
-    research: list[Research] = key([], "formulas of other origin, listed for comparison without effect on the verdict", max_length=6)
+    research: list[Research] = key(
+        [], "formulas of other origin, which are listed for comparison only and do not affect the verdict", max_length=6
+    )
 
     @model_validator(mode="after")
     def _of_one_code(self) -> "Code":

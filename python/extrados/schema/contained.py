@@ -75,7 +75,7 @@ def read_contained(
             _server.end()
             found, _ = _server.answer(file.fileno(), most, PATIENCE * seconds)
     if len(found) > most + _CODE.size:
-        raise Unreadable(f"this file gives more than {most / 1e6:.0f} MB of numbers")
+        raise Unreadable(f"this file contains more than {most / 1000000.0:.0f} MB of numbers")
     answer, end = found[: -_CODE.size], found[-_CODE.size :]
     if not answer:
         raise Unreadable(_reason(_CODE.unpack(end)[0] if end else -signal.SIGKILL, room, seconds))
@@ -100,7 +100,7 @@ def _reason(code: int, room: int, seconds: int) -> str:
     if code == -signal.SIGXCPU:
         return f"this file takes more than {seconds} s to read"
     if code == -signal.SIGKILL:
-        return f"this file cannot be read with {room / 1e6:.0f} MB of memory in the remaining time"
+        return f"with {room / 1000000.0:.0f} MB of memory, this file cannot be read in the remaining time"
     return f"this file cannot be read: its reader ended with code {code}"
 
 

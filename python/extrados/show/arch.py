@@ -106,8 +106,10 @@ def _draw_history(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         saved = style.save(fig, folder, f"{name}-history")
     return (
         saved,
-        f"Histories: ground motion, rotation of {r.rotation_of} with impacts, energies, required friction. Dashed: acceleration at which rocking starts; "
-        "dotted: critical rotation.",
+        (
+            f"Histories: ground motion, rotation of {r.rotation_of} with impacts, energies, required "
+            "friction. Dashed: acceleration at which rocking starts. Dotted: critical rotation."
+        ),
     )
 
 
@@ -160,8 +162,10 @@ def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         saved = style.save(fig, folder, f"{name}-history")
     return (
         saved,
-        f"Histories: ground motion, rotations, energies, greatest slip of a joint. Dotted: change to rigid contacts at {over.time_s:.3f} s. Dashed: "
-        "acceleration at which rocking starts.",
+        (
+            "Histories: ground motion, rotations, energies, greatest slip of a joint. Dotted: start of the calculation with rigid "
+            f"contacts at {over.time_s:.3f} s. Dashed: acceleration at which rocking starts."
+        ),
     )
 
 
@@ -242,7 +246,7 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
         if len(moving):
             sinking.set_xlim(max(0.0, t[moving[0]] - 0.5), min(t[-1], t[moving[-1]] + 0.5))
         saved = style.save(fig, folder, f"{name}-base")
-    return saved, "Above: part of the base in contact. Below: settlement of the base below the centre of mass (dotted: at rest)."
+    return saved, ("Above: share of the base that is in contact. Below: settlement of the base below the centre of mass (dotted: at rest).")
 
 
 def _once(ax: Any) -> tuple[list[Any], list[str]]:
@@ -269,7 +273,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
     with style.figure(8.0, 3.6, columns=2, width_ratios=[2.4, 1]) as (fig, (over_time, along)):
         joints = np.arange(friction.shape[1])
         mesh = over_time.pcolormesh(t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
-        fig.colorbar(mesh, ax=over_time, label="required friction (darkest: 1 or more)")
+        fig.colorbar(mesh, ax=over_time, label="required coefficient of friction (darkest colour: 1 or more)")
         over_time.set_xlabel("time [s]")
         over_time.set_ylabel("joint")
         over_time.grid(False)
@@ -278,7 +282,9 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
         along.set_ylabel("joint")
         for ax in (over_time, along):
             style.numbers(ax.yaxis)
-        return style.save(fig, folder, f"{name}-friction"), "Required friction at the joints during rocking (white: at rest)."
+        return style.save(
+            fig, folder, f"{name}-friction"
+        ), "Coefficient of friction required at the joints during rocking (white: at rest)."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -321,7 +327,12 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         fig.legend(handles, labels, loc="outside lower center", ncols=3)
         title = f"Failure domain of {r.pulse} pulses"
         ax.set_title(title)
-        return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest amplitude that causes collapse at each duration.")]
+        return [
+            (
+                style.save(fig, folder, name),
+                "Outcome of each pulse; the line is the lowest amplitude that causes collapse at each duration.",
+            )
+        ]
 
 
 def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -374,6 +385,9 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         return [
             (
                 style.save(fig, folder, name),
-                "Left: impulses of the motion, compared with the failure curve. Right: the impulses on the ground acceleration.",
+                (
+                    "Left: impulses of the motion, compared with the failure curve. Right: the same impulses, drawn "
+                    "over the ground acceleration."
+                ),
             )
         ]

@@ -74,8 +74,8 @@ def _margins(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-margins")
     return saved, (
-        "Critical scale factor of the hazard by each strategy. Left of the dashed line (1) the hazard itself causes collapse. "
-        "Bar: the factor lies between its ends. Arrow: the factor lies beyond the point and was not searched."
+        "Critical scale factor of the hazard by each strategy. Left of the dashed line (factor 1), the hazard itself causes collapse. "
+        "Bar: the factor is between its ends. Arrow: the factor is beyond this point; its value was not searched."
     )
 
 
@@ -122,8 +122,8 @@ def _agreement(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
     return (
         saved,
         (
-            "Verdicts of the strategies (diagonal) and their agreement in pairs: = same verdict, x different verdicts, ~ "
-            "same verdict with different margins, ? one verdict is open."
+            "Verdicts of the strategies (diagonal) and comparison of each pair. Signs: = same verdict; x "
+            "different verdicts; ~ same verdict with different safety factors; ? one verdict is open."
         ),
     )
 
@@ -153,13 +153,16 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
                 )
         told = ""
         if r.hazard.pulse_amplitude_g is not None and r.hazard.pulse_period_s is not None:
-            told = f" Its primary impulse has {r.hazard.pulse_amplitude_g:.3g} g over {r.hazard.pulse_period_s:.3g} s."
+            told = (
+                f" The primary impulse of the motion is a sine with an amplitude of {r.hazard.pulse_amplitude_g:.3g} "
+                f"g and a period of {r.hazard.pulse_period_s:.3g} s."
+            )
         most = max([float(np.abs(ground).max()), *(row.capacity or 0.0 for row in rows)])
         ax.set_ylim(-1.15 * most, 1.15 * most)
         ax.set_xlim(time[0], time[-1])
         ax.set_xlabel("time [s]")
         ax.set_ylabel("acceleration [g]")
-        ax.set_title("The hazard, and capacities under constant horizontal acceleration")
+        ax.set_title("The hazard, compared with the capacities under constant horizontal acceleration")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-hazard")
     return saved, f"{r.hazard.told[:1].upper()}{r.hazard.told[1:]}.{told}"
@@ -213,10 +216,10 @@ def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns), ("discrete elements", row.dem_turns))
         if value is not None
     ]
-    told = f" Verdicts change at: {'; '.join(turned)}." if turned else " No calculated value changes a verdict."
+    told = f" Verdicts change at: {'; '.join(turned)}." if turned else " None of the calculated values changes a verdict."
     if any(row.dem_base is not None for row in rows):
-        told += " Discrete elements: ratio of the displacement of the blocks to the displacement that counts as collapse."
-    return saved, f"Margins when one value of the deck varies and all others are unchanged.{told}"
+        told += " For discrete elements: displacement of the blocks, divided by the displacement that counts as collapse."
+    return saved, f"Safety factors if one value of the deck varies and all others keep their values.{told}"
 
 
 def _short(key: str) -> str:

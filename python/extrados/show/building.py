@@ -289,7 +289,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
         saved = style.save(fig, folder, NAME)
     *first, last = [words.number(h) for h in structure["storeys"]]
     heights = words.pair(words("Storeys, from the ground up" if first else "Storey"), f"{', '.join([*first, last])} m")
-    told = words("for each wall the length of its middle plane and its thicknesses, that of the lowest storey first")
+    told = words("for each wall: length in its middle plane, and thickness in each storey (lowest storey first)")
     found = [(saved, f"{words.pair(words('Plan of the building'), told)}. {heights}.")]
     faces = elevation.wall_views(walls, storeys, words)
     with style.canvas() as fig:
@@ -298,7 +298,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
             elevation.draw_wall(sheet, view, wall, storeys, words)
         sheet.finish(words, _titled(deck))
         saved = style.save(fig, folder, ELEVATION)
-    seen = words("Elevations of the walls, each with its start at the left. Numbers in openings: width above height.")
+    seen = words("Elevations of the walls; each wall starts at the left. Numbers in openings: width above height.")
     left = len(walls) - len(faces)
     found.append((saved, f"{seen} {words('Walls without an elevation: {count}.', count=left)}" if left else seen))
     return found

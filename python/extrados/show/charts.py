@@ -163,7 +163,7 @@ class Shown:
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
             self._draw(
-                "Capacity over the direction of the acceleration",
+                "Capacity, plotted over the direction of the acceleration",
                 _axis("rose_direction", "direction in plan", "deg"),
                 _axis("", "collapse acceleration", "g"),
                 [_series("rose_capacity", "capacity", sort="both")],
@@ -522,7 +522,7 @@ class Shown:
             self.out["impulse_period"] = np.array([i.period_s for i in r.impulses])
             self.out["impulse_amplitude"] = np.array([abs(i.amplitude_g) for i in r.impulses])
             rows.append(_series("impulse_amplitude", "impulses of motions", x="impulse_period", sort="points"))
-        self._pulses(f"Lowest amplitude that causes collapse, {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)
+        self._pulses(f"Lowest amplitude that causes collapse ({r.pulse} pulse)", _axis("duration_0", "duration", "s"), rows)
 
     def local_mechanism(self) -> None:
         """The capacity curve of the mechanism."""
@@ -530,7 +530,7 @@ class Shown:
             return
         self.send("displacement", "acceleration")
         self._draw(
-            "Capacity of the mechanism over its displacement",
+            "Capacity of the mechanism, plotted over its displacement",
             _axis("displacement", "displacement", "m"),
             _axis("", "acceleration", "g"),
             [_series("acceleration", "capacity")],

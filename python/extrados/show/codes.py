@@ -43,7 +43,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
         ax.set_title("Capacity of the mechanism" if r.mechanism == "building" else f"Capacity: {r.mechanism.replace('-', ' ')}")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-capacity")
-    straight = "; the straight line is the assumption of the code" if r.jurisdiction == "NTC" else ""
+    straight = "; the straight line is assumed by the code" if r.jurisdiction == "NTC" else ""
     caption = f"Capacity curve of the equivalent oscillator, divided by the confidence factor{straight}."
     return [*drawn, (saved, caption), *draw_code_checks(run, name, folder)]
 
@@ -76,7 +76,7 @@ def _draw_walls(run: Stored, name: str, r: LocalMechanism, folder: Path) -> list
         window(ax, np.vstack(list(walls.values())))
         middle = walls[worst.wall].mean(axis=0)
         ax.annotate(worst.wall, middle, xytext=(8, 8), textcoords="offset points", color=style.HINGE, fontsize=9, zorder=4)
-        ax.set_title(f"Wall that overturns first: {worst.wall}, storey {worst.storey}")
+        ax.set_title(f"Governing wall (overturning): {worst.wall}, storey {worst.storey}")
         saved = style.save(fig, folder, f"{name}-mechanism")
     margin = "" if worst.margin is None else f", capacity over demand {worst.margin:.3g}"
     return [(saved, f"Plan: the governing wall rotates out of its plane about the foot of storey {worst.storey}{margin}.")]

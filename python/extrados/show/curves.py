@@ -66,17 +66,20 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
         )
         scaled.set_ylim(0.0, None)
         if slender:
-            scaled.set_xlabel("frequency of the pulse / p")
+            scaled.set_xlabel("frequency of the pulse / p (omega/p)")
             scaled.set_ylabel("amplitude / (g tan(alpha))")
         else:
             scaled.set_xlabel(first.replace("[s]", "/ sqrt(R/g)"))
             scaled.set_ylabel("amplitude / uplift acceleration")
-        scaled.set_title("Normalised by natural time and uplift")
+        scaled.set_title("Normalised by natural time and uplift acceleration")
         if len(r.curves) <= MOST_IN_AXES:
             plain.legend(loc="upper right", frameon=True)
         else:
             style.legend_below(fig, plain)
-        caption = "Left: lowest amplitude that causes collapse of each structure (dotted: start of rocking). Right: the same, normalised by the natural time and the uplift acceleration of the structure."
+        caption = (
+            "Left: lowest amplitude that causes collapse of each structure (dotted: start of rocking). Right: the same curves, with "
+            "durations divided by the natural time and amplitudes by the uplift acceleration."
+        )
         if len(places):
             named = ", ".join(f"{k + 1} {i.name}" for k, i in enumerate(r.impulses))
             caption += f" Points: primary impulses of {named}."

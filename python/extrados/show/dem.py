@@ -245,7 +245,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         low.set_xlabel("time [s]")
         low.set_xlim(0.0, time[-1])
         saved = style.save(fig, folder, f"{name}-rotation")
-    slips = "" if slid is None else ", slip of the joint with the greatest slip"
+    slips = "" if slid is None else ", and slip of the joint that slips most"
     return saved, f"Rotation of the blocks, measured from equilibrium under self-weight{slips}, and the ground acceleration."
 
 
@@ -273,7 +273,8 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         style.legend_above(low)
         saved = style.save(fig, folder, f"{name}-energy")
     return saved, (
-        f"Kinetic energy, and all terms of the energy balance. The error of the balance is {100 * _balance(run, name):.2g} % of the total energy exchanged."
+        f"Kinetic energy, and all terms of the energy balance. The balance has an error of {100 * _balance(run, name):.2g} "
+        "% of the total energy exchanged."
     )
 
 
@@ -304,7 +305,7 @@ def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     }
     time, hinge = run.array(name, "time"), run.array(name, "hinge")
     saved = solid_dem.draw_states(time, hinge, states, HINGED_FIRST, "joint", folder, f"{name}-hinges")
-    return saved, "State of the joints over time: hinges at either end, closed and open joints."
+    return saved, "State of the joints over time: hinge at one end or the other, closed, or open."
 
 
 def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -352,7 +353,7 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
-    drawn = [(saved, "Shortest pulse that causes collapse at each amplitude. Right of a curve the structure collapses.")]
+    drawn = [(saved, ("Shortest pulse that causes collapse, at each amplitude. Pulses to the right of a curve cause collapse."))]
     return [*drawn, _both_solvers(run, name, folder)] if run.results_of(name, DemDomain).cross_check is not None else drawn
 
 
@@ -379,10 +380,10 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_xlim(left=0.0)
         ax.set_ylim(bottom=0.0)
         if check is not None:
-            ax.set_title(f"both solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells")
+            ax.set_title(f"both solvers give the same outcome in {100 * check.agreement_ratio:.0f} % of {check.cells} cells")
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         saved = style.save(fig, folder, f"{name}-solvers")
-    return saved, "Outcome of every cell with springs (compliant) and with rigid contacts (nonsmooth)."
+    return saved, ("Outcome of each cell of the map by two solvers: springs (compliant) and rigid contacts (nonsmooth).")
 
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -410,7 +411,7 @@ def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         ax.set_ylabel("critical damping [%]")
         ax.legend()
         saved = style.save(fig, folder, f"{name}-damping")
-    return [(saved, "Fraction of critical damping at the impact frequencies of the joints.")]
+    return [(saved, "Damping ratio (fraction of critical damping) at the impact frequencies of the joints.")]
 
 
 def film_dem(run: Stored, name: str, folder: Path) -> None:

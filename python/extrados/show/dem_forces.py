@@ -29,7 +29,7 @@ def draw_forces(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         axes[-1].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, "Force of the ground on the blocks" + (
-        ", and the energy that pairs of blocks lost by friction: those that lost most."
+        ", and energy lost by friction, for the pairs of blocks that lost most."
         if worked
         else ". No pair of blocks loses energy by friction."
     )

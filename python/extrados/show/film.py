@@ -44,7 +44,7 @@ def pictures(times: np.ndarray, kind: str, speed: float) -> tuple[np.ndarray, in
 
 def clock(time: float, speed: float) -> str:
     """Time of a picture [s] in words, with the film's speed where that is not the real one."""
-    return f"{time:.2f} s" + ("" if speed == 1.0 else f", at {speed:g} of real time")
+    return f"{time:.2f} s" + ("" if speed == 1.0 else f", played at {speed:g} times the real speed")
 
 
 def write(fig: Figure, path: Path, kind: str, rate: int, frames: np.ndarray, draw: Callable[[int], Any], moving: Sequence[Artist]) -> None:

@@ -45,7 +45,9 @@ def side_by_side(tasks: list[Callable[[], Given]], workers: int, longest: float 
                     value, error = pipe.recv()
                 except (EOFError, OSError):
                     process.join(_LOOK)
-                    raise Lost(f"the process that draws ended with exit code {process.exitcode} (-9: often a lack of memory)") from None
+                    raise Lost(
+                        f"the process that draws the figures ended with exit code {process.exitcode} (-9: often a lack of memory)"
+                    ) from None
                 _end(pipe, process)
                 del running[pipe]
                 if error is not None:
@@ -54,7 +56,7 @@ def side_by_side(tasks: list[Callable[[], Given]], workers: int, longest: float 
             if len(interrupts.asked) > asked:  # a handler may note a signal and go on
                 raise KeyboardInterrupt
             if any(time.monotonic() - begin > longest for _, _, begin in running.values()):
-                raise Lost(f"the process that draws did not end within {longest:g} s")
+                raise Lost(f"the process that draws the figures did not end within {longest:g} s")
     finally:
         for pipe, (_, process, _) in running.items():
             process.kill()

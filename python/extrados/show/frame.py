@@ -67,8 +67,10 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     made.append(
         (
             saved,
-            f"Capacity curves of {len(r.runs)} pushovers. Thin: with accidental eccentricity. Dots: ultimate displacement, "
-            f"at a loss of 20 % of the base shear or when all piers of a wall in one storey reach their drift limits.",
+            (
+                f"Capacity curves of {len(r.runs)} pushovers. Thin lines: with accidental eccentricity. Dots: ultimate displacement "
+                "(base shear decreased by 20 %, or all piers of a wall in one storey at their drift limits)."
+            ),
         )
     )
     if r.walls_out_of_plane:
@@ -91,7 +93,7 @@ def _out_of_plane(r: FramePushover, name: str, folder: Path) -> tuple[str, str]:
         rigid = [(w.rigid_acceleration_g, k) for k, w in enumerate(walls) if w.rigid_acceleration_g is not None]
         if rigid:
             ax.plot(*zip(*rigid, strict=True), "|", color=style.HINGE, markersize=12, markeredgewidth=2, label="rigid mechanism")
-        ax.axvline(r.base_shear_N / r.weight_N, color=style.THRUST, linewidth=1.0, label="base shear of the frame / weight")
+        ax.axvline(r.base_shear_N / r.weight_N, color=style.THRUST, linewidth=1.0, label="base shear of the frame divided by its weight")
         for k, w in enumerate(walls):
             ax.annotate(f"{1e3 * w.deflection_m:.3g} mm", (0.0, k), (4, 0), textcoords="offset points", va="center", fontsize=7)
         ax.set_yticks(places, [w.wall for w in walls])
@@ -99,10 +101,12 @@ def _out_of_plane(r: FramePushover, name: str, folder: Path) -> tuple[str, str]:
         ax.margins(x=0.15)
         ax.set_xlim(left=0.0)
         ax.grid(visible=False, axis="y")
-        ax.set_xlabel("constant acceleration across the plane of the wall [g]")
+        ax.set_xlabel("constant acceleration perpendicular to the plane of the wall [g]")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-out-of-plane")
-    return saved, "Walls out of their planes: greatest constant acceleration, and the deflection at this acceleration."
+    return saved, (
+        "Walls out of their planes: greatest constant acceleration that each wall carries, and its deflection at this acceleration."
+    )
 
 
 def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -159,7 +163,7 @@ def _plan(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         handles += [handle for part, handle in drawn.items() if len(run.array(name, part))]
         fig.legend(handles=handles, loc="outside lower center", ncols=3)
         saved = style.save(fig, folder, f"{name}-plan")
-    return saved, "The frame on the plan: piers between openings, the flanges that walls lift at their corners, floors."
+    return saved, ("The frame in plan: piers between openings, flanges that the walls lift at their corners, and floors.")
 
 
 def _on_plan(line: np.ndarray, a: float, b: float, thickness: float) -> np.ndarray:
@@ -214,7 +218,7 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
         ax.set_ylim(0.0, float(tops.max()) * 1.1)
         ax.set_aspect("equal")
         ax.grid(False)
-        ax.set_xlabel("distance along the walls, side by side [m]")
+        ax.set_xlabel("distance along the walls, which are drawn side by side [m]")
         ax.set_ylabel("height [m]")
         ax.set_title(told)
         handles: list[Artist] = [Patch(facecolor=c, edgecolor=style.EDGE, label=w) for c, w in zip(COLOURS, WORDS, strict=True)]
@@ -269,7 +273,10 @@ def _wall_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     return [
         (
             saved,
-            "Displaced walls in the first modes on the plan, not to scale. M: participating mass over the mass of all levels above the ground.",
+            (
+                "Displaced walls in the first modes, in plan, not to scale. M: participating mass divided by the "
+                "mass of all levels above the ground."
+            ),
         )
     ]
 
@@ -290,7 +297,7 @@ def _block_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.set_xlabel("x [m]")
             ax.set_title(_of_mode(k, mode), fontsize=8)
         saved = style.save(fig, folder, f"{name}-modes")
-    return [(saved, "Displacements of the blocks in their section in the first modes. M: participating mass over the whole mass.")]
+    return [(saved, ("Displacements of the blocks in the first modes, in section. M: participating mass divided by the total mass."))]
 
 
 def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -304,7 +311,7 @@ def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         right.set_xlabel("control displacement [mm]")
         right.set_ylabel("base shear [kN]")
         saved = style.save(fig, folder, f"{name}-history")
-    return [(saved, "Left: displacement of the control level relative to the ground. Right: base shear over this displacement.")]
+    return [(saved, ("Left: displacement of the control level relative to the ground. Right: base shear, plotted over this displacement."))]
 
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -339,6 +346,12 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
             axes[1].set_xlabel(f"{r.intensity} [g]")
             axes[1].set_ylabel("greatest drift of a pier [%]")
         saved = style.save(fig, folder, f"{name}-fragility")
-    caption = f"Fragility over {r.motions} motions: fitted curves" + (", and shares of the motions at each level" if r.levels_g else "")
-    caption += f". Right: greatest drift of every run, drawn up to {LARGEST_DRIFT:g} %." if history else ". Steps: shares of the motions."
+    caption = f"Fragility from {r.motions} motions: fitted curves" + (
+        ", and share of the motions that exceed the limit state at each level" if r.levels_g else ""
+    )
+    caption += (
+        f". Right: greatest drift of each run, drawn up to {LARGEST_DRIFT:g} %."
+        if history
+        else ". Steps: shares of the motions that exceed the limit state."
+    )
     return [(saved, caption)]

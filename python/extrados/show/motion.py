@@ -83,7 +83,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 label="smoothed (Konno and Ohmachi)",
             )
             fourier.legend(loc="lower left", fontsize=7)
-            caption += ", unsmoothed, and smoothed by the window of Konno and Ohmachi (b = 40)"
+            caption += ", both unsmoothed, and smoothed by the window of Konno and Ohmachi (b = 40)"
         found.append((style.save(fig, folder, f"{name}-spectra"), f"{caption}."))
     return found
 
@@ -162,7 +162,7 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.set_ylim(bottom=0.0)
-        found.append((style.save(fig, folder, f"{name}-impulses"), "Primary impulses: for each motion the single sine that fits best."))
+        found.append((style.save(fig, folder, f"{name}-impulses"), "Primary impulses: for each motion, the single sine that fits best."))
     return found
 
 
@@ -229,7 +229,10 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             found.append(
                 (
                     style.save(fig, folder, f"{name}-drive"),
-                    f"Motion of the shake table: time scaled by {r.time_scale:.3f} and acceleration by {r.amplitude_factor:.3f}. Dashed: limits of the table.",
+                    (
+                        f"Motion of the shake table: time scaled by {r.time_scale:.3f}, acceleration scaled by {r.amplitude_factor:.3f}. "
+                        "Dashed: limits of the table."
+                    ),
                 )
             )
     return found

@@ -209,7 +209,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
         if r.by_default:
             said.append(words("The deck names no code; the report applies {code}.", code=r.code))
         if "verify clause" in (r.clause or ""):
-            said.append(words("The clause was not verified against the standard. Compare it before use."))
+            said.append(words("The clause was not verified against the standard. Compare it with the standard before use."))
         open_parts = [a["name"] for a in run.analyses if isinstance(run[a["name"]], Checked) and a["verdict"]["ratio"] is None]
         if open_parts:
             said.append(words("These parts have no check with a verdict: {parts}.", parts=", ".join(open_parts)))
@@ -223,7 +223,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
         clauses = {c.clause for c in verified.checks}
         said.append(words("Clauses: {clauses}.", clauses="; ".join(sorted(clauses))))
         if any("verify clause" in clause for clause in clauses):
-            said.append(words("Marked clauses were not verified against the standard. Compare them before use."))
+            said.append(words("Marked clauses were not verified against the standard. Compare them with the standard before use."))
     if v["bound"] in ("upper", "lower"):
         said.append(words(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound."))
     if v["violated"]:
@@ -252,15 +252,19 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
     if outcome == "open":
         if v["violated"]:
             if words.code != "en":
-                return words("Resolve the first assumption that does not hold.")
-            return f"Resolve the first assumption that does not hold: {v['violated'][0]}"
+                return words("Resolve the first violated assumption.")
+            return f"Resolve the first violated assumption: {v['violated'][0]}"
         if isinstance(r, Assess) and r.not_done:
-            return words("A step has no verdict: {step}. Run again with a larger budget or a later end of the run.", step=r.not_done[0])
-        return words("Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first.")
+            return words(
+                "A step has no verdict: {step}. Run again with a larger `budget`, or with a later end of the run.", step=r.not_done[0]
+            )
+        return words(
+            "Compare the reasons below. Then refine the data that decide the difference: measured friction, thickness and restraints first."
+        )
     if outcome == "stands":
         if factor is not None and factor < THIN:
             return words(
-                "The safety factor of {factor} is small. Check its sensitivity to thickness, friction and strength.",
+                "The safety factor of {factor} is close to 1. Check its sensitivity to thickness, friction and strength.",
                 factor=words.number(factor),
             )
         return words(
@@ -268,14 +272,18 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
         )
     if isinstance(r, Strengthen):
         return words(
-            "Check the anchorage, assess the strengthened building by all strategies, and check the mechanism that governs afterwards."
+            "Check the anchorage, assess the strengthened building by all strategies, and check the "
+            "mechanism that governs after strengthening."
         )
     if isinstance(r, Checked) and any(c.verdict == "" for c in r.checks.values()):
         return words("Give the seismic action of the site in [code].")
     return (
         words("No implemented rule covers this element. Use limit analysis and rocking dynamics (kind assess).")
         if isinstance(r, Checked)
-        else words("The report gives a capacity without a demand. Give the action of the site, a motion or a load, and run the deck again.")
+        else words(
+            "The report gives a capacity without a demand. Give a demand in the deck (action of the site, "
+            "motion or load), and run the deck again."
+        )
     )
 
 
@@ -287,14 +295,18 @@ def _strengthening(run: Stored, lead: dict[str, Any], words: Language) -> str:
     met = [one for one in r.advice.interventions if one.meets_target]
     if not met:
         return " " + words(
-            "With none of the interventions considered does the building carry the peak of the hazard as a constant horizontal acceleration."
+            "None of the interventions considered enables the building to carry the peak acceleration of the "
+            "hazard as a constant horizontal acceleration."
         )
     told = "; ".join(f"{one.name}, {size_told(one)}" for one in met)
-    text = words("Strengthening for the peak of the hazard as a constant horizontal acceleration: {interventions}.", interventions=told)
+    text = words(
+        "Strengthening for the peak acceleration of the hazard, applied as a constant horizontal acceleration: {interventions}.",
+        interventions=told,
+    )
     least = r.advice.by_rocking
     if least is not None and least.required_N is not None:
         force = words.quantity(least.required_N, "N")
-        text += " " + words("To prevent collapse by rocking under this motion the first tie needs {force}.", force=force)
+        text += " " + words("To prevent collapse by rocking under this motion, the first tie requires {force}.", force=force)
     return f" {text}"
 
 

@@ -60,7 +60,7 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
         plan.autoscale_view()
         plan.margins(0.15)
         plan.set_aspect("equal")
-        plan.set_title("plan; an arrow shows the direction from start to end of each wall")
+        plan.set_title("plan; arrows show the direction of each wall, from its start to its end")
         plan.set_xlabel("x [m]")
         plan.set_ylabel("y [m]")
         for k, wall in enumerate(walls):

@@ -18,7 +18,8 @@ def document(
         Heading("Ranking"),
         Table(("rank", "building", "overall", "least margin", "of"), ranked, (0.6, 2.4, 1.8, 1.2, 2.0)),
         Words(
-            "The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself. Buildings that cannot stand come first."
+            "The margin is the critical scale factor of the hazard; below 1, the strategy predicts collapse "
+            "under the hazard itself. Buildings that cannot stand come first."
         ),
     ]
     for (name, _, _, _, statement), (_, run) in zip(rows, runs, strict=True):

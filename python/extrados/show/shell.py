@@ -93,8 +93,8 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.set_ylabel("base shear [kN]" if push else "force on the moving ground [kN]")
             ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Stages in order, each with the damage of the stages before. Lateral loads: base shear over control "
-            "displacement. Settlement: force along the movement, summed over the moving supports."
+            "Stages in order; each starts with the damage of the stages before. Lateral loads: base shear over control displacement. "
+            "Settlement: force along the movement, summed over the moving supports."
         )
 
 
@@ -110,12 +110,12 @@ def _seats(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
         for length in sorted({seat.length_m for seat in seats}):
             ax.axvline(1e3 * length, color=style.HINGE, linestyle="--", linewidth=1.0)
             ax.annotate(f"seat of {1e3 * length:.3g} mm", (1e3 * length, 0.0), rotation=90, fontsize=8, ha="right", va="bottom")
-        ax.set_xlabel("displacement of the floor off its seat [mm]")
+        ax.set_xlabel("displacement of the floor away from its support [mm]")
         ax.set_ylabel("base shear [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-seats{_suffix(prefix)}"), (
-            "Base shear over the greatest displacement of an end of each floor relative to its wall, off the seat. Beyond the dashed line "
-            "the floor has slid off."
+            "Base shear over the displacement of each floor away from its support on a wall (greatest value "
+            "of both ends). Beyond the dashed line the floor has slid off."
         )
 
 
@@ -203,9 +203,8 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_ylabel("base shear over weight")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Capacity curves: every state (thin), the envelope and its bilinear idealisation "
-            "of equal area. Dots: states found by equilibrium iterations. Dotted line: Coulomb "
-            "limit of the level that slides first; the curve does not include this sliding. "
+            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area. Dots: states found by "
+            "equilibrium iterations. Dotted line: Coulomb limit of the level that slides first, which the curve does not include. "
             "Blue-grey: variants of the assumptions. Grey: other analyses of the run."
         )
 
@@ -291,11 +290,11 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
                 ax.set_xlabel("along the walls [m]")
             ax.set_title(f"event {event[k]}, base shear {load[k] / 1e3:.4g} kN")
         if not narrow:
-            axes[-1].set_xlabel("along the walls, each from its start [m]")
+            axes[-1].set_xlabel("distance along the walls, from the start of each [m]")
         fig.colorbar(drawn, ax=list(axes), label="crack width [mm]", shrink=0.7, pad=0.01)
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-walls"), (
-            "Cracks on the walls, laid side by side, at the greatest base shear and at the end: for each point the widest crack through the thickness. "
-            "Colour and line width show the crack width."
+            "Cracks on the walls (side by side) at the greatest base shear and at the end. At each point the "
+            "widest crack through the thickness is drawn. Colour and line width show the crack width."
         )
 
 
@@ -352,8 +351,8 @@ def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str,
             title=f"cracks, up to {1e3 * most:.3g} mm wide",
         )
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-plan"), (
-            "Cracks seen from above, at the greatest load and at the end: for each point the widest crack through the thickness. Red: widest at the "
-            "extrados. Blue: widest at the intrados. The line width is in proportion."
+            "Cracks seen from above, at the greatest load and at the end. At each point the widest crack through the thickness is "
+            "drawn. Red: widest at the extrados. Blue: widest at the intrados. The line width is proportional to the crack width."
         )
 
 
@@ -384,8 +383,8 @@ def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
             ax.set_title(_state_word(run, name, prefix, k))
         fig.colorbar(drawn, ax=list(panels), label="crack width [mm]", shrink=0.7)
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-space"), (
-            f"The building at the greatest base shear and at the end, displacements magnified {factor:g} times; of each "
-            "element the widest crack. The fields are in the VTU files, for ParaView."
+            f"The building at the greatest base shear and at the end, with displacements magnified {factor:g} times. The widest crack "
+            "of each element is drawn. The fields are in the VTU files, for ParaView."
         )
 
 
@@ -445,7 +444,7 @@ def _storeys(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, st
         axes[1].plot([100 * row.elastic_share for row in rows], y, "|", color="black", markersize=12, label="uncracked")
         axes[1].set_yticks(y, [f"wall {row.wall}" for row in rows])
         axes[1].invert_yaxis()
-        axes[1].set_xlabel("part of the base shear in its plane [%]")
+        axes[1].set_xlabel("share of the base shear carried in the plane of the wall [%]")
         axes[1].legend()
         damage = numbers.cracked_points_by_storey
         if damage:
@@ -454,6 +453,6 @@ def _storeys(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, st
         axes[2].set_xlabel("cracked places in the walls")
         axes[2].set_ylabel("storey")
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-storeys"), (
-            "At the greatest base shear: drift of each storey, part of the base shear that each wall carries "
-            "in its plane (black: before cracking), and number of cracked places in each storey."
+            "At the greatest base shear: drift of each storey, share of the base shear that each wall "
+            "carries in its plane (black: before cracking), and number of cracked places in each storey."
         )

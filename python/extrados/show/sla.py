@@ -25,7 +25,7 @@ MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 #: What the names of the figures of each sense of the load have in them
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
-OPPOSITE = dict(zip(PREFIXES, ("", ", load in the opposite direction"), strict=True))
+OPPOSITE = dict(zip(PREFIXES, ("", ", for the load in the opposite direction"), strict=True))
 MOST_NAMED = 12  # bars that a legend still names
 NOTHING = 1e-3  # of the greatest stress: less is drawn as none
 #: A curve is drawn as far as so many times the way to nearly its greatest load
@@ -97,8 +97,8 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.legend(title="stage")
         title = style.save(fig, folder, f"{name}-stages")
     return title, (
-        "Load against displacement in all stages: every event in equilibrium (thin), and envelopes. A dot marks the "
-        "start of a stage. Stages along one line of action share a panel, with the sign of the first of them."
+        "Load over displacement in all stages: every event in equilibrium (thin), and envelopes. A dot marks the start of a stage. "
+        "Stages with the same line of action share a panel, with the sign of the first of them."
     )
 
 
@@ -163,9 +163,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            f"Load against displacement: every state (thin; dots: by equilibrium iterations), the envelope and its "
-            f"bilinear idealisation. Grey, if present: the steps of "
-            f"an incremental solution of the same deck.{_dropped(r)}"
+            "Load over displacement: every state (thin; dots: by equilibrium iterations), the envelope and its bilinear idealisation. "
+            f"Grey, if present: steps of an incremental solution of the same deck.{_dropped(r)}"
         )
 
 
@@ -242,7 +241,7 @@ def _frame_curve(ax: Axes, run: Stored, name: str) -> float:
 def _dropped(r: Sla) -> str:
     """A sentence on the events of all curves that are not drawn, because they lie out of reach."""
     count = sum(curve.events_out_of_reach for curve in (r, r.minus) if curve is not None)
-    return f" Not drawn: {count} events beyond the range of small displacements or above ten times the peak load." if count else ""
+    return (f" Not drawn: {count} events with large displacements, or with loads above ten times the peak load.") if count else ""
 
 
 def near_the_peak(displacement: np.ndarray, load: np.ndarray) -> float:
@@ -409,8 +408,8 @@ def _section(run: Stored, name: str, folder: Path, i: int, height: Array, least:
         axes[0].legend(fontsize=7)
         title = style.save(fig, folder, f"{name}-section-{i}")
     return title, (
-        f"Range of the load that each point permits, {about}. Equilibrium is possible if the greatest lower limit (dotted, green) "
-        "is below the least upper limit (dotted, red)."
+        f"Range of load multipliers that each point permits, {about}. Equilibrium is possible if the "
+        "greatest lower limit (dotted, green) is below the least upper limit (dotted, red)."
     )
 
 
@@ -477,8 +476,8 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
                 style.legend_above(ax)
         title = style.save(fig, folder, f"{name}{SENSES[prefix]}-bars")
     return title, (
-        "Forces of bars and ties. Bars fixed at their ends: force at every event in equilibrium. Embedded bars: force along the bar "
-        "at the greatest load and in the last state in equilibrium."
+        "Forces of bars and ties. Bars fixed at their ends: force at each event in equilibrium. Embedded "
+        "bars: force along the bar, at the greatest load and in the last state in equilibrium."
     )
 
 
@@ -489,13 +488,13 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         number = np.arange(1, len(state) + 1)[state]
         ax.stackplot(number, get("stored")[state], get("dissipated")[state], colors=["#cfe3d6", "#f2c28b"], labels=["stored", "dissipated"])
         ax.plot(number, get("external")[state], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads")
-        ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="energy of the teeth (area of the saw-tooth curves)")
+        ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="crack energy (area of the saw-tooth curves)")
         style.numbers(ax.xaxis)
         ax.set_xlabel("event")
         ax.set_ylabel("energy [J]")
         style.legend_below(fig, ax)
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
-        f"Energies in the states: the work of the loads is stored, dissipated, or lost when "
-        f"the structure changes from one state to the next. The energy balance closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
+        "Energies: the work of the loads is stored, dissipated, or lost when the structure changes from one state to another. The error "
+        f"of the energy balance is {run.results_of(name, Sla).energy_residual_ratio:.1e} of the work."
     )

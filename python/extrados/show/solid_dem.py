@@ -126,7 +126,7 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         saved = style.save(fig, folder, f"{name}-snapshots")
     what = f"Collapse at {tilt.collapse_acceleration_g:.4f} g" if tilt is not None else "Displaced stones"
     forces = f" Lines: forces in the contacts through their places; the longest is {stage.longest / 1e3:.3g} kN." if stage.longest else ""
-    return saved, f"{what}; colours show the displacement of each block, at most {stage.farthest:.3g} m.{forces}"
+    return saved, f"{what}; colours show the displacement of each block (greatest: {stage.farthest:.3g} m).{forces}"
 
 
 def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
@@ -161,8 +161,8 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         axes[4].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
         saved = style.save(fig, folder, f"{name}-displacements")
     return saved, (
-        f"Greatest displacements and rotations of blocks, measured from equilibrium under self-weight. The ground moves along "
-        f"{r.direction_deg:g} degrees in plan{' and at right angles to it' if both else ''}."
+        "Greatest displacements and rotations of blocks, measured from equilibrium under self-weight. "
+        f"The ground moves along {r.direction_deg:g} degrees in plan{(' and at right angles to it' if both else '')}."
     )
 
 

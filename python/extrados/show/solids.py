@@ -50,7 +50,7 @@ def _title(r: SolidTilt) -> str:
     bound = f",\n{DILATANT}" if r.dilating_contacts and not _least_drawn(r) else ""
     design, least = r.collapse_acceleration_load_path_g, r.collapse_acceleration_non_associated_g
     if design is not None and least is not None:
-        bound += f"\nwithout dilatancy: design value {design:.4f} g,\nleast found {least:.4f} g"
+        bound += f"\nwithout dilatancy: design value {design:.4f} g,\nlowest found {least:.4f} g"
     return f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg{bound}"
 
 
@@ -117,8 +117,8 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the greatest is {size.max() / 1e3:.3g} kN")
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
-        "Forces between the stones, and on the ground, at collapse. Each acts at the centre "
-        f"of compression of its contact; its length is in proportion. The greatest is {size.max() / 1e3:.3g} kN."
+        "Forces between the stones, and on the ground, at collapse. Each arrow starts at the centre of compression of its contact; its "
+        f"length is proportional to the force. The greatest force is {size.max() / 1000.0:.3g} kN."
     )
 
 
@@ -171,7 +171,10 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 pale_stones(ax, stones, frame, r.load_direction_deg if r.gamma_g else None)
                 pressing(ax, force, centre, frame, longest, colour)
                 ax.set_title(title)
-            caption = f"Forces between the blocks at {r.gamma_g:g} g, each through the centre of its compression; the greatest is {longest / 1e3:.3g} kN."
+            caption = (
+                f"Forces between the blocks at {r.gamma_g:g} g, each drawn through the centre of compression of its "
+                f"contact; the greatest force is {longest / 1000.0:.3g} kN."
+            )
             found.append((style.save(fig, folder, f"{name}-forces"), caption))
     if r.sections:
         found.append(_draw_ranges(folder, name, r))
@@ -196,9 +199,9 @@ def _draw_ranges(folder: Path, name: str, r: SolidThrust) -> tuple[str, str]:
         if 1e3 * (high - low) < NARROW * reach:  # thrusts that differ by rounding alone
             ax.set_xlim(0.5 * (low + high) - 0.5 * reach / 1e3, 0.5 * (low + high) + 0.5 * reach / 1e3)
         ax.set_xlabel("thrust [kN]")
-        ax.set_title(f"Least, most central (dot) and greatest thrust at {r.gamma_g:g} g")
+        ax.set_title(f"Minimum, most central (dot) and maximum thrust at {r.gamma_g:g} g")
         return style.save(fig, folder, f"{name}-sections"), (
-            "Thrust of the sections: from the least to the greatest; dot: the most central state. An arrow head marks an end without a limit."
+            "Thrust of the sections, from minimum to maximum; dot: in the most central state. An arrow head marks an end without a limit."
         )
 
 
@@ -218,7 +221,7 @@ def draw_examples(run: Stored, name: str, folder: Path, captions: dict[int, str]
             scene.ground(ax, still.vertices, VIEW)
             ax.set_title(f"Mechanism {k}")
         saved = style.save(fig, folder, f"{name}-mechanisms")
-    return [(saved, "; ".join(f"{k}: {captions[k]}" for k in numbers) + ". Coloured by the speed of each block (the fastest red).")]
+    return [(saved, "; ".join(f"{k}: {captions[k]}" for k in numbers) + ". Colours show the speed of each block (red: fastest).")]
 
 
 def _film(run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray) -> None:
@@ -272,12 +275,12 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
         ax.set_ylim(0.0, 1.15 * float(np.nanmax(radius)))
         ax.set_rlabel_position(100.0)
         ax.tick_params(axis="y", labelsize=7)
-        ax.set_xlabel("capacity [g]; 0 deg is +x, 90 deg is +y")
+        ax.set_xlabel("capacity [g]; angles in plan: 0 deg is +x, 90 deg is +y")
         ax.set_title(
-            "Capacity over the direction of the acceleration\n"
-            f"least {r.least_acceleration_g:.4f} g along {r.least_direction_deg % 360.0:g} deg (red)"
+            f"Capacity, plotted over the direction of the acceleration\nlowest {r.least_acceleration_g:.4f} g "
+            f"along {r.least_direction_deg % 360.0:g} deg (red)"
         )
         return style.save(fig, folder, f"{name}-rose"), (
-            "Capacity over the direction of the acceleration in plan."
+            "Capacity, plotted over the direction of the acceleration in plan."
             + (" The line is an upper bound (dilatant friction)." if rows else "")
         )

@@ -71,9 +71,10 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 fontsize=8,
             )
         ax.legend()
-        return style.save(
-            fig, folder, f"{name}-histogram"
-        ), "Greatest rotations of all runs. The last bin contains all rotations beyond 1; the red bar counts the runs that collapse."
+        return style.save(fig, folder, f"{name}-histogram"), (
+            "Greatest rotations of all runs. The last bin contains all rotations beyond the critical "
+            "rotation; the red bar counts the runs that collapse."
+        )
 
 
 def _ensemble(run: Stored, name: str) -> Ensemble | LevelShares:
@@ -104,7 +105,7 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         left.set_ylim(max(1e-4, 0.5 * ratio[up].min()) if up.any() else 1e-3, 1.35 * place)
         left.axhline(1.0, color=style.THRUST, linewidth=0.8, linestyle=":")
         left.set_ylabel("greatest rotation / critical rotation")
-        left.set_title(f"{r.count} motions, no rocking under {rest}" if rest else f"{r.count} motions")
+        left.set_title(f"{r.count} motions; {rest} of them cause no rocking" if rest else f"{r.count} motions")
         left.legend(loc="center left", frameon=True)
         share = np.where(fell, 1.0, 0.0)
         right.plot(x, share, "|", color=style.EDGE, alpha=0.4, markersize=5)
@@ -129,7 +130,8 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for ax in (left, right):
             ax.set_xlabel(_axis(r))
         return style.save(fig, folder, f"{name}-cloud"), (
-            f"Unscaled motions, each at its own intensity, and the fitted curves; bands of {100 * r.confidence:g} % by profile likelihood."
+            f"Unscaled motions, each at its own intensity, and the fitted fragility curves. Bands: {100 * r.confidence:g} "
+            "% confidence by profile likelihood."
         )
 
 
@@ -162,7 +164,8 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for ax in (left, right):
             ax.set_xlabel(_axis(r))
         return style.save(fig, folder, f"{name}-annual"), (
-            f"Left: hazard curve, and annual rate of collapse with its {100 * r.confidence:g} % band. Right: contributions of the intensities to this rate, which equals the area."
+            f"Left: hazard curve, and annual rate of collapse with its {100 * r.confidence:g} % confidence "
+            "band. Right: contributions of the intensities to this rate, which is the area under the curve."
         )
 
 
@@ -209,8 +212,8 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         axes[0].invert_yaxis()
         style.legend_below(fig, axes[0])
         return style.save(fig, folder, f"{name}-sensitivity"), (
-            f"Sobol indices of the uncertain values and of the choice of the motion, {r.sensitivity_runs} runs; "
-            f"{100 * r.confidence:g} % bootstrap intervals."
+            f"Sobol indices of the uncertain values and of the choice of the motion, from {r.sensitivity_runs} "
+            f"runs, with {100 * r.confidence:g} % bootstrap intervals."
         )
 
 
@@ -244,7 +247,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 run.array(name, "stripe_rule_most"),
                 color=style.STONE,
                 linewidth=0,
-                label="collapse, range of the impact rules",
+                label="collapse: range of all impact rules",
             )
         for curve, band, color, style_, text, median, dispersion in (
             ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
@@ -277,8 +280,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.legend(loc="best")
         points = f"Points: share of the motions that cause collapse at a level, with {100 * r.confidence:g} % Wilson intervals."
         curves = (
-            "Curves: probability of collapse at a level, fitted, with its bootstrap band; and probability of collapse at this or a lower "
-            "level, by interval-censored likelihood."
+            "Curves: fitted probability of collapse at a level, with its bootstrap band; and probability of collapse at this or a lower "
+            "level (interval-censored likelihood)."
         )
         return style.save(fig, folder, f"{name}-curve"), f"{points} {curves}" if len(grid) else points
 
@@ -301,7 +304,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="median of the motions")
         i, j = np.nonzero(risen)
         if len(i):
-            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="survival above a level that causes overturning")
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3, label="survival at a level above one that overturns")
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
         ax.axvline(place, color=style.EDGE, linewidth=0.6, linestyle=":")
         ax.set_xlim(-0.02, place + 0.03)
@@ -317,8 +320,8 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 f"Greatest displacements of {min(len(ratio), HAIRS)} motions over the size of the structure, with the percentiles of all {r.motions}."
             )
         return style.save(fig, folder, f"{name}-incremental"), (
-            f"Incremental curves of {min(len(ratio), HAIRS)} motions with the percentiles of all {r.motions}; "
-            f"{r.resurrections} motions have a survival above a level that causes overturning."
+            f"Incremental curves of {min(len(ratio), HAIRS)} motions, with the percentiles of all {r.motions} motions. "
+            f"{r.resurrections} motions overturn the structure at one level but not at a higher level."
         )
 
 
@@ -333,13 +336,13 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         right.errorbar(d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4)
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
-        right.set_title("share of collapses, 95 % interval")
+        right.set_title("share of the motions that cause collapse, with 95 % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [
             (
                 style.save(fig, folder, f"{name}-durations"),
-                "Greatest rotation (Fig. 6-8) and probability of collapse against the duration of the motion.",
+                ("Greatest rotation (Fig. 6-8) and probability of collapse, plotted over the duration of the motion."),
             )
         ]
 
@@ -358,7 +361,10 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-motion"),
-                f"The motion of at most {r.cap_g:.3f} g that supplies the most energy, and the response to this motion (Fig. 6-2).",
+                (
+                    f"The motion that supplies most energy, with accelerations up to {r.cap_g:.3f} g, and the response to "
+                    "this motion (Fig. 6-2)."
+                ),
             )
         )
     if "least_cap_ratio" not in arrays:
@@ -376,7 +382,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-least-cap"),
-                "Least limit of the acceleration at which the motion that supplies the most energy finally overturns the block (Fig. 6-3).",
+                ("Lowest limit of the acceleration at which the motion that supplies most energy overturns the block (Fig. 6-3)."),
             )
         )
     with style.figure(8.0, 3.6, columns=2, sharey=True) as (fig, (left, right)):
@@ -393,7 +399,10 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-impulse"),
-                f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4; a: from a quarter of the critical rotation, b: with T_p = T_n/2).",
+                (
+                    f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4). a: "
+                    "from a rotation of a quarter of the critical rotation. b: with T_p = T_n/2."
+                ),
             )
         )
     return found
@@ -412,7 +421,7 @@ def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[st
             ax.plot(period[fell == 1], np.full(int(fell.sum()), place), "x", color=line.get_color(), markersize=5)
         ax.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle=":")
         ax.set_ylim(0.0, place + 0.05)
-        ax.set_xlabel("2 pi/p [s] (in proportion to the square root of the size)")
+        ax.set_xlabel("2 pi/p [s], proportional to the square root of the size")
         ax.set_ylabel("greatest rotation / alpha")
         ax.legend()
         return [(style.save(fig, folder, name), "Rocking spectra of the motion. Crosses: the block overturns.")]
@@ -441,7 +450,7 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
         return [
             (
                 style.save(fig, folder, name),
-                f"Greatest rotation under harmonic motion of {r.cycles} cycles. Dashed: acceleration at which rocking starts.",
+                (f"Greatest rotation under {r.cycles} cycles of harmonic motion. Dashed: acceleration at which rocking starts."),
             )
         ]
 
@@ -465,16 +474,16 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         ax.invert_yaxis()
         ax.set_xlabel("demand over capacity")
         alternatives = (
-            " The NTC checks at SLV are alternatives: one satisfied check suffices."
+            " The NTC checks at SLV are alternatives: one satisfied check is sufficient."
             if any(check.alternative for check in found.checks.values())
             else ""
         )
-        pale = " Pale bars: formulas that serve only for comparison." if any(not code for _, _, code in rows) else ""
+        pale = " Pale bars: formulas shown for comparison only." if any(not code for _, _, code in rows) else ""
         return [
             (
                 style.save(fig, folder, name),
                 (
-                    f"Demand / capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
+                    f"Demand / capacity for each rule that applies; above 1, the check is not satisfied.{alternatives}{pale} "
                     f"{found.overall().statement}"
                 ),
             )

@@ -77,8 +77,8 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
             ax.set_ylim(every[:, 1].min() - room, every[:, 1].max() + room)
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
-        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention "
-        "of the size that meets the target (if no size meets it: the greatest size considered)."
+        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention. Each has the size "
+        "that meets the target (if no size meets it, the greatest size considered)."
     )
 
 
@@ -109,8 +109,8 @@ def _mechanisms_in_space(run: Stored, r: Strengthen, name: str, folder: Path) ->
                 ax.add_collection(LineCollection(lines, colors=section.TIE, linewidths=1.6, zorder=3))
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
-        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention of "
-        "the size that meets the target. Colour: speed of each block (red: fastest). Lines: hoops, chains and ties."
+        "Governing collapse mechanisms, magnified: the existing building, and the building with each intervention of the size that "
+        "meets the target. Colours: speed of the blocks (red: fastest). Lines: hoops, chains and ties."
     )
 
 
@@ -156,7 +156,8 @@ def _curves(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
         axes[0].set_ylabel(_axis(r))
         saved = style.save(fig, folder, f"{name}-curves")
     return saved, (
-        "Capacity over the size of each intervention. Dots: sizes from which another mechanism governs. Stars: least size that meets the target."
+        "Capacity, plotted over the size of each intervention. Dots: sizes from which another mechanism "
+        "governs. Stars: least size that meets the target."
     )
 
 
@@ -189,7 +190,9 @@ def _places(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
         ax.set_xlim(left=0.0)
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-places")
-    return saved, "Yield force that meets the target, over the place of the tie. Crosses: no yield force meets the target at this place."
+    return saved, (
+        "Yield force that meets the target, plotted over the place of the tie. Crosses: places at which no yield force meets the target."
+    )
 
 
 def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, str] | None:
@@ -222,8 +225,8 @@ def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, st
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-costs")
     best = r.best
-    told = "" if best is None else f" Alternative of least relative cost that meets the target: {best.name}, {size_told(best)}."
-    return saved, f"Cost against safety of all alternatives (Pareto front: thick line).{told}"
+    told = "" if best is None else f" Cheapest alternative that meets the target: {best.name}, {size_told(best)}."
+    return saved, f"Relative cost and safety factor of all alternatives (thick line: Pareto front).{told}"
 
 
 def _front(points: list[tuple[float, float]], falls: bool) -> np.ndarray:
@@ -249,5 +252,6 @@ def _fragility(pair: FragilityPair, name: str, folder: Path) -> tuple[str, str]:
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-fragility")
     return saved, (
-        f"Share of the {pair.motions} motions that cause collapse, before and after the intervention, with 95 % score intervals."
+        f"Share of the {pair.motions} motions that cause collapse, before and after the intervention, "
+        "with 95 % confidence intervals (Wilson score)."
     )

@@ -190,7 +190,9 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
     heads = _heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words")
     found: list[Block] = [Words(r.statement, "answer", _foreign(words)), Table(heads, rows, (1.6, 0.9, 1.1, 1.1, 0.9, 3.6))]
     found.append(
-        Words(words("The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."))
+        Words(
+            words("The margin is the critical scale factor of the hazard; below 1, the strategy predicts collapse under the hazard itself.")
+        )
     )
     found.append(Words(f"{r.collapse_probability.statement} {r.collapse_probability.method}", "", _foreign(words)))
     found += _advice(r, words)
@@ -200,7 +202,7 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         pairs = [
             (one.rule.replace("-", " "), one.text, "; ".join(f"{labels[a]} and {labels[b]}" for a, b in one.explains)) for one in r.reasons
         ]
-        found.append(Table(_heads(words, "rule", "reason, with the numbers for it", "explains"), pairs, (1.2, 4.6, 2.4)))
+        found.append(Table(_heads(words, "rule", "reason for the difference, with numbers", "explains"), pairs, (1.2, 4.6, 2.4)))
     if r.unexplained:
         labels = {v.strategy: v.label for v in r.verdicts}
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
@@ -218,9 +220,7 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             )
             for p in r.probes
         ]
-        found.append(
-            Table(("analysis", "change with respect to the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2))
-        )
+        found.append(Table(("analysis", "difference from the deck", "verdict", "demand over capacity"), probed, (1.2, 4.0, 1.0, 1.2)))
     if r.not_done:
         found.append(Words("Not done, or without a verdict: " + "; ".join(r.not_done) + ".", "warn"))
     return found
@@ -269,7 +269,7 @@ def _sensitive(r: Assess, words: Language) -> list[Block]:
     if shaken:
         found.append(
             Words(
-                "Values that affect only discrete elements: ratio of the displacement of the blocks to the "
+                "Values that affect only discrete elements: displacement of the blocks, divided by the "
                 "displacement that counts as collapse."
             )
         )
@@ -334,7 +334,7 @@ def _counts(p: dict[str, Any], used: set[str]) -> bool:
 
 def _without_keys(text: str, keys: set[str]) -> str:
     """A sentence with the keys of the deck in words: "contact tolerance" for contact_tolerance."""
-    return re.sub(r"[a-z]+(?:_[a-z]+)+", lambda found: found[0].replace("_", " ") if found[0] in keys else found[0], text)
+    return re.sub(r"`?([a-z]+(?:_[a-z]+)+)`?", lambda found: found[1].replace("_", " ") if found[1] in keys else found[0], text)
 
 
 def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:
@@ -494,7 +494,7 @@ def _factors(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
                 rows.append((title, words(label), words.given(float(found))))
                 values.append(float(found))
     remark = words(
-        "All partial factors are 1: loads and strengths are characteristic values. The result contains no safety margin of a code."
+        "All partial factors are 1: loads and strengths are characteristic values. The result includes no safety margin of a code."
     )
     told: list[Block] = [Heading(words("Partial and confidence factors"))]
     if rows:
@@ -611,7 +611,7 @@ def _numbers(run: Stored, hidden: set[str], words: Language) -> list[Block]:
 def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Language) -> list[Block]:
     lines = [f"extrados run {deck['path'] or 'deck.toml'}"]
     parts = [n for b in run.analyses if b["kind"] == "assess" and b["results"] for n in run.results_of(b["name"], Assess).parts]
-    lines += [f"extrados run {n}.toml        # the deck is in assess/: copy it beside the original deck first" for n in parts]
+    lines += [(f"extrados run {n}.toml        # the deck is in the folder assess: copy it beside the original deck first") for n in parts]
     files = run.summary.get("files", {})
     sums = [
         (name, files[name]) for name in (STORE, *sorted(n for n in files if n.endswith(".csv") or n.startswith("assess/"))) if name in files
@@ -635,7 +635,10 @@ def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Lang
     ]
     rows = flat(settings)
     if rows:
-        found += [Heading(words("Settings of the analyses, with their defaults, in SI"), 2), Table(("key", "value"), rows, (2.4, 4.0))]
+        found += [
+            Heading(words("Settings of the analyses, with their defaults, in SI units"), 2),
+            Table(("key", "value"), rows, (2.4, 4.0)),
+        ]
     return found
 
 

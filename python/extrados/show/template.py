@@ -45,8 +45,10 @@ class ReportTable(Table):
     signatures: list[Text] = key([], "labels of the fields for signatures; default: author and reviewer", max_length=6)
     logo: str | None = key(None, "PNG or JPEG file inside the template's folder", max_length=200)
     colour: str = key("#1f4e79", "colour of headings and rules: # and six hexadecimal digits", pattern=r"^#[0-9a-fA-F]{6}$")
-    sections: list[Section] = key(list(SECTIONS), "sections of the report in their order", min_length=1, max_length=len(SECTIONS))
-    figures: int = key(2, "number of figures of each analysis in the report; the other figures are in the annex", ge=0, le=20)
+    sections: list[Section] = key(
+        list(SECTIONS), "sections that the report contains, in this order", min_length=1, max_length=len(SECTIONS)
+    )
+    figures: int = key(2, "number of figures of each analysis in the report; further figures are in the annex", ge=0, le=20)
 
     @field_validator("sections")
     @classmethod
@@ -73,13 +75,13 @@ def read_template(path: Path) -> Template:
         if table.logo is None:
             return Template(table)
         if Path(table.logo).is_absolute():
-            raise files.BadFile(f"{path}: logo: expected a file inside the template's folder, found the absolute path {table.logo}")
+            raise files.BadFile(f"{path}: `logo`: expected a file inside the template's folder, found the absolute path {table.logo}")
         suffix = Path(table.logo).suffix.lower()
         if suffix not in PICTURES:
-            raise files.BadFile(f"{path}: logo: expected a name that ends in {', '.join(PICTURES)}, found {table.logo}")
+            raise files.BadFile(f"{path}: `logo`: expected a name that ends in {', '.join(PICTURES)}, found {table.logo}")
         logo = files.read(table.logo, LARGEST_LOGO, path.resolve().parent).content
         if not logo.startswith(PICTURES[suffix]):
-            raise files.BadFile(f"{path}: logo: the content of {table.logo} is not a {suffix[1:].upper()} picture")
+            raise files.BadFile(f"{path}: `logo`: the content of {table.logo} is not a {suffix[1:].upper()} picture")
         return Template(table, logo, suffix)
     except tomllib.TOMLDecodeError as error:
         raise StoreError(f"{path} is not valid TOML: {error}") from None

@@ -82,8 +82,8 @@ class Masonry(Description):
             more = sorted(self.materials[name].model_fields_set - {"density"})
             if more:
                 raise BadGeometry(
-                    f"[materials.{name}] gives blocks a different {more[0]}. Discrete and finite elements use one elastic material "
-                    "for all blocks, [material]: remove this value, or give the stiffness of the joints",
+                    f"[materials.{name}] gives blocks a different {more[0]}. Discrete and finite elements use one elastic material for "
+                    "all blocks, that of [material]: remove this value, or give the stiffness of the joints",
                     ("materials", name, more[0]),
                 )
 
@@ -100,8 +100,8 @@ class Masonry(Description):
         stones = self.blocks() if assembly is None else assembly
         if not (stones.mass > 0.0).all():
             raise NoView(
-                f"block '{stones.block_names[int(stones.mass.argmin())]}' has no weight, which the analysis requires: give a "
-                "density above zero",
+                f"block '{stones.block_names[int(stones.mass.argmin())]}' has no weight, but the analysis "
+                "requires one: give a density above zero",
                 ("material", "density"),
             )
 
@@ -172,7 +172,7 @@ class Masonry(Description):
         """The joints that [[initial.movements]] name, in their order; BadGeometry where one is not on the ground."""
         for k, one in enumerate(self.initial.movements):
             if one.dz:
-                raise BadGeometry("dz is only for blocks in space: in a plane section dy is upward", ("initial", "movements", k, "dz"))
+                raise BadGeometry("`dz` is only for blocks in space: in a plane section, `dy` is upward", ("initial", "movements", k, "dz"))
         return moved_joints(self.blocks(), [one.joint for one in self.initial.movements])
 
     @property

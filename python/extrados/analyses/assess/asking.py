@@ -224,8 +224,8 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
     least, most = wilson(collapsed, count)
     outcome = "stands" if share <= acceptable else "collapses" if share > 0.5 else "open"
     text = (
-        f"{collapsed} of {count} runs collapse: {100 * share:.3g} %, with an interval of {100 * float(least):.3g} to "
-        f"{100 * float(most):.3g} %; {100 * acceptable:g} % are acceptable."
+        f"{collapsed} of {count} runs collapse: {100 * share:.3g} %, with a 95 % confidence interval of {100 * float(least):.3g} "
+        f"to {100 * float(most):.3g} %; {100 * acceptable:g} % are acceptable."
     )
     return share, acceptable, "of all runs", outcome, text, low, high
 

@@ -61,7 +61,7 @@ def _codes_by_motion(work: Work) -> None:
         return  # the coefficients of height of these codes belong to the ground
     keys = {k: v for k, v in keys.items() if k not in OF_SITE} | {"motion_spectrum": True}
     table = {k: v for k, v in deck.data.get("code", {"jurisdiction": "NTC"}).items() if k not in OF_CODE} | {"limit_states": [state]}
-    told = f"the spectrum of the motion in place of that of the site, at {state}"
+    told = f"the spectrum of the motion instead of the spectrum of the site, at {state}"
     work.keep("codes-motion", work.probe("code-checks", told, found.kind, keys, changes={"code": table}))
 
 
@@ -100,7 +100,7 @@ def _cheap_probes(work: Work, pairs: list[Pair]) -> None:
         work.keep(
             "tilt-without",
             work.probe(
-                "tilt", "without the restraints that the analysis of finite elements (sla) neglects", "tilt", {}, without=work.bare["sla"]
+                "tilt", "without the restraints that the finite-element analysis (sla) neglects", "tilt", {}, without=work.bare["sla"]
             ),
         )
     if work.bare and "rocking" in results and any(n in names for n in work.bare):
@@ -147,8 +147,8 @@ def _turning(work: Work, left: int, choice: Choice) -> None:
         table = hazard.scaled(motion, model, factor)
         if table is None:
             work.not_done.append(
-                "discrete elements at other scale factors of the motion: the motion is matched to a code spectrum, which is "
-                "fixed and cannot be scaled with the peak"
+                "discrete elements at other scale factors were not run: the motion is matched to a code "
+                "spectrum, which is fixed and cannot be scaled with the peak"
             )
             break
         if left < 1:

@@ -96,19 +96,22 @@ def conclude(work: Work, result: Result) -> None:
 def _hazard_told(work: Work, motion: Any) -> str:
     name = work.context.deck.require_motion().kind
     if work.many:
-        return f"{work.motions} motions of kind {name}; single runs use motion {work.chosen['member']}, {work.chosen['chosen_by']}"
+        return (
+            f"{work.motions} motions of kind {name}; strategies with a single motion use motion {work.chosen['member']}, "
+            f"{work.chosen['chosen_by']}"
+        )
     return f"{motion.name or name}, {motion.end:.3g} s"
 
 
 def _arrays(work: Work, facts: Facts, rows: list[out.StrategyVerdict], result: Result) -> None:
     low, high = np.array([facts.interval(r.strategy) for r in rows]).reshape(-1, 2).T
     result.arrays = {
-        "margin_low": Array(low, ("strategy",), "", "greatest scale factor of the hazard at which no collapse is known, for each strategy"),
+        "margin_low": Array(low, ("strategy",), "", "for each strategy: greatest scale factor of the hazard at which no collapse is known"),
         "margin_high": Array(
             np.where(np.isinf(high), np.nan, high),
             ("strategy",),
             "",
-            "least scale factor of the hazard at which collapse is known, for each strategy; NaN: not known",
+            "for each strategy: least scale factor of the hazard at which collapse is known; NaN: not known",
         ),
     }
     time_s, ground = facts.motion.series()

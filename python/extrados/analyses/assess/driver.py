@@ -28,7 +28,7 @@ def run(context: Context, options: Assess) -> Result:
     try:
         ask_cheap(work)
         context.tell(f"First results:\n{table_of(list(work.rows.values()))}")
-        work.further("further runs that the results of the fast strategies require", lambda: look_early(work))
+        work.further("additional runs that the results of the fast strategies require", lambda: look_early(work))
         ask_costly(work)
         work.further("longer runs", lambda: prolong(work))
         if options.advise and not work.advised:
@@ -39,7 +39,7 @@ def run(context: Context, options: Assess) -> Result:
             work.asker.deadline = budget.STOPPED_AFTER * options.budget
             work.further("sensitivity", lambda: move_values(work))
     except Interrupted:
-        result.status, result.reason = "interrupted", "interrupted; the strategies that were complete are reported"
+        result.status, result.reason = "interrupted", "the assessment was interrupted; only the complete strategies are reported"
     conclude(work, result)
     return result
 
@@ -97,8 +97,8 @@ def _scaled(work: Work) -> None:
     words = f"{work.rows['rocking'].parameters}; its margin from {row.parameters}"
     if high is None and low != curve.levels[-1]:
         words += (
-            "; at the next greater scale factor blocks slide or hinges form at joints outside the assumed mechanism, so rocking gives "
-            "only a lower bound of the scale factor that causes collapse"
+            "; at the next greater scale factor, blocks slide or hinges form outside the assumed mechanism, "
+            "so rocking gives only a lower bound of the scale factor that causes collapse"
         )
     work.rows["rocking"] = work.rows["rocking"].model_copy(update={"parameters": words})
     outcome = work.rows["rocking"].outcome  # the run under the hazard itself is a factor of 1, on contacts where blocks slide
@@ -109,7 +109,8 @@ def _scaled(work: Work) -> None:
     work.bracket("rocking", low, high)
     if curve.resurrections:
         work.context.warnings.append(
-            "At some scale factors above the least factor that causes collapse, the rocking structure recovers. Do not rely on these safe regions."
+            "At some scale factors above the least one that causes collapse, the rocking structure recovers. "
+            "Do not rely on these safe regions."
         )
 
 

@@ -30,7 +30,7 @@ def _run_until(work: Work, name: str, end: float) -> bool:
     """Replace the run of a strategy by one until `end` [s]; False if the longer run has no result, and the former stays."""
     choice, place = work.choices[name], [s for s, _, _ in work.parts].index(name)
     former = work.rows[name]
-    words = f"{former.parameters}; the run was continued to {end:.3g} s, because the structure still moved at {0.5 * end:.3g} s"
+    words = f"{former.parameters}; the run was extended to {end:.3g} s, because the structure still moved at {0.5 * end:.3g} s"
     keys = choice.keys | {"end_time": round(end, 3)}
     without = work.bare.get(name, ())
     strategy = strategies.of(name)

@@ -28,7 +28,7 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
             contributions=[],
             without={},
             statement="Probability of collapse 100 %: a certificate proves collapse under self-weight.",
-            method=f"Within its assumptions, the certificate of {proven.label} has no model uncertainty.",
+            method=f"Within its assumptions, this certificate ({proven.label}) has no model uncertainty.",
         )
     tested: list[tuple[StrategyVerdict, ModelUncertainty]] = []
     without: dict[str, str] = {}
@@ -59,8 +59,8 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
             **dynamic,
             statement=said.strip()
             or (
-                "No probability of collapse is given. It requires a strategy with a critical scale factor and with comparisons "
-                "to known results in the verification book, and no strategy has both."
+                "No probability of collapse is given: no strategy has both a critical scale factor and a "
+                "comparison with known results in the verification book."
             ),
             method=left.strip(),
         )
@@ -73,16 +73,16 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
         f"uncertainty of {names}. This static number is not the probability of collapse in the earthquake."
     )
     if any(row.axis != STATIC and row.outcome == "stands" for row in rows):
-        said += " A peak that exceeds the capacity only briefly may cause no collapse."
+        said += " A motion whose peak exceeds the capacity only briefly may cause no collapse."
     each = "; ".join(
         f"{labels[one.strategy]}: {one.count} tests, bias {one.bias:.3g}, scatter {one.scatter:.3g}, critical scale factor {one.margin:.3g}, "
         f"probability {percent(one.probability)} ({percent(one.low)} to {percent(one.high)}), weight {one.weight:.2g}"
         for one in contributions
     )
     method = (
-        "The ratio of calculated to measured capacity is assumed lognormal. Bias and scatter come from the tests of the "
-        "verification book, and their number gives the confidence interval. The weight of a strategy is its share of the "
-        f"number of tests. The interval encloses the intervals of all contributions. {each}.{left}"
+        "The ratio of calculated to measured capacity is assumed lognormal. Its bias and scatter come from the tests of the "
+        "verification book; the number of tests gives the confidence interval. The weight of a strategy is its share of all tests. The "
+        f"overall interval encloses the intervals of all strategies. {each}.{left}"
     )
     return CollapseProbability(
         probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method, **dynamic
@@ -116,7 +116,7 @@ def _motion_told(one: CollapseInMotion) -> str:
     elif one.collapsed == one.count:
         told = f"at least {percent(one.low)}"
     text = f"Probability of collapse under the hazard by rocking {told}: {one.collapsed} of {one.count} runs collapse."
-    return f"{text} Assumptions of rocking are violated in these runs." if one.violated else text
+    return f"{text} In these runs, assumptions of the rocking analysis are violated." if one.violated else text
 
 
 def _entry(row: StrategyVerdict) -> ModelUncertainty | str:

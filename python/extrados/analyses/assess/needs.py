@@ -15,4 +15,4 @@ def needs(context: Context, options: Assess) -> Iterator[Need]:
 def _refuse_second(context: Context, options: Assess) -> None:
     first = next((a for a in context.deck.analyses if isinstance(a, Assess)), options)
     if first is not options:
-        raise Refused("a deck can contain only one assess analysis: write a second deck for another hazard", ("analysis",))
+        raise Refused("a deck can contain only one analysis of kind assess: write a second deck for the second hazard", ("analysis",))

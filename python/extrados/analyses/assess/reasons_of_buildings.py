@@ -37,7 +37,7 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None  # another mechanism, or a weight that these factors do not hold
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
     taking = "" if abs(part - 1.0) < 0.005 else f", divided by e* = {part:.3g}, the participating share of the moving weight"
-    reserve = " The factor q represents the reserve of rocking beyond uplift." if q != 1.0 else ""
+    reserve = " The factor q represents the reserve between the start of rocking and collapse." if q != 1.0 else ""
     return reason(
         "code-factors",
         other,
@@ -150,10 +150,9 @@ def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "torn-off",
         mine,
-        f"The codes consider each wall separately from the transverse walls: wall {wall.wall} overturns out of its plane "
-        f"about the foot of storey {wall.storey} at alpha_0 = {wall.multiplier:.3g}. By the {facts.rows[weakest].label}, "
-        f"corners and floors hold the walls together. The whole building then carries {carried[weakest]:.3g} g, if the "
-        "walls are bonded and anchored.",
+        f"The codes consider each wall separately from the transverse walls: wall {wall.wall} overturns out of its plane about the foot "
+        f"of storey {wall.storey} at alpha_0 = {wall.multiplier:.3g}. By the {facts.rows[weakest].label}, corners and floors hold the "
+        f"walls together. The whole building then carries {carried[weakest]:.3g} g, if the walls are bonded and anchored.",
         multiplier=wall.multiplier,
         whole_g=carried[weakest],
     )
@@ -172,9 +171,8 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "weaker-direction",
         mine,
-        f"Along the {weak.removeprefix('push-')} axis the cross-sectional area of the walls is "
-        f"{area[weak]:.3g} m^2, and along the {strong.removeprefix('push-')} axis "
-        f"{area[strong]:.3g} m^2.",
+        f"The cross-sectional area of the walls is {area[weak]:.3g} m^2 along the {weak.removeprefix('push-')} "
+        f"axis, and {area[strong]:.3g} m^2 along the {strong.removeprefix('push-')} axis.",
         weak_m2=area[weak],
         strong_m2=area[strong],
     )
@@ -200,7 +198,7 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
         axis = name.removeprefix("push-")
         text = f"Along {axis} the frame carries {one / 1e3:.3g} kN, and the shells carry {other / 1e3:.3g} kN"
         if any(c.peak_load_N is None for c in (shells, shells.minus) if c is not None):
-            text += ", without having passed their peak"
+            text += " (the run of the shells ended before the load decreased)"
         if shells.flanges is not None and shells.walls:
             text += f"; transverse walls carry {100 * shells.flanges.share:.2g} % of the shells' base shear"
             numbers[f"across_share_{axis}"] = shells.flanges.share
@@ -212,9 +210,9 @@ def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "frame-and-shells",
         mine,
-        f"{' '.join(told)} In the frame, sections carry no tension, piers slide or crack by the strengths of codes, and "
-        "flanges act only by the vertical shear at corners. The shells have the tensile strength of the masonry and also "
-        "bend out of plane. They slide only along joints that are drawn.",
+        f"{' '.join(told)} In the frame, sections carry no tension, and piers slide or crack at the strengths of codes. Its flanges act "
+        "only by the vertical shear at corners. The shells have the tensile strength of the masonry and also bend out of plane. They "
+        "slide only along joints that the deck gives.",
         **numbers,
     )
 

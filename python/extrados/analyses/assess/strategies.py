@@ -140,19 +140,19 @@ def _scatter(asked: Asked) -> dict[str, float]:
 def _probability(asked: Asked) -> Choice:
     if asked.motions > 1:
         raise LeftOut(
-            "this strategy is not needed: the motions of the set already vary, and the row of the set gives the share of "
-            "them that causes collapse"
+            "this strategy is not needed: its set of motions already varies, and the row of the set gives "
+            "the share of motions that cause collapse"
         )
     uncertain = asked.options.uncertain or _scatter(asked)
     if asked.building.restraints or asked.building.supports.abutting_wall is not None:
-        raise LeftOut("the sizes of a building with restraints (ties, dampers, a wall) are not varied")
+        raise LeftOut("this strategy does not vary the sizes of a building with restraints (ties, dampers, a wall)")
     each = RUN_SECONDS.get(asked.building.require_structure().kind, RUN_SECONDS_ELSE)
     count = int(2 ** np.floor(np.log2(np.clip(asked.share("probability") / each, 16, 1024))))
     told = ", ".join(f"{name} {100 * v:g} %" for name, v in uncertain.items())
     return Choice(
         {"count": count, "seed": 1, "uncertain": uncertain},
-        f"{count} samples of the building with uncertain {told} (coefficients of variation); the number is limited to "
-        f"{100 * SHARES['probability']:g} % of the budget",
+        f"{count} samples of the building with uncertain {told} (coefficients of variation); this "
+        f"strategy may use {100 * SHARES['probability']:g} % of the time budget, which limits their number",
     )
 
 
@@ -162,7 +162,7 @@ def _push(asked: Asked, direction: float) -> Choice:
     assert isinstance(plan, Plan)
     materials = [building.material, *building.materials.values()]
     if not any(m.tensile_strength is not None and m.fracture_energy is not None for m in materials):
-        raise LeftOut("the walls can crack only if tensile_strength and fracture_energy are given in [material]")
+        raise LeftOut("the walls can crack only if [material] gives `tensile_strength` and `fracture_energy`")
     name = "push-x" if direction == 0.0 else "push-y"
     size = round(min(float(np.sqrt(plan.wall_area / SHELL_ELEMENTS)), OF_A_STOREY * min(plan.storeys)), 3)
     elements = plan.wall_area / size**2
@@ -177,9 +177,8 @@ def _push(asked: Asked, direction: float) -> Choice:
         **_action(asked),
     }
     words = (
-        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, in both senses; elements of "
-        f"{size:g} m, {LAYERS} points through the thickness, at most {events} events, until the load has decreased to "
-        f"{FALLEN:g} of its peak"
+        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, in both senses; elements of {size:g} m, {LAYERS} "
+        f"points through the thickness, at most {events} events, until the load has decreased to {FALLEN:g} of its peak"
     )
     return Choice(keys, words)
 
@@ -194,11 +193,12 @@ def _frame(asked: Asked) -> Choice:
     """All pushes of a building on a plan as a frame of macro-elements."""
     building = asked.building
     if building.material.tensile_strength is None and not building.joints.cohesion:
-        raise LeftOut("the piers need a shear strength: give [material] tensile_strength or [joints] cohesion")
+        raise LeftOut("the piers need a shear strength: give `tensile_strength` of [material], or `cohesion` of [joints]")
     # walls out of their planes are a strategy of their own
     return Choice(
         {"out_of_plane": False, **_action(asked)},
-        "both directions and both senses; forces in proportion to the masses, and to the masses times height; eccentricity 0 and 5 %",
+        "both directions, in both senses; forces in proportion to the masses, and to the masses times "
+        "their height; accidental eccentricity 0 and 5 %",
     )
 
 
@@ -232,14 +232,14 @@ def _sla(asked: Asked) -> Choice:
         needed = 2.0 * STONE_SECONDS * stones
         if needed > asked.share("sla"):
             raise LeftOut(
-                f"the run of {stones} blocks takes about {needed:.0f} s, and its share of the budget is {asked.share('sla'):.0f} s"
+                f"the run of {stones} blocks takes about {needed:.0f} s, but its share of the time budget is {asked.share('sla'):.0f} s"
             )
         wall = building.supports.abutting_wall
         if wall is not None:
             return Choice({"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, loaded away from the abutting wall")
         return Choice({"directions": ["+", "-"]}, "blocks with joints that open and slide, loaded in both senses")
     if building.material.tensile_strength is None:
-        raise LeftOut("the wall can crack only if tensile_strength and fracture_energy are given in [material]")
+        raise LeftOut("the wall can crack only if [material] gives `tensile_strength` and `fracture_energy`")
     size = getattr(building.structure, "size", None)
     keys: dict[str, Any] = {"directions": ["+"], "events": int(asked.share("sla") / EVENT_SECONDS), "stop_fraction": FALLEN}
     if size is not None:
@@ -259,7 +259,7 @@ def _dem(asked: Asked) -> Choice:
         assembly = building.blocks()
     except NoView:
         _ = building.solids()
-        raise LeftOut("assess has no rule for discrete elements in space: add an analysis of kind dem to the deck") from None
+        raise LeftOut("assess has no rule for discrete elements in space: add an analysis of kind `dem` to the deck") from None
     values = joint_values(building)
     motion = asked.context.motion
     end = strong_end(motion) + AFTER * float(np.sqrt(assembly.size / GRAVITY))
@@ -273,7 +273,10 @@ def _dem(asked: Asked) -> Choice:
         critical = STEP_RULE * 2.0 / frequency * (np.sqrt(1.0 + damped**2) - damped)
         return rate * end / (0.3 * critical)
 
-    words = f"the run ends at {end:.3g} s. This is {AFTER:g} sqrt(size/g) after {100 * STRONG:g} % of the Arias intensity of the motion"
+    words = (
+        f"the run ends at {end:.3g} s: this is {AFTER:g} sqrt(size/g) after the time at which the Arias "
+        f"intensity of the motion reaches {100 * STRONG:g} %"
+    )
     keys: dict[str, Any] = {"end_time": round(end, 3), "output_step": max(0.01, end / 1500.0)}
     share = asked.share("dem")
     given = building.joints.normal_stiffness is not None or any(t.normal_stiffness for t in building.joints.types)
@@ -293,22 +296,22 @@ def _dem(asked: Asked) -> Choice:
         stiffness = least
     elif stiffness < least:
         raise LeftOut(
-            _too_long(seconds(factor), share, f"even with joints of {engineering(least, 'Pa/m')}, the least sufficient stiffness,")
+            _too_long(seconds(factor), share, f"even with joints of {engineering(least, 'Pa/m')}, the least stiffness that is sufficient,")
         )
     taken = max(share, seconds(factor)) if stiffness == least else share
     stiffness = float(f"{stiffness:.1e}")
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
         keys,
-        f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the run fits into "
-        f"{100 * SHARES['dem']:g} % of the budget (E divided by the block length gives "
-        f"{engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} is sufficient)",
+        f"{words}; the joints have {engineering(stiffness, 'Pa/m')}, the greatest stiffness for which the "
+        f"run fits into {100 * SHARES['dem']:g} % of the time budget (E divided by the block length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; "
+        f"{engineering(least, 'Pa/m')} is sufficient)",
         taken,
     )
 
 
 def _too_long(seconds: float, share: float, how: str) -> str:
-    return f"{how} the run takes about {seconds:.0f} s, and its share of the budget is {share:.0f} s"
+    return f"{how} the run takes about {seconds:.0f} s, but its share of the time budget is {share:.0f} s"
 
 
 _ALL: tuple[tuple[StrategyName, str, str, Axis, validity.Validity, Callable[[Asked], Choice]], ...] = (

@@ -22,7 +22,9 @@ ELEMENT_HALVINGS = 3
 def move_values(work: Work) -> None:
     """Margins with values of the deck moved one by one, as many as the budget allows."""
     if not strategies.of("tilt").applies(work.context.building):
-        work.not_done.append("sensitivity: limit analysis and rocking cannot analyse a building in plan; use the variants of `pushover`")
+        work.not_done.append(
+            "sensitivity: limit analysis and rocking cannot analyse a building in plan; use the key `variants` of `pushover`"
+        )
         return
     rocked = work.results.get("rocking")
     restitution = rocked.of(RockingResults).restitution if rocked is not None else None
@@ -46,7 +48,7 @@ def move_values(work: Work) -> None:
         work.not_done.append(f"sensitivity: {stop}")
     if margins.stopped:
         if "dem" in work.results:
-            work.not_done.append("joint stiffness and moving supports by discrete elements: the time limit was reached")
+            work.not_done.append("joint stiffness and moving supports by discrete elements: stopped at the time limit")
         raise OutOfTime
     _move_elements(work)
 

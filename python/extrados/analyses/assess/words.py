@@ -77,7 +77,7 @@ def conclusion(
             said.append(f"{labels(others)} gives the same conclusion by the same certificate, which counts only once.")
         said.append(first.statement)
         if stands:
-            said.append(f"This certificate leaves no doubt: the opposite result of {labels(stands)} is not considered.")
+            said.append(f"This certificate leaves no doubt, so the opposite result of {labels(stands)} is not considered.")
     elif not stands and not collapses and not left:
         overall = "open"
         said.append(f"No strategy has a verdict on the {word} under this hazard.")
@@ -95,7 +95,7 @@ def conclusion(
         if stands or collapses:
             said.append(f"{_upper(verdict(stands or collapses, 'stands' if stands else 'collapses'))}.")
     if left:
-        said.append(f"The outcome by {labels(left)} is open.")
+        said.append(f"The outcome according to {labels(left)} is open.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]
     if decisive:
         said.append(f"The difference comes from {list_labels(list(dict.fromkeys(one.headline for one in decisive)))}.")

@@ -59,7 +59,9 @@ def run(context: Context, options: CodeChecks) -> Result:
     result.results = r
     rows = result.tables["code_checks"] = table(lines)
     result.arrays = {
-        "capacity": Array(np.array(rows.columns["capacity"]), ("rule",), "", "each in its own unit, see code_checks.csv"),
+        "capacity": Array(
+            np.array(rows.columns["capacity"]), ("rule",), "", "capacity and demand of each rule, in its own unit: see code_checks.csv"
+        ),
         "demand": Array(np.array(rows.columns["demand"]), ("rule",)),
     }
     compared = [x for x in lines if x.verdict in ("holds", "fails") and x.demand is not None and x.capacity is not None]

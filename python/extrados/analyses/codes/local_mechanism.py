@@ -124,9 +124,9 @@ def _drawn(building: Building, options: LocalMechanism, body: Overturning | Bend
     if body is not None:
         rest, turned, hinge = body_outlines(options, body)
         return {
-            **packed("section", rest, "m", "outlines of the bodies of the mechanism at rest"),
-            **packed("section_turned", turned, "m", "bodies of the mechanism at the rotation of the picture"),
-            "section_hinge": Array(hinge, ("section_hinges", "axis"), "m", "hinges of the mechanism at the rotation of the picture"),
+            **packed("section", rest, "m", "outlines of the bodies of the mechanism, at rest"),
+            **packed("section_turned", turned, "m", "bodies of the mechanism, at the rotation that is drawn"),
+            "section_hinge": Array(hinge, ("section_hinges", "axis"), "m", "hinges of the mechanism, at the rotation that is drawn"),
         }
     if isinstance(building.structure, Plan):
         return packed("plan_wall", plan_outlines(building.structure), "m", "walls on the plan")
@@ -199,20 +199,19 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         {name: [np.nan if (v := getattr(row, name)) is None else v for row in walls] for name in out.WallMechanism.model_fields}
     )
     result.answer += (
-        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls. Each part is considered separately "
-        "from the transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists, rods and "
-        "floors with a seat do not."
+        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls. Each part is considered separately from the "
+        "transverse walls. Only rigid floors and props restrain the walls; flexible floors, joists, rods and floors with a seat do not."
     )
     context.warnings += plan.floor_remarks
     if plan.rods:
         context.warnings.append(
-            "Rods are neglected, because the deck does not give the strength of their anchorage. Give the strength as `ties` "
-            "of a separate `facade` analysis."
+            "Rods are neglected, because the deck does not give the strength of their anchorage. To include "
+            'a rod, give its strength as `ties` of a separate analysis with mechanism = "facade".'
         )
     if plan.ring_beams:
         context.warnings.append(
-            "Ring beams are neglected, because the deck does not give the strength of their connection to the walls. A wall "
-            "with a ring beam has a greater multiplier. If the top of a wall is restrained, give [[structure.props]]."
+            "Ring beams are neglected, because the deck does not give the strength of their connection to the walls. A wall with a ring "
+            "beam has a greater multiplier. If the top of a wall is restrained, give [[structure.props]]."
         )
     return result
 
@@ -223,7 +222,8 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     d0, fc = found.d0, confidence(context, options)
     if d0 is None and found.alone <= 0.0:
         context.warnings.append(
-            "The nonlinear check neglects ties. Without its ties the body has no equilibrium, so this check is not made."
+            "The nonlinear check neglects ties, but without its ties this body has no equilibrium. The "
+            "nonlinear check is therefore not made."
         )
     structure = context.building.structure
     storeys = len(structure.storeys) if isinstance(structure, Plan) else options.storeys or storeys_in(building or 0.0)
@@ -233,8 +233,8 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         violated.append(ntc.below_lc1(fc))
     if options.mechanism in FREE_TO_VIBRATE and not z:
         violated.append(
-            f"The demand is the ground acceleration, but a {options.mechanism} is part of a building, which amplifies the "
-            "motion. Give base_height and building_height."
+            f"The demand is the ground acceleration, but a {options.mechanism} is part of a building, which "
+            "amplifies the motion. Give `base_height` and `building_height`."
         )
     made = out.LocalMechanism(
         mechanism=options.mechanism,
@@ -293,11 +293,11 @@ def _result(judged: _Judged) -> Result:
     }
     result.tables["local_mechanism"] = table(judged.lines)
     d0 = found.d0
-    limit = "" if d0 is None else f", and becomes zero at d_0* = {d0:.3g} m"
+    limit = "" if d0 is None else f"; the capacity becomes zero at d_0* = {d0:.3g} m"
     result.answer = (
-        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.3g}. Of the kinematic chain of "
-        f"{three_figures(found.weight / 1e3)} kN, {100 * found.part:.3g} % participate (M* = {three_figures(found.mass)} kg). The acceleration "
-        f"a_0* is {r.activation_acceleration_g:.3g} g with FC {fc:g}{limit}. {r.overall().statement}"
+        f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.3g}. The kinematic chain weighs {three_figures(found.weight / 1000.0)} "
+        f"kN, of which {100 * found.part:.3g} % participate (M* = {three_figures(found.mass)} kg). The "
+        f"acceleration a_0* is {r.activation_acceleration_g:.3g} g with FC {fc:g}{limit}. {r.overall().statement}"
     )
     return result
 
@@ -365,7 +365,7 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
     bound: Bound | None = None if all(isinstance(r, Tie) for r in building.restraints) else "upper"
     if bound:
         context.warnings.append(
-            "The mechanism was found without dampers and added hinges, which then resist it. Its multiplier is an upper bound."
+            "The mechanism was found without dampers and added hinges, although these resist it. Its multiplier is then an upper bound."
         )
     return _Turning(
         found,
@@ -434,7 +434,7 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
             least, motion = _without_dilatancy(limit, sense)
         except (NoAnswer, NoEquilibrium) as error:
             bound = "upper"
-            context.warnings.append(f"Joints slide, so the multiplier is an {DILATANT}. No state without dilatancy is given: {error}.")
+            context.warnings.append(f"Joints slide, so the multiplier is an {DILATANT}. Collapse without dilatancy is not given: {error}.")
         else:
             associated = found
             found, chain = _capacity_at_rest(stones, least, motion)
@@ -472,7 +472,7 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     state, mechanism = collapse_beside(limit.without_dilatancy(), sense)
     least = sense * state.gamma
     if least <= 0.0:
-        raise NoAnswer("a block that is carried only by friction between its neighbours slides out at any load")
+        raise NoAnswer("a block that only friction between its neighbours carries slides out at any load")
     assert limit.friction is not None  # blocks that cannot slide have no such state
     proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
     if not proof.holds(state.gamma):
@@ -508,7 +508,7 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
         law = member.law
         bound = np.where(slope[:, k] > 0.0, law.most, -law.least) if law.stiffness > 0.0 else np.zeros(len(rotation))
         if (bound >= FREE).any():
-            raise Refused(f"{member.name} has no yield force: give the strength of its anchorage", ("ties",))
+            raise Refused(f"{member.name} has no yield force: give the strength of its anchorage as `yield_force`", ("ties",))
         moment += bound * np.abs(slope[:, k])
     return moment
 

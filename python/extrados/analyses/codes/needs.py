@@ -75,14 +75,14 @@ def _read_walls(building: Building) -> None:
 
 def _refuse_unheld(what: str, key: Key) -> None:
     raise Refused(
-        f'local-mechanism can include {what} only for blocks with mechanism = "building". Remove it, or give the '
-        "restraint of a wall as `ties` of this table",
+        f'local-mechanism can include {what} only for blocks with mechanism = "building". Remove it, or '
+        "give the restraint of a wall as `ties` of the analysis",
         key,
     )
 
 
 def _refuse_given(name: str) -> None:
-    raise Refused(f'mechanism = "building" uses the value of [structure]: remove {name}', ("analysis", name))
+    raise Refused(f'mechanism = "building" uses the value of [structure]: remove `{name}`', ("analysis", name))
 
 
 def _refuse_elsewhere(context: Context, options: LocalMechanism) -> None:
@@ -104,7 +104,7 @@ def _refuse_nothing(building: Building) -> None:
 
 def _refuse_wall(building: Building, options: CodeChecks) -> None:
     if options.axial_load is None:
-        raise Refused("the wall is checked as a pier: give axial_load", ("analysis",))
+        raise Refused("the wall is checked as a pier: give `axial_load`", ("analysis",))
     if len(building.pier_blocks().mass) > 1:
         raise Refused(
             "the pier rules apply to a rectangle without openings: give each pier between openings as a separate panel", ("structure",)
@@ -112,4 +112,4 @@ def _refuse_wall(building: Building, options: CodeChecks) -> None:
 
 
 def _refuse_weak() -> None:
-    raise Refused("the pier rules require [material] compressive_strength (f_m)", ("material",))
+    raise Refused("the pier rules require `compressive_strength` of [material] (f_m)", ("material",))

@@ -132,8 +132,8 @@ def toothed_edge(courses: int, unit_height: float, overlap: float, thickness: fl
 def below_lc1(fc: float) -> str:
     """What is wrong with a lesser FC where the multiplier takes no strength into account (C8.7.1.2.1.3)."""
     return (
-        f"FC is {fc:g}, but the multiplier neglects crushing of the masonry: C8.7.1.2.1.3 then requires FC {LC1:g} (LC1). "
-        f"Give compressive_strength, or FC {LC1:g}."
+        f"FC is {fc:g}, but the multiplier neglects crushing of the masonry: C8.7.1.2.1.3 then requires FC {LC1:g} "
+        f"(LC1). Give `compressive_strength`, or FC {LC1:g}."
     )
 
 
@@ -196,8 +196,8 @@ def checks(found: Capacities, q: float, state: str, peak: float | None, spectrum
     demand = None if felt is None else felt / GRAVITY
     unknown = (
         (
-            "a part that vibrates freely responds at its own period T_0, and its demand is S_eZ(T_0) [C8.7.1.9]. Give "
-            "[material] young, or period"
+            "a part that vibrates freely responds at its own period T_0, and its demand is S_eZ(T_0) "
+            "[C8.7.1.9]. Give `young` of [material], or `period`"
         )
         if place.free and place.period is None
         else ""
@@ -261,9 +261,8 @@ def _nonlinear(found: Capacities, state: str, spectrum: Spectrum | None, place: 
         share * found.d0,
         demand,
         "m",
-        f"NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_{state} = {share:g} d_0 >= S_D(T_{state}) at {100 * damping:.0f} %, "
-        f"T_{state} = {factor:g} pi "
-        f"sqrt(d_{state}/a(d_{state})) [C8.7.1.{11 if late else 10}], [C8.7.1.12]",
+        f"NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_{state} = {share:g} d_0 >= S_D(T_{state}) at {100 * damping:.0f} %, T_{state} = "
+        f"{factor:g} pi sqrt(d_{state}/a(d_{state})) [C8.7.1.{11 if late else 10}], [C8.7.1.12]",
         f"T_{state} = {period:.3f} s",
         CODE,
         scope=SCOPE,

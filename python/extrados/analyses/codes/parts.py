@@ -61,9 +61,9 @@ def en1998(part: Part, peak: float | None, state: str = "SD", spectrum: Callable
     if q_a is None:
         barred = f"Table 4.4 gives no q_a for this kind of element ({part.element})"
     elif part.loaded:
-        barred = "a wall that carries floors is a structural element"
+        barred = "a wall that carries floors is a structural element, not a part"
     elif not part.elevated:
-        barred = "the part is assumed to be supported by the ground: for a part of a building, give base_height and building_height"
+        barred = "the part is assumed to be supported by the ground: for a part of a building, give `base_height` and `building_height`"
     elif part.shaken:
         if part.period is None:
             barred = (
@@ -191,7 +191,10 @@ def _nz_parapet(part: Part, spectrum: Callable[[float, float], float] | None, st
         period = float(np.sqrt(0.65 * h * slope))
         note = f"T_p {period:.3f} s"
         if not part.elevated:
-            barred = "the height of the parapet above the ground (base_height, building_height) is not given, so its demand is not known"
+            barred = (
+                "the demand of the parapet is not known, because its height above the ground is not given: give "
+                "`base_height` and `building_height`"
+            )
         else:
             felt, told = _part_coefficient(part, part.place, period, spectrum)
             note += told

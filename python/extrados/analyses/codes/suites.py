@@ -56,7 +56,7 @@ def _motions(context: Context, options: Verification) -> list[tuple[np.ndarray, 
         time, values = Motion("", ground).series()
         found.append((values, float(time[1] - time[0])))
     if broken:
-        context.warnings.append(f"{broken} of {count} motions cannot be read, so the fragility does not include them.")
+        context.warnings.append(f"{broken} of {count} motions cannot be read and are not included in the fragility.")
     if len(found) < 2:
         raise Refused(f"a fragility requires at least two motions, and the deck has {len(found)}", ("analysis", "verification", "motions"))
     return found

@@ -21,17 +21,21 @@ class CodeChecks(BuildingAnalysis):
     beside: ClassVar = ("joints.energy_ratio", "initial.rotation_ratio", "supports.abutting_wall", "supports.stiffness")
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
-    spectrum: CodeSpectrum | None = key(None, "elastic spectrum of the code at the site, as demand; default: that of a `compatible` motion")
-    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default: that of the spectrum", gt=0)
+    spectrum: CodeSpectrum | None = key(
+        None, "elastic spectrum of the code at the site, which gives the demand; default: that of a `compatible` motion"
+    )
+    peak_acceleration: Acceleration | None = key(None, "demand a_g S, as an acceleration; default: from the spectrum", gt=0)
     peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
     motion_spectrum: bool = key(
-        False, "if no code spectrum is given, use the response spectrum and the peak velocity of the motion in the deck"
+        False, "if no code spectrum is given: use the response spectrum and the peak velocity of the motion in the deck"
     )
-    pulse_period: Time | None = key(None, "period of the sine whose half cycle is used in the formula of Housner; adds this check", gt=0)
+    pulse_period: Time | None = key(
+        None, "period of the sine for the formula of Housner, which considers one half cycle; adds this check", gt=0
+    )
     behaviour_factor: float | None = key(
         None,
-        "behaviour factor q of the linear check of a mechanism, and of the demand on a pier (for ASCE 41: its m factor); "
-        "default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)",
+        "behaviour factor q, for the linear check of a mechanism and for the demand on a pier (for ASCE "
+        "41: its m factor); default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)",
         ge=1,
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
@@ -39,7 +43,7 @@ class CodeChecks(BuildingAnalysis):
     confidence_factor: float | None = key(None, "FC; default that of [code]", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     partial_factor: float | None = key(
         None,
-        "partial factor gamma_M of a pier by NTC; default 2 if a demand is checked (linear analysis with q), otherwise 1",
+        "partial factor gamma_M for a pier by NTC; default: 2 for a linear check with q, otherwise 1",
         ge=1,
         le=3,
         source="NTC 2018 7.8.1.1",
@@ -75,38 +79,38 @@ class Verification(Table):
     peak_acceleration: ClassVar = None
     method: Literal["N2", "capacity-spectrum", "coefficient"] | None = key(
         None,
-        "method for the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); capacity-spectrum: "
-        "capacity spectrum method; coefficient: coefficient method of ASCE 41. Default: coefficient (ASCE41), N2 "
-        "(others)",
+        "method that gives the displacement demand. N2: equivalent oscillator (EN 1998-1, Annex B); capacity-spectrum: capacity "
+        "spectrum method; coefficient: coefficient method of ASCE 41. Default: coefficient (ASCE41), N2 (others)",
     )
     secant: float = key(
         0.7,
-        "share of the greatest base shear at which the bilinear curve takes its stiffness; 0.6 is the general rule of C7.3.4.2",
+        "share of the greatest base shear at which the bilinear curve meets the capacity curve, which "
+        "gives its stiffness; 0.6 is the general rule of C7.3.4.2",
         ge=0.5,
         le=0.9,
         source="NTC 2018 7.8.1.6",
     )
     quality: float = key(
         0.33,
-        "factor k on the hysteretic damping in the capacity spectrum method: 1, 0.66 or 0.33 for high, moderate or low dissipation",
+        "factor k on the hysteretic damping, in the capacity spectrum method: 1, 0.66 or 0.33 for high, moderate or low dissipation",
         ge=0,
         le=1,
         source="Circ. 7/2019 [C7.3.10]",
     )
     shape: Literal["displaced", "mode"] = key(
         "displaced",
-        "shape phi for the equivalent mass. displaced: elastic displacement under the horizontal forces; mode: "
-        "mode with the greatest participating mass in the direction (with flexible floors this mass can be small)",
+        "mode shape phi for the equivalent mass. displaced: elastic displacement under the horizontal forces; mode: mode with the "
+        "greatest participating mass along the load (this mass can be small with flexible floors)",
         source="Circ. 7/2019 C7.3.4.2: first mode",
     )
     spectrum: CodeSpectrum | None = key(
         None, "elastic spectrum of the limit state that gives the verdict; default: that of [code], or of a `compatible` motion"
     )
-    motion_spectrum: bool = key(False, "if no code spectrum is given, use the response spectrum of the motion in the deck")
+    motion_spectrum: bool = key(False, "if no code spectrum is given: use the response spectrum of the motion in the deck")
 
     motions: int | None = key(
         None,
-        "number of motions of the set in [motion] from which N2 calculates a fragility curve, record by record; default: none",
+        "number of motions of the set in [motion] for a fragility curve: N2 with the spectrum of each motion; default: no fragility curve",
         ge=2,
         le=10_000,
     )
@@ -122,16 +126,15 @@ class Floor(Table):
     """A floor, roof or vault that rests on the wall."""
 
     height: Length = key(about="height at which the load acts, above the foot of the wall", ge=0)
-    load: Force = key(0.0, "weight of the load that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
+    load: Force = key(0.0, "weight of a load that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
     pushing: Force = key(
         0.0,
-        "weight whose mass pushes the wall but which does not rest on it (Q): the mass drives the mechanism, and the "
-        "weight does not stabilise it",
+        "weight of a load that pushes the wall by its mass but does not rest on it (Q): it drives the mechanism and does not stabilise it",
         ge=0,
         source="Circ. 7/2019 [C8.7.1.1]",
     )
-    arm: Length | None = key(None, "horizontal distance of the load behind the hinge; default: the middle of the wall", ge=0)
-    sways: bool = key(True, "whether the mass of the load is accelerated with the wall; false if other walls restrain it")
+    arm: Length | None = key(None, "horizontal distance from the hinge to the load, inwards; default: the middle of the wall", ge=0)
+    sways: bool = key(True, "whether the wall accelerates the mass of the load; false if other walls restrain the load")
     thrust: Force = key(0.0, "outward horizontal thrust of the load under vertical loads only (without earthquake)")
 
 
@@ -149,7 +152,7 @@ class Wing(Table):
     thickness: Length = key(about="its thickness", gt=0)
     width: Length = key(about="its length", gt=0)
     foot: Length = key(0.0, "height of the foot of this part above the foot of the wall", ge=0)
-    setback: Length = key(0.0, "distance by which the outer face of this part lies behind the outer face of the wall", ge=0)
+    setback: Length = key(0.0, "distance by which the outer face of this part is set back from the outer face of the wall", ge=0)
 
     @model_validator(mode="after")
     def _upright(self) -> "Wing":
@@ -203,12 +206,12 @@ class LocalMechanism(BuildingAnalysis):
     mechanism: Literal[
         "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building"
     ] = key(
-        about="kind of mechanism: facade, corner of two walls, gable, parapet or chimney on a building, free-standing wall, "
-        "tower as one body; wall that bends vertically between floors, or horizontally between side walls; or "
-        "`building`: the collapse mechanism of the [structure] of the deck (triumphal arches, bridges, vaults), or the "
-        "walls of a building in plan"
+        about="kind of mechanism. Of one wall: facade, corner of two walls, gable, parapet or chimney on a "
+        "building, free-standing wall, tower as one body, vertical bending between floors, horizontal "
+        "bending between side walls. `building`: the collapse mechanism of the [structure] of the deck "
+        "(triumphal arches, bridges, vaults), or the walls of a building in plan"
     )
-    height: Length | None = key(None, "top of the body that overturns, above the foot of the wall", gt=0)
+    height: Length | None = key(None, "height of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
     width: Length | None = key(None, "length of the wall that overturns; default 1 m, for a tower its thickness", gt=0)
     hinge_height: Length = key(0.0, "height of the hinge: the crack about which the wall rotates", ge=0)
@@ -219,24 +222,23 @@ class LocalMechanism(BuildingAnalysis):
     wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
     abutment_force: Force | None = key(
         None,
-        "for horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip. "
-        "Default: side walls that do not move (for instance between further walls); the strip then crushes at [material] "
-        "compressive_strength",
+        "for horizontal bending: force H that each side wall (or its tie) resists against the thrust of the strip. Default: the side "
+        "walls do not move, for instance between neighbouring walls; the strip then crushes at `compressive_strength` of [material]",
         gt=0,
     )
     interlocking: Interlocking | None = key(
-        None, "interlocking teeth of the side walls that restrain a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
+        None, "interlocking of the units with the side walls, which restrains a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
     )
     spectrum: CodeSpectrum | None = key(
         None, "elastic spectrum of the site; default: that of a `compatible` motion", source="EN 1998-1 3.2.2; NTC 2018 3.2.3"
     )
-    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default: that of the spectrum", gt=0)
+    peak_acceleration: Acceleration | None = key(None, "demand a_g S, as an acceleration; default: from the spectrum", gt=0)
     collapse_spectrum: CodeSpectrum | None = key(
         None,
         "elastic spectrum of the site for the limit state of collapse, SLC; adds the check of d_SLC to the checks at SLV",
         source="Circ. 7/2019, C8.7.1.2.1.8",
     )
-    motion_spectrum: bool = key(False, "if no code spectrum is given, use the response spectrum of the motion in the deck")
+    motion_spectrum: bool = key(False, "if no code spectrum is given: use the response spectrum of the motion in the deck")
     behaviour_factor: float = key(
         2.0,
         "behaviour factor q of the linear check of NTC, which applies to mechanisms without a displacement check",
@@ -246,21 +248,19 @@ class LocalMechanism(BuildingAnalysis):
     )
     confidence_factor: float | None = key(
         None,
-        "confidence factor FC; default: that of [code], or that of LC1 (1.35) if the compressive strength is neglected",
+        "confidence factor FC; default: from [code]; that of LC1 (1.35) if the compressive strength is neglected",
         ge=1,
         le=2,
         source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV",
     )
     base_height: Length | None = key(
         None,
-        "height z of the mechanism above the foundation; if z is above 0, the building amplifies the motion. Default "
-        "from the geometry: the lowest hinge between moving and fixed parts; for a table, `hinge_height`",
+        "height z of the mechanism above the foundation. If z is above 0, the building amplifies the motion. Default for blocks: the "
+        "lowest hinge between moving and fixed parts; for a table: `hinge_height`",
         ge=0,
     )
     building_height: Length | None = key(
-        None,
-        "height H of the building, required if z is above 0. Default from the geometry: the top of all parts; for a table, `height`",
-        gt=0,
+        None, "height H of the building, required if z is above 0. Default for blocks: the top of all parts; for a table: `height`", gt=0
     )
     building_period: Time | None = key(None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6")
     storeys: int | None = key(
@@ -277,7 +277,7 @@ class LocalMechanism(BuildingAnalysis):
     )
     period: Time | None = key(
         None,
-        "period T_0 of a part that vibrates freely; default: calculated from [material] young, if given",
+        "period T_0 of a part that vibrates freely; default: calculated from `young` of [material], if given",
         gt=0,
         source="Circ. 7/2019 [C8.7.1.7]",
     )
@@ -289,7 +289,7 @@ class LocalMechanism(BuildingAnalysis):
     @model_validator(mode="after")
     def _one_building(self) -> "LocalMechanism":
         if self.modes and (given := sorted({"building_period", "storeys"} & self.model_fields_set)):
-            raise ValueError(f"{given[0]}: the modes already give this value, remove the key")
+            raise ValueError(f"{given[0]}: the key `modes` already gives this value: remove this key")
         return self
 
     @model_validator(mode="after")

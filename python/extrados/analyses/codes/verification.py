@@ -81,7 +81,7 @@ def with_design_strengths(context: Context, options: Verification) -> Context:
     if factor == 1.0:
         return context
     context.warnings.append(
-        f"The strengths are the values of the deck divided by the confidence factor {factor:.3g}, as the verification requires."
+        f"The strengths are those of the deck, divided by the confidence factor {factor:.3g}, as the verification requires."
     )
     return replace(context, building=divided(context.building, factor))
 
@@ -172,7 +172,7 @@ def verify(
             carried,
             ("motion", "limit_state"),
             "g",
-            f"peak ground acceleration that the building carries for each motion, at {', '.join(known_states)}",
+            f"peak ground acceleration that the building can carry at {', '.join(known_states)}, for each motion",
         )
     if code.jurisdiction == "NZSEE" and (found := least("ULS")) is not None:
         more["nbs_percent"] = 100.0 * found
@@ -192,7 +192,7 @@ def verify(
 
 def unverified(name: str) -> str:
     """The condition of a push that has no curve to be verified."""
-    return f"Pushover {name} has no capacity curve with a rising branch. The least factor is that of the other pushovers."
+    return f"The capacity curve of pushover {name} has no rising branch. The least factor is that of the other pushovers."
 
 
 def _idealised(curve: CapacityCurve, options: Verification, jurisdiction: str) -> Oscillator | None:
@@ -211,7 +211,7 @@ def curve_arrays(context: Context, options: Verification, pushes: list[Push]) ->
             ("load", push.curve.force, "N", "base shear"),
         ):
             found[f"verified_{name}_{k}"] = Array(
-                values, (f"verified_{k}",), unit, f"{about} of the verified curve {push.name}", f"verified_{name}"
+                values, (f"verified_{k}",), unit, f"{about} of the verified capacity curve, {push.name}", f"verified_{name}"
             )
     given = demands(context, options)
     if given:

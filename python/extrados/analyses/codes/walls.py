@@ -61,8 +61,8 @@ def wall_parts(building: Building) -> list[WallPart]:
     parts = [part for wall in plan.walls for part in parts_of_wall(building, wall, actions)]
     if not parts:
         raise NoMechanism(
-            "Rigid floors or props restrain the top of every wall, so no wall overturns out of its plane as one body. The "
-            "bending of a wall between its floors is not checked"
+            "Rigid floors or props restrain the top of each wall, so no wall overturns out of its plane as "
+            "one body. The bending of a wall between two floors is not checked"
         )
     return parts
 

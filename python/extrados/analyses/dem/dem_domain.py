@@ -145,8 +145,8 @@ def run(context: Context, options: DemDomain) -> Result:
         varied = _varied(options, model.values)
     else:
         model, varied = make_solid_model(context.building, options), []
-        if not options.rigid or options.cross_check:
-            context.warnings += dem_model.doubts_of_springs(model.values)
+        springs = not options.rigid or options.cross_check
+        context.warnings += (dem_model.doubts_of_springs if springs else dem_model.doubts_of_rigid_mortar)(model.values)
     return compared(context, options.rigid, model, lambda: _found(context, options, model, varied))
 
 
@@ -204,7 +204,7 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
                 checked,
                 ("solver", "amplitude", "duration"),
                 "",
-                "1 if the pulse of the cell causes collapse. Solver 0: the solver of the deck; solver 1: the other solver",
+                "1 if the pulse causes collapse, for each cell of the map. Solver 0: solver of the deck; solver 1: the other solver",
             ),
         }
         if numbers["cross_check"].agreement_ratio < AGREE:
@@ -262,12 +262,12 @@ def _apart(check: out.CrossCheck) -> str:
     """Where the two solvers do not agree, in words."""
     where = "; ".join(
         (
-            f"{c.amplitude_g:.3g} g for {c.duration_s:.3g} s {'collapses' if c.fails_as_given else 'stands'} by the solver of "
-            f"the deck and {'collapses' if c.fails_by_the_other else 'stands'} by the other solver"
+            f"a pulse of {c.amplitude_g:.3g} g and {c.duration_s:.3g} s {('collapses' if c.fails_as_given else 'stands')} by the solver "
+            f"of the deck, and {('collapses' if c.fails_by_the_other else 'stands')} by the other solver"
         )
         for c in check.apart[:8]
     )
-    return f"the solvers agree in only {100 * check.agreement_ratio:.0f} % of {check.cells} cells: {where}"
+    return f"the two solvers agree in only {100 * check.agreement_ratio:.0f} % of {check.cells} cells: {where}"
 
 
 def _swings_once(run: dem.Run, count: int) -> bool:
@@ -333,7 +333,7 @@ def _beside(
         tried = np.linspace(0.1 * durations[0], 1.5 * durations[-1], 120)
         found = shortest_durations(arch.body, options.pulse, amplitudes, tried, settling_time(arch), 1e-4, context.threads, context)
     except (BadGeometry, Refused, CoreError) as error:
-        result.warnings.append(f"no curves of the four-hinge model are given for comparison: {error}")
+        result.warnings.append(f"the curves of the four-hinge model, which serve for comparison, are not given: {error}")
         return {}
     for mode, shortest in zip(("mode_I", "mode_II"), found, strict=True):
         result.arrays[mode] = Array(shortest, ("amplitude",), "s", "shortest duration that causes collapse of the four-hinge model")
@@ -357,12 +357,12 @@ def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> s
         with np.errstate(invalid="ignore"):
             worst = max(spread, key=lambda item: np.nanmax(np.abs(item[1] / shortest - 1.0), initial=0.0))
         change = np.nanmax(np.abs(worst[1] / shortest - 1.0), initial=0.0)
-        text += f" The greatest change of these durations, {100 * change:.0f} %, occurs with {worst[0]}."
+        text += f" The greatest change of these durations is {100 * change:.0f} %, with {worst[0]}."
     if r.cross_check is not None:
         other = [f"{t:.3f}" if t is not None else "none" for t in r.curves[-1].shortest_durations_s]
         text += (
-            f" With {r.curves[-1].label}: {', '.join(other)} s; both solvers agree in "
-            f"{100 * r.cross_check.agreement_ratio:.0f} % of {r.cross_check.cells} cells."
+            f" With {r.curves[-1].label}, the durations are {', '.join(other)} s; both solvers agree in {100 * r.cross_check.agreement_ratio:.0f} "
+            f"% of {r.cross_check.cells} cells."
         )
     mode = r.four_hinge_mode_I_durations_s
     if mode and all(t is not None for t in mode) and np.isfinite(shortest).all():

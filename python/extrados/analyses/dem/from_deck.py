@@ -8,7 +8,7 @@ import numpy as np
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.calibration import beta_for_restitution
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.tables import DemTable
+from extrados.analyses.dem.tables import DemTable, SpatialDem
 from extrados.analyses.dem.ties import element_ties, section_strands
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.structures.arch import ArchAssembly
@@ -61,4 +61,6 @@ def make_model(building: Building, options: DemTable) -> Model:
         groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
     rigid = building.rigid(groups, options.floor)
     ties = element_ties(building, section_strands(building), rigid.body_of_block, options.has_rates)
-    return Model(assembly, rigid, joint_values(building), ties)
+    crushes = isinstance(options, SpatialDem) and options.crushing
+    strength = building.material.compressive_strength if crushes else None
+    return Model(assembly, rigid, joint_values(building), ties, strength or 0.0)

@@ -73,12 +73,12 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         result.warnings.append(f"joints slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
     if who := numbers["off_footing"]:
         result.warnings.append(
-            f"{', '.join(who[:6])} slides off its footing. To let detached blocks slide on a floor, give `dem` the key `floor` "
-            f"= {measures.ground_level(model):.4g}"
+            f"{', '.join(who[:6])} slides off its footing. If detached blocks can slide on a floor, give the "
+            f"key `floor` = {measures.ground_level(model):.4g} of `dem`"
         )
     result.warnings += doubts_of_run(model, found, chaos["violated"], numbers["still_moving"])
     if trial.idle:
-        result.warnings.append("no motion acts on the structure: add [motion], [[initial.movements]] or [initial] rotation_ratio")
+        result.warnings.append("no motion acts on the structure: add [motion], [[initial.movements]] or `rotation_ratio` of [initial]")
     if result.status == "ok":
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)
@@ -156,9 +156,7 @@ def _further(context: Context, options: Dem, trial: Trial, result: Result, numbe
             numbers["friction_threshold"] = friction_threshold(context, trial, options.slip)
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
-        result.reason = (
-            f"the main run is complete, but the further runs (variations, or the search for the least friction) stopped: {error}"
-        )
+        result.reason = f"the main run is complete, but the additional runs (variations, or search for the least friction) stopped: {error}"
     except Refused as error:
         numbers["friction_threshold"] = None
-        result.warnings.append(f"the least friction was not found: {error}")
+        result.warnings.append(f"the least coefficient of friction was not found: {error}")

@@ -1,6 +1,6 @@
 """A deck's structure as a discrete-element model: bodies, joint types, damping."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -31,12 +31,14 @@ class JointValues(ContactValues):
 
 @dataclass(frozen=True)
 class Model:
-    """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry."""
+    """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry. strength: at which the corners of joints
+    crush, 0 never [Pa]."""
 
     assembly: Assembly
     rigid: RigidBodies
     values: JointValues
     ties: ElementTies = NO_TIES
+    strength: float = 0.0
 
     @property
     def count(self) -> int:
@@ -59,7 +61,7 @@ class Model:
         return float(np.ptp(np.concatenate(self.assembly.outlines), axis=0).max())
 
     def bodies(self, values: JointValues | None = None) -> dem.Bodies:
-        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
+        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar and crushing."""
         v = values or self.values
 
         def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
@@ -72,6 +74,7 @@ class Model:
             if pair is None:
                 continue
             one = law(v.stiffness[j], v.shear_stiffness[j], v.friction[j], v.cohesion[j], v.tension[j])
+            one = replace(one, strength=self.strength)
             if one not in numbers:
                 numbers[one] = len(laws)
                 laws.append(one)
@@ -98,14 +101,17 @@ def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end
     names = [model.body_names[k] for k in run.blamed]
     first = names[0] if names else "a block"
     wedged = (
-        f". In {run.effort.open_steps} of these steps the solver did not find the impulses at the rigid contacts: under very high "
-        'friction, blocks that touch on several sides jam. Give a friction of up to 1, or use solver = "compliant"'
+        (
+            f". In {run.effort.open_steps} of these steps the solver did not find the impulses at the rigid "
+            "contacts: blocks that touch on several sides jam under very high friction. Give a coefficient "
+            'of friction up to 1, or use solver = "compliant"'
+        )
         if run.effort.open_steps
         else ""
     )
     raise {"unsettled": Falls, "restless": Restless}.get(run.reason, Refused)(
         {
-            "step": f"the time step exceeds the critical time step, {run.critical_step:.3g} s",
+            "step": f"the time step exceeds the critical time step of {run.critical_step:.3g} s",
             "overlap": f"{' and '.join(names)} overlap at the start",
             "unsettled": f"the structure does not stand under its own weight: {first} falls",
             "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps ({first} moves most), so "
@@ -121,10 +127,15 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     not as drawn."""
     found = [*passive_left_out(model.assembly.earth), *adjusted(model)]
     if options.rigid:
-        return found
+        return found + doubts_of_rigid_mortar(model.values)
     found += doubts_of_springs(values or model.values)
+    if model.strength:
+        found.append("crushed corners recover when the joint closes: the damage by crushing and its energy loss are neglected")
     if options.mass_damping > 0.0:
-        found.append("mass-proportional damping acts like air on a rigid block that rocks. This has no physical meaning here and is unsafe")
+        found.append(
+            "mass-proportional damping acts like viscous air around a rocking block. This has no physical "
+            "meaning and is unsafe: give mass_damping = 0"
+        )
     return found
 
 
@@ -133,30 +144,44 @@ def adjusted(model: Model) -> list[str]:
     rigid, tolerance, found = model.rigid, model.assembly.tolerance, []
     if rigid.moved > 1e-6 * model.size:
         found.append(
-            f"the program moved faces of blocks by up to {1e3 * rigid.moved:.2g} mm onto their joints (contact_tolerance "
-            f"{1e3 * tolerance:g} mm)"
+            f"the program moved faces of blocks by up to {1000.0 * rigid.moved:.2g} mm, so that they meet at "
+            f"their joints (`contact_tolerance` {1000.0 * tolerance:g} mm)"
         )
     if rigid.cut > 0.0:
         why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"
-        found.append(f"the program cut back overlaps of blocks of up to {1e3 * rigid.cut:.2g} mm ({why})")
+        found.append(f"the program removed overlaps of blocks of up to {1000.0 * rigid.cut:.2g} mm ({why})")
     return found
 
 
 def doubts_of_springs(values: ContactValues) -> list[str]:
     """Warnings that impacts are damped too little, and that mortar bears more in bending than an elastic joint."""
-    ratio, found = values.ratios(), []
-    if np.nanmax(values.tension, initial=0.0) > 0.0:
-        found.append(
-            "the tensile strength of mortar acts at the ends or corners of a joint, so in bending the joint carries up to "
-            "three times the moment of an elastic joint"
-        )
+    ratio, found = values.ratios(), _doubts_of_tension(values)
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
-            f"under-damped: the damping is {100 * ratio['rotation']:.3g} % of critical at rotational impact and "
-            f"{100 * ratio['edge']:.3g} % at edge impact. At least 10 % and 25 % are advised; with less, blocks may bounce "
-            "and walk"
+            f"the damping is low: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} "
+            "% at edge impact. At least 10 % and 25 % are advised; with less, blocks may bounce and walk"
         )
     return found
+
+
+def doubts_of_rigid_mortar(values: ContactValues) -> list[str]:
+    """The warning that rigid contacts find mortar at its strongest."""
+    if not max(np.nanmax(values.tension, initial=0.0), np.nanmax(values.cohesion, initial=0.0)) > 0.0:
+        return []
+    return [
+        *_doubts_of_tension(values),
+        "with rigid contacts mortar holds as long as any forces in equilibrium within its strength exist, as in limit analysis. Where "
+        "several joints, or both ends of a joint, share a force, brittle mortar may fail earlier: compare with springs",
+    ]
+
+
+def _doubts_of_tension(values: ContactValues) -> list[str]:
+    if not np.nanmax(values.tension, initial=0.0) > 0.0:
+        return []
+    return [
+        "the tensile strength of mortar acts at the ends or corners of a joint, so the joint carries up to three times the bending "
+        "moment of an elastic joint"
+    ]
 
 
 def unconverged(effort: dem_run.Effort) -> list[str]:
@@ -165,9 +190,8 @@ def unconverged(effort: dem_run.Effort) -> list[str]:
         return []
     return [
         (
-            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest error, at "
-            f"{effort.worst:.4g} s, is {effort.residual:.2g} of the velocity that gravity adds in a step. Try a smaller "
-            "time_step"
+            f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps. The greatest error, at {effort.worst:.4g} "
+            f"s, is {effort.residual:.2g} of the velocity that gravity adds in one step. Try a smaller `time_step`"
         )
     ]
 

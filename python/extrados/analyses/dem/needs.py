@@ -3,11 +3,13 @@
 from collections.abc import Iterator
 from functools import partial
 
+import numpy as np
+
 from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.sampled import refuse_uncertain
-from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_shoves, refuse_stones
+from extrados.analyses.dem.solid_model import refusals, refuse_shoves, refuse_stones
 from extrados.analyses.dem.ties import refuse_rigid_ties, section_strands
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.analyses.statistics.annual import hazard_curve
@@ -43,6 +45,8 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         yield lambda: _refuse_bars(building)
     if _rigid(options):
         yield lambda: _refuse_springs(building)
+    if isinstance(options, tables.SpatialDem) and options.crushing:
+        yield lambda: _refuse_crushing(building, _rigid(options))
     yield lambda: refuse_rigid_ties(building)
     yield lambda: section_strands(building)
     if building.joints.damping == "restitution" and building.joints.beta is None:
@@ -74,8 +78,8 @@ def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
     most = SHARE * room.total() / (8.0 * values)
     if options.end_time / options.output_step > most:
         raise Refused(
-            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: give an "
-            f"output_step of at least {options.end_time / most:.2g} s",
+            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store: "
+            f"give an `output_step` of at least {options.end_time / most:.2g} s",
             ("analysis", "output_step"),
         )
 
@@ -88,16 +92,27 @@ def _rigid(options: tables.DemTable) -> bool:
 def _refuse_bars(building: Building) -> None:
     key = ("analysis", "merge")
     if not isinstance(building.blocks(), ArchAssembly):
-        raise Refused('merge = "three-bars" requires an arch', key)
+        raise Refused('merge = "three-bars" is only for arches: remove `merge`', key)
     if building.initial.rotation_ratio:
-        raise Refused('voussoirs that are merged cannot start with a rotation: with [initial] rotation_ratio, give merge = "none"', key)
+        raise Refused('merged voussoirs cannot start with a rotation: with `rotation_ratio` of [initial], give merge = "none"', key)
 
 
 def _refuse_springs(building: Building) -> None:
     """Refused where rigid contacts are asked for what only springs have."""
-    refuse_mortar(building)
     if building.supports.stiffness is not None:
-        raise Refused(f"{RIGID} have no springs", ("supports", "stiffness"))
+        raise Refused('rigid contacts (solver = "nonsmooth", or `cross_check`) have no springs', ("supports", "stiffness"))
+
+
+def _refuse_crushing(building: Building, rigid: bool) -> None:
+    """Refused where corners are to crush without a strength, on rigid contacts, or at joints with mortar."""
+    key = ("analysis", "crushing")
+    if building.material.compressive_strength is None:
+        raise Refused("crushing of corners requires a compressive_strength of the [material]", key)
+    if rigid:
+        raise Refused("crushing of corners requires springs: omit cross_check", key)
+    for name in ("cohesion", "tension"):
+        if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
+            raise Refused("joints with mortar do not crush: remove cohesion and tension, or omit crushing", ("joints", name))
 
 
 def _refuse_restitution(building: Building) -> None:
@@ -116,7 +131,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
 
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
-    yield lambda: refuse_stones(building, stones, _rigid(options))
+    yield lambda: refuse_stones(stones)
     yield lambda: refuse_rigid_ties(building)
     yield building.strands
     yield lambda: damper_strands(building)

@@ -166,8 +166,9 @@ def doubts_of_run(model: Model | SolidModel, found: dem_run.FoundRun, violated: 
     if elsewhere := carried_elsewhere(model, found):
         more = f" and {len(elsewhere) - SHOWN} more blocks" if len(elsewhere) > SHOWN else ""
         doubts.append(
-            f"contacts that formed during the motion carry {', '.join(elsewhere[:SHOWN])}{more}; the reactions and the base shear do not include their forces"
+            f"contacts that formed during the motion carry {', '.join(elsewhere[:SHOWN])}{more}; the "
+            "reactions and the base shear do not include the forces of these contacts"
         )
     if still_moving:
-        doubts.append("the structure still moves at the end of the run: a later end_time may change the outcome")
+        doubts.append("the structure still moves at the end of the run: a later `end_time` may change the outcome")
     return doubts

@@ -77,7 +77,10 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     _store(options, seen, ground, result)
     if across is not None:
         result.arrays["ground_across"] = Array(
-            Motion("", across).sample(found.time), ("time",), "m/s^2", "acceleration of the ground perpendicular to the direction"
+            Motion("", across).sample(found.time),
+            ("time",),
+            "m/s^2",
+            "acceleration of the ground perpendicular to the direction of the motion",
         )
     if seen.slides:
         result.warnings.append(f"contacts slide by up to {three_figures(1e3 * seen.sliding.peak)} mm")
@@ -116,7 +119,7 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
             solid_measures.poses(model, run),
             ("time", "block", "pose"),
             "m, m, m, rad, rad, rad",
-            "displacements of the centroids and rotation vectors, from the drawn position of the blocks",
+            "displacements of the centroids and rotation vectors, from the initial position of the blocks",
         ),
         "rate": Array(
             run.rate[:, : model.count],
@@ -133,7 +136,7 @@ def contact_arrays(opening: np.ndarray, slip: np.ndarray, state: np.ndarray) -> 
     return {
         "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 fully open"),
         "opening": Array(opening, ("time", "contact"), "m", "greatest gap of each contact, over its corners"),
-        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact at its most closed corner"),
+        "slip": Array(slip, ("time", "contact"), "m", "slip of each contact, at the corner that is most closed"),
     }
 
 
@@ -162,7 +165,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         **{name: Array(values, ("time",), "J") for name, values in energies.items()},
         **tie_arrays(model.ties, found.tension),
         **force_arrays(model, found),
-        "ground": Array(ground, ("time",), "m/s^2", "acceleration of the ground along the direction"),
+        "ground": Array(ground, ("time",), "m/s^2", "acceleration of the ground along the direction of the motion"),
     }
     if len(found.time):
         every = np.arange(0, len(found.time), max(1, int(np.ceil(len(found.time) / MOST_FRAMES))))

@@ -19,8 +19,6 @@ from extrados.views.building import Building
 from extrados.views.solids.strands import damper_strands
 from extrados.views.solids.supports import LEVEL, Supports, supports_of
 
-#: What is refused of them, in words
-RIGID = 'rigid contacts (solver = "nonsmooth", or cross_check)'
 FACING = -0.3  # cosine between faces of a stone that look away from each other
 
 
@@ -147,6 +145,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ),
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
+        ("crushing of corners", options.crushing, ("analysis", "crushing")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),
     ]
     if isinstance(options, Dem):
@@ -164,13 +163,6 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
     return [(f"dem of solids cannot include {what}: remove it", key) for what, there, key in asked if there]
 
 
-def refuse_mortar(building: Building, assembly: SolidAssembly | None = None) -> None:
-    """Refused where joints, of the plane stones or of solids, have mortar, which rigid contacts do not know."""
-    for name in ("cohesion", "tension"):
-        if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
-            raise Refused(f"{RIGID} have no mortar", ("joints", name))
-
-
 def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:
     """Refused where a support of a section that is drawn out moves by dy: upward in the plane, in space across the section."""
     y = np.concatenate([part.vertices for part in assembly.parts])[:, 1]
@@ -183,13 +175,14 @@ def refuse_shoves(building: Building, assembly: SolidAssembly) -> None:
     for k, one in enumerate(building.initial.movements):
         if one.dy:
             raise Refused(
-                "dy moves a support of this section sideways in space, across its depth: give dz for a settlement (z is upward in space)",
+                "`dy` moves a support of this section sideways (in space, y is across its depth): give `dz` for "
+                "a settlement (z is upward in space)",
                 ("initial", "movements", k, "dy"),
             )
 
 
-def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> None:
-    """Refused where the blocks have fill or too many corners, and mortar or dowels where contacts are to be rigid."""
+def refuse_stones(assembly: SolidAssembly) -> None:
+    """Refused where the blocks have fill or too many corners."""
     for part, owner in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         if (most := max(map(len, part.faces))) > dem3.MOST_CORNERS:
             raise Refused(
@@ -197,10 +190,6 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
                 f"{dem3.MOST_CORNERS}: divide the face, or draw it with fewer corners",
                 ("structure",),
             )
-    if rigid:
-        refuse_mortar(building, assembly)
-        if assembly.keys is not None:
-            raise Refused(f"{RIGID} have no dowels", ("structure", "dowels"))
     if len(assembly.fill):
         raise Refused("fill: `dem` of solids does not include weights that rest on the blocks; remove the fill", ("structure", "fill"))
 

@@ -21,7 +21,7 @@ from extrados.results.model import Result
 def run(context: Context, options: Dem, model: SolidModel) -> Result:
     """Brought in slowly, held, bisected, in both senses."""
     if without := unused(context, options):
-        context.warnings.append(f"these have no effect in a tilt test: {', '.join(without)}")
+        context.warnings.append(f"these tables or keys have no effect in a tilt test: {', '.join(without)}")
     base = replace(core_options(context, options, model), **held(options, model))
     bodies = model.bodies()
     found = capacities(

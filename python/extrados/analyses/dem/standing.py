@@ -22,11 +22,11 @@ from extrados.results.model import Result
 from extrados.views.building import Building
 
 WEDGED = (
-    "limit analysis does not prove collapse: friction may hold a wedged block by forces that do not exist at the start of discrete elements"
+    "limit analysis does not prove collapse: friction may hold a wedged block by forces that discrete elements do not have at the start"
 )
 JAMMED = (
-    "with rigid contacts the structure is in equilibrium, but perhaps only by forces that self-weight alone does not "
-    "produce, for instance those on a block wedged by friction. Springs start without such forces, and with springs"
+    "with rigid contacts the structure is in equilibrium, but perhaps only by forces that self-weight alone does not produce (a block "
+    "wedged by friction). Springs start without such forces, and with springs"
 )
 #: Steps of springs in which cases/solid/dem-cross-vault comes to rest, 14 times over
 SETTLING = 20_000
@@ -108,10 +108,10 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     except Restless:
         return (
             "",
-            (f"with springs the structure does not come to rest in {SETTLING} steps, so equilibrium only by jammed blocks is not excluded"),
+            (f"with springs the structure does not come to rest in {SETTLING} steps, so its equilibrium may depend on jammed blocks"),
         )
     except Falls:
-        answer = "The initial equilibrium may depend on jammed blocks: with springs the structure collapses as it settles."
+        answer = "The initial equilibrium may depend on jammed blocks: with springs, the structure collapses while it settles."
         return answer, f"{JAMMED} {model.body_names[found.blamed[0]]} falls"
     return "", ""
 
@@ -134,8 +134,8 @@ def proof_of_solids(building: Building) -> CannotStand | None:
         return None
     name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
     return CannotStand(
-        f"{name} cannot be in equilibrium; certificate: a mechanism, fastest at {name}, that no contact resists and in "
-        "which the weights do positive work"
+        f"{name} cannot be in equilibrium; certificate: a mechanism, fastest at {name}, in which no "
+        "contact resists and the weights do positive work"
     )
 
 

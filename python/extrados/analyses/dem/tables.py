@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from extrados.views.building import Building
 
 #: Properties of a building that rigid contacts do not look at
-SPRINGS = ("material.young", "joints.cohesion", "joints.tension", "joints.normal_stiffness", "joints.damping")
+SPRINGS = ("material.young", "joints.normal_stiffness", "joints.damping")
 #: What says how stiff and damped springs are
 OF_SPRINGS = {"material.young"} | {
     f"joints.{name}"
@@ -78,10 +78,9 @@ class DemTable(BuildingAnalysis):
     )
     solver: Literal["compliant", "nonsmooth"] = key(
         "compliant",
-        "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap or "
-        "tension (Moreau 1988, Jean 1999). Rigid contacts need no stiffness and no damping, and allow large time "
-        "steps. Each solver can check the "
-        "other",
+        "model of the joints. compliant: springs and dashpots; nonsmooth: rigid contacts without overlap "
+        "or tension (Moreau 1988, Jean 1999). Rigid contacts require no stiffness and no damping, and "
+        "allow large time steps. Each model can be used to check the other",
     )
     rebound: float = key(
         0.0,
@@ -91,20 +90,19 @@ class DemTable(BuildingAnalysis):
     )
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking blocks", ge=0, le=1e4)
     merge: Literal["none", "three-bars"] = key(
-        "none", "three-bars: join the voussoirs of an arch to the three rigid bars of its four-hinge mechanism"
+        "none", "three-bars: the voussoirs of an arch are joined to the three rigid bars of its four-hinge mechanism"
     )
-    fraction: float = key(0.3, "ratio of the time step to the critical time step", gt=0, le=0.9)
+    fraction: float = key(0.3, "time step, as a fraction of the critical time step", gt=0, le=0.9)
     time_step: Time | None = key(
         None,
-        "time step. Default: the given fraction of the critical time step; for "
-        'solver = "nonsmooth", 1/500 of the time of a free '
-        "fall over the size of the smallest block",
+        'time step. Default: `fraction` times the critical time step; for solver = "nonsmooth", 1/500 of '
+        "the time of free fall over the size of the smallest block",
         gt=0,
     )
     floor: Length | None = key(
         None,
-        "height of a level floor on which detached blocks land and slide. Default: no floor, but a footing under each "
-        "joint to the ground, a quarter wider than the joint on both sides",
+        "height of a level floor on which detached blocks land and slide. Default: no floor; each joint to the ground has a footing "
+        "that extends beyond the joint by a quarter of its length on both sides",
     )
 
     @property
@@ -118,7 +116,7 @@ class DemTable(BuildingAnalysis):
         return {key: fixed for key, fixed in told.items() if not (self.rigid and key in SPRINGS)}
 
     def reckons_with(self, building: "Building") -> set[str]:
-        """Rigid contacts refuse mortar and a compliant base, and look at nothing else that springs have."""
+        """Rigid contacts refuse a compliant base, and look at nothing else that springs have."""
         found = {*self.uses, *self.beside} - OF_SPRINGS
         return found if self.rigid else found | of_springs(building)
 
@@ -126,7 +124,7 @@ class DemTable(BuildingAnalysis):
     def _one_solver(self) -> "DemTable":
         """What only the other solver knows is refused."""
         given = self.model_fields_set
-        if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness"})):
+        if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness", "crushing"})):
             raise ValueError(f'{wrong[0]} is used only with solver = "compliant": rigid contacts have no stiffness and no damping')
         if not self.rigid and (wrong := sorted(given & {"rebound", "quasi_static"})):
             raise ValueError(f'{wrong[0]} needs solver = "nonsmooth"')
@@ -139,10 +137,16 @@ class SpatialDem(DemTable):
     solid: ClassVar = True
     direction: Angle | None = key(
         None,
-        "direction of the horizontal motion or load in plan: angle from +x towards +y. With this key, and for structures "
-        "without a plane section, the blocks are solids",
+        "direction of the horizontal motion or load in plan: angle from +x towards +y. If this key is "
+        "given, or if the structure has no plane section, the blocks are solids",
         ge=-360,
         le=360,
+    )
+
+    crushing: bool = key(
+        False,
+        "include crushing of the corners of joints, which moves hinges inward: the pressure is at most the compressive strength of the "
+        "material. For plane sections on springs, without mortar",
     )
 
     @property
@@ -151,17 +155,23 @@ class SpatialDem(DemTable):
         turn = math.radians(self.direction or 0.0)
         return (math.cos(turn), math.sin(turn), 0.0)
 
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Corners that crush depend on the strength."""
+        return {**super().rests_on(building), **({"material.compressive_strength": None} if self.crushing else {})}
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Corners crush at the strength of the material."""
+        return super().reckons_with(building) | ({"material.compressive_strength"} if self.crushing else set())
+
 
 class Dem(SpatialDem, Animated):
     """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
 
     starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
-    quasi_static: bool = key(
-        False, 'for solver = "nonsmooth": neglect inertia, so that moving supports are followed through large displacements up to collapse'
-    )
+    quasi_static: bool = key(False, 'for solver = "nonsmooth": neglect inertia, to follow large displacements of supports up to collapse')
     test: Literal["motion", "tilt"] = key(
-        "motion", "type of the test. motion: apply the motion; tilt: find the constant acceleration that causes collapse"
+        "motion", "type of the test. motion: the motion acts; tilt: find the constant acceleration that causes collapse"
     )
     end_time: Time | None = key(
         None,
@@ -177,21 +187,18 @@ class Dem(SpatialDem, Animated):
     )
     collapse_displacement: Length | None = key(
         None,
-        "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, "
-        "also if it slides. Default: 1/5 of the size of the structure; in a tilt test 1/20",
+        "displacement of a block that counts as collapse if the block also rotates or loses height (in a "
+        "tilt test, also if it slides). Default: 1/5 of the size of the structure; in a tilt test, 1/20",
         gt=0,
     )
     domain: float = key(
-        10.0,
-        "greatest distance of a block from the structure, in multiples of the size of the structure; the run ends beyond it",
-        gt=1,
-        le=1000,
+        10.0, "the run ends if a block is farther from the structure than this multiple of the size of the structure", gt=1, le=1000
     )
     stop_at_collapse: bool = key(True, "end the run when a block has moved by the collapse displacement")
     perturbed: bool = key(
         True,
-        "also run the motion times 1 + 1e-6, to find whether the response is chaotic. This doubles the time of the run; "
-        "if the perturbation grows a thousandfold, the time is ten times as long",
+        "repeat the run with the motion times 1 + 1e-6, to find whether the response is chaotic. This "
+        "takes twice the time; if the perturbation grows a thousandfold, ten times the time",
     )
     thrust: bool = key(
         False,
@@ -201,13 +208,13 @@ class Dem(SpatialDem, Animated):
     track: list[str] = key([], "names of the blocks whose rotation is recorded; default: all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "times at which the structure is drawn; default: six characteristic times", max_length=24)
     vtk: bool = key(False, "write VTU files and a PVD collection")
-    vary_damping: list[Positive] = key([], "also run with beta multiplied by each of these factors", max_length=50)
-    vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses multiplied by each of these factors", max_length=50)
+    vary_damping: list[Positive] = key([], "repeat the run with beta multiplied by each of these factors", max_length=50)
+    vary_stiffness: list[Positive] = key([], "repeat the run with joint stiffnesses multiplied by each of these factors", max_length=50)
     vary_friction: list[Positive] = key(
-        [], "also run with each of these coefficients of friction at all joints, including those of [[joints.types]]", max_length=50
+        [], "repeat the run with each of these coefficients of friction at all joints, including those of [[joints.types]]", max_length=50
     )
     find_friction: bool = key(False, "also find the least coefficient of friction, equal at all joints, at which no joint slides")
-    slip: Length = key(1e-4, "slip that counts as sliding in the search of the least friction", gt=0)
+    slip: Length = key(1e-4, "slip that counts as sliding, in the search for the least coefficient of friction", gt=0)
     tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
     tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
 
@@ -231,9 +238,9 @@ class DemDomain(SpatialDem):
     kind: Literal["dem-domain"]
     starter_structure: ClassVar = "block"
     starter: ClassVar = {"amplitudes": '["0.5 g", "0.7 g"]', "durations": "[0.2, 0.4, 0.8]", "accuracy": "0.02"}
-    pulse: Literal["step", "sine"] = key("step", "shape: step pulse of duration t_p, or a single sine of period T_p")
+    pulse: Literal["step", "sine"] = key("step", "shape of the pulse: step pulse of duration t_p, or a single sine of period T_p")
     amplitudes: list[Acceleration] = key(
-        about="amplitudes at which the shortest duration that causes collapse is searched", min_length=1, max_length=200
+        about="amplitudes of the pulses; at each, the shortest duration that causes collapse is searched", min_length=1, max_length=200
     )
     durations: list[Time] = key(about="durations that are tried first, in increasing order", min_length=2, max_length=500)
     accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
@@ -246,29 +253,29 @@ class DemDomain(SpatialDem):
     )
     mode_II: bool = key(
         False,
-        "also calculate the shortest pulses that cause collapse in the first swing, before any impact. With merge = "
-        '"three-bars" the four-hinge curve of the same name is given for comparison',
+        "also calculate the shortest pulses that cause collapse in the first swing, before any impact. "
+        'With merge = "three-bars", the curve of the four-hinge model is given for comparison',
         source="thesis Fig. 7-11",
     )
     cross_check: bool = key(
         False,
-        "also calculate with the other solver: its failure curve, and the share of the cells of all amplitudes and "
-        "durations in which both solvers give the same outcome",
+        "also calculate the failure curve with the other solver, and the share of the cells (amplitudes "
+        "and durations) in which both solvers give the same outcome",
     )
-    vary_damping: list[Positive] = key([], "further failure curves with beta multiplied by each of these factors", max_length=20)
+    vary_damping: list[Positive] = key([], "also calculate failure curves with beta multiplied by each of these factors", max_length=20)
     vary_stiffness: list[Positive] = key(
-        [], "further failure curves with joint stiffnesses multiplied by each of these factors", max_length=20
+        [], "also calculate failure curves with joint stiffnesses multiplied by each of these factors", max_length=20
     )
     vary_friction: list[Positive] = key(
         [],
-        "further failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]",
+        "also calculate failure curves with each of these coefficients of friction at all joints, including those of [[joints.types]]",
         max_length=20,
     )
 
     @model_validator(mode="after")
     def _ascending(self) -> "DemDomain":
         if any(b <= a for a, b in itertools.pairwise(self.durations)) or self.durations[0] <= 0.0:
-            raise ValueError("durations must be above zero and increase")
+            raise ValueError("`durations` must be above zero and increase")
         if min(self.amplitudes) <= 0.0:
             raise ValueError("amplitudes must be above zero")
         return self

@@ -42,7 +42,7 @@ def refuse_rigid_ties(building: Building) -> None:
     for k, tie in enumerate(building.ties):
         if tie.stiffness is None:
             raise Refused(
-                f"{tie.name}: discrete elements require the stiffness EA/L of a tie (force per change of length)", ("ties", k, "stiffness")
+                f"{tie.name}: discrete elements require the axial stiffness EA/L of a tie (force / elongation)", ("ties", k, "stiffness")
             )
 
 
@@ -58,7 +58,10 @@ def section_strands(building: Building) -> tuple[Strand, ...]:
         first = stone_at(assembly, points[0], damper.start_stone, f"{what}, start", key, "start")
         last = GROUND if damper.end is None else stone_at(assembly, points[1], damper.end_stone, f"{what}, end", key, "end")
         if first == last:
-            raise BadGeometry(f"{what}: both of its ends are in the block '{assembly.block_names[first]}'", key)
+            raise BadGeometry(
+                f"{what}: both ends are in the block '{assembly.block_names[first]}'. Move one end into another block, or to the ground",
+                key,
+            )
         flat = np.column_stack([points, np.zeros(2)])
         found.append(Strand(len(building.ties) + k, flat, ((first,), (last,)), False, -damper.most, damper.most))
     return tuple(found)

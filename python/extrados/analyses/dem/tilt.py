@@ -53,7 +53,7 @@ NOT_IN_TILT = (
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The constant acceleration that brings the structure down: brought in slowly, held, bisected, in both senses."""
     if without := unused(context, options):
-        context.warnings.append(f"these have no effect in a tilt test: {', '.join(without)}")
+        context.warnings.append(f"these tables or keys have no effect in a tilt test: {', '.join(without)}")
     settlement = farthest_settlement(model, rigid=options.rigid)
     base = replace(core_options(context, options, model), **held(options, model), settlement=settlement)
     bodies = [model.bodies()]
@@ -178,7 +178,8 @@ def capacities(context: Context, options: Dem, job: Callable[[list[float]], Any]
     for sense, run in zip(SENSES, last, strict=True):
         if run is None:
             raise Refused(
-                f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {'+x' if sense > 0 else '-x'}: increase tilt_limit",
+                f"the structure is stable at {options.tilt_limit / GRAVITY:g} g towards {('+x' if sense > 0 else '-x')}: "
+                "increase `tilt_limit`",
                 ("analysis", "tilt_limit"),
             )
     while True:

@@ -94,9 +94,9 @@ def tilt_answer(r: DemTilt) -> str:
     least, sense = min((collapse, "+x"), (back, "-x"))
     return (
         (
-            f"Collapse under a constant horizontal acceleration of {collapse:.4f} g towards +x (a tilt of "
-            f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g towards -x; the least is {least:.4f} g, towards {sense}. Hinges "
-            f"at collapse towards +x: {where}.{_tied(r.ties)}"
+            f"Collapse under a constant horizontal acceleration of {collapse:.4f} g towards +x (a tilt of {r.tilt_angle_deg:.2f} "
+            f"deg), and of {back:.4f} g towards -x. The lower value is {least:.4f} g, towards {sense}. Hinges at "
+            f"collapse towards +x: {where}.{_tied(r.ties)}"
         )
         + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
@@ -123,10 +123,9 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
     least = min(r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
     return (
         (
-            f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g along "
-            f"{r.load_direction_deg:g} degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at "
-            f"{r.collapse_acceleration_opposite_g:.4f} g in the opposite direction; the least is {least:.4f} g. Contacts that "
-            f"open or slide at collapse: {where}.{_tied(r.ties)}"
+            f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} "
+            f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg), and of {r.collapse_acceleration_opposite_g:.4f} g in the opposite "
+            f"direction. The lower value is {least:.4f} g. Contacts that open or slide at collapse: {where}.{_tied(r.ties)}"
         )
         + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")

@@ -62,12 +62,12 @@ def run(context: Context, options: Modes) -> Result:
     blocks = building.blocks()
     given = building.joints.model_fields_set
     if "shear_ratio" in given and np.isnan(building.joint_property("normal_stiffness")).all():
-        context.warnings.append("joints.shear_ratio has no effect: no joint has a normal_stiffness.")
+        context.warnings.append("`shear_ratio` of [joints] has no effect, because no joint has a `normal_stiffness`.")
     stiffness, mass = matrices(building, blocks)
     count = min(options.modes, len(mass))
     values, shapes = eigh(stiffness, mass, subset_by_index=[0, count - 1])
     if not values[0] > 1e-9 * np.trace(stiffness) / np.trace(mass):
-        raise Refused("the blocks are not restrained, so a mode has no frequency", ("structure",))
+        raise Refused("the blocks are not restrained: at least one mode has no frequency. Give supports", ("structure",))
     unit = np.tile(np.eye(3)[:, :2], (len(blocks.mass), 1))
     moving = unit.T @ mass @ unit
     shares = (unit.T @ mass @ shapes) ** 2 / np.diag(moving)[:, None]

@@ -203,13 +203,15 @@ def deflected_walls(building: Building, options: FrameOptions) -> tuple[list[Wal
         try:
             rigid = [part.body.multiplier() for part in parts_of_wall(building, wall, actions)]
         except (Refused, CannotStand) as error:
-            missing.append(f"Wall '{wall.name}' out of its plane: the rigid mechanism is not calculated: {error}.")
+            missing.append(f"The rigid mechanism of wall '{wall.name}' out of its plane is not calculated: {error}.")
         try:
             limit, moved, height, falls = chain_of(building, wall, actions, options).limit()
         except Cancelled:
             raise
         except (Refused, CoreError) as error:
-            missing.append(f"Wall '{wall.name}' out of its plane: the acceleration with deflection is not calculated: {error}.")
+            missing.append(
+                f"The acceleration that wall '{wall.name}' carries out of its plane, with deflection, is not calculated: {error}."
+            )
             continue
         rows.append(
             WallDeflection(

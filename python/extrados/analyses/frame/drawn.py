@@ -30,9 +30,12 @@ def drawn_arrays(frame: EquivalentFrame) -> dict[str, Array]:
             "m",
             "deformable part of each element: start and end along the wall, lower and upper height",
         ),
-        "element_wall": Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0"),
+        "element_wall": Array(np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, counted from 0"),
         "element_storey": Array(
-            np.array([s.storey for s in frame.strips]), ("element",), "", "storey of a pier; for a spandrel or ring beam, the storey below"
+            np.array([s.storey for s in frame.strips]),
+            ("element",),
+            "",
+            "storey of a pier; for a spandrel or ring beam, the storey below it",
         ),
         "element_kind": Array(
             np.array([KINDS[s.kind] for s in frame.strips]), ("element",), "", ", ".join(f"{n}: {word}" for word, n in KINDS.items())

@@ -196,8 +196,8 @@ def run(context: Context, options: FrameFragility) -> Result:
     """Curves of all limit states; see the deck reference."""
     if options.uncertain and options.frame.confidence_factor != 1.0:
         raise Refused(
-            "uncertain strengths scatter about their mean values, which a confidence factor must not reduce: remove "
-            "confidence_factor from the frame",
+            "uncertain strengths scatter about their mean values, which a confidence factor must not reduce: "
+            "remove `confidence_factor` of [analysis.frame]",
             ("analysis", "frame", "confidence_factor"),
         )
     frame = context.building.frame(options.frame)
@@ -356,7 +356,9 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
     if _stopped(swept, result):
         return
     if not swept.complete:
-        result.answer = f"{swept.finished} of {buildings} buildings have a pushover. The fragility curves require all buildings."
+        result.answer = (
+            f"{swept.finished} of {buildings} sampled buildings have a capacity curve. The fragility curves require that of all buildings."
+        )
         return
     rows = swept.arrays
     _tell_lost(rows["reason"], "buildings", result)
@@ -370,8 +372,8 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
         raise Refused("a fragility curve requires at least two motions for which the building has a capacity curve", ("motion",))
     if not good.all():
         result.warnings.append(
-            f"{int((~good).sum())} of {len(good)} pairs of motion and building are not considered, because a pushover has no "
-            "capacity curve."
+            f"{int((~good).sum())} of {len(good)} pairs of motion and building are not considered, because "
+            "the pushover gave no capacity curve."
         )
     carried = carried[good]
     half = norm.ppf(0.5 + 0.5 * options.confidence) / np.sqrt(len(carried))
@@ -390,7 +392,7 @@ def _by_pushovers(context: Context, options: FrameFragility, sample: Sample, sou
     more = _knowledge(context, options, sample, rows, [g for _, g in found], result) if options.uncertain else {}
     _describe(options, states, motions, carried.ravel(), result, buildings=buildings, **more)
     result.arrays["carried"] = Array(
-        carried, ("run", "limit_state"), "g", "intensity of each motion at which the building reaches a limit state by N2"
+        carried, ("run", "limit_state"), "g", "intensity of each motion at which the building reaches a limit state, by the N2 method"
     )
     result.tables["carried"] = TableData(
         {"motion": np.array([k + 1 for k, _ in found])[good], **{s.replace("-", "_"): carried[:, k] for k, s in enumerate(STATES)}},
@@ -439,8 +441,8 @@ def _knowledge(
     drawn = np.array([_carried(middle, options, rows, k)[2] for k in range(len(sample.draws))])
     share = float((drawn[np.isfinite(drawn)] < reached).mean())
     result.warnings.append(
-        f"If all strengths are divided by the confidence factor {factor:.3g}, the building carries {reached:.3g} g at "
-        f"collapse under the median motion; {100 * share:.3g} % of the sampled buildings carry less."
+        f"If all strengths are divided by the confidence factor {factor:.3g}, the building collapses at {reached:.3g} "
+        f"g under the median motion; {100 * share:.3g} % of the sampled buildings collapse at less."
     )
     return {"confidence_factor": factor, "design_intensity_g": reached, "weaker_share": share}
 

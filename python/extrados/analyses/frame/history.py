@@ -87,7 +87,7 @@ def run(context: Context, options: FrameHistory) -> Result:
     result.arrays["displacement"] = Array(
         moved, ("time",), "m", "control displacement along the direction of the motion, relative to the ground"
     )
-    result.arrays["base_shear"] = Array(path.shear, ("time",), "N", "internal base shear along the direction of the motion")
+    result.arrays["base_shear"] = Array(path.shear, ("time",), "N", "base shear by internal forces, along the direction of the motion")
     result.tables["frame_history"] = TableData(
         {"time": time, "ground_acceleration": ground[:count], "displacement": moved, "base_shear": path.shear},
         {"time": "s", "ground_acceleration": "m/s^2", "displacement": "m", "base_shear": "N"},

@@ -80,9 +80,7 @@ def _drawn(frame: EquivalentFrame, modes: list[Mode]) -> dict[str, Array]:
     drawn = drawn_arrays(frame)
     return {
         **{name: drawn[name] for name in ("wall_line", "wall_thickness", "storey_height")},
-        "trace_place": Array(
-            np.array([t.place for t in frame.traces]), ("trace", "axis"), "m", "ends and corners of the walls on the plan"
-        ),
+        "trace_place": Array(np.array([t.place for t in frame.traces]), ("trace", "axis"), "m", "ends and corners of the walls, in plan"),
         "trace_of": Array(
             np.array([(t.wall, t.level) for t in frame.traces]), ("trace", "part"), "", "number of the wall from 0, and level of each place"
         ),

@@ -35,7 +35,7 @@ def _control(context: Context, options: FramePushover) -> None:
     levels = {one.level for one in context.building.frame(options.frame).masses}
     if options.control_level not in levels:
         raise Refused(
-            f"control_level is {options.control_level}; expected a level with masses: {', '.join(map(str, sorted(levels)))}",
+            f"`control_level` is {options.control_level}: give a level that has masses: {', '.join(map(str, sorted(levels)))}",
             ("analysis", "control_level"),
         )
 
@@ -46,7 +46,7 @@ def _enough(context: Context, options: FrameFragility) -> None:
     if there == 1 and not options.uncertain:
         raise Refused("one motion of one building gives no fragility: give a set of motions, or uncertain values", ("motion",))
     if there is not None and options.count is not None and options.count > there and not options.uncertain:
-        raise Refused(f"{options.count}, but the deck has {there} motions: expected at most {there}", ("analysis", "count"))
+        raise Refused(f"the key `count` is {options.count}, but the deck has {there} motions: give at most {there}", ("analysis", "count"))
 
 
 def _few(context: Context) -> None:

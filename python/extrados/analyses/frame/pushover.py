@@ -22,7 +22,7 @@ from extrados.results.model import Array, Result, TableData
 from extrados.views.frame.frame import EquivalentFrame
 
 #: End of a push of which no smaller step is in equilibrium
-WITHOUT = "no equilibrium at the least step"
+WITHOUT = "no equilibrium even with the smallest step"
 #: Fall of the base shear at which codes take a building as failed
 DROP = 0.8
 #: Modes among which the main one of a direction is sought
@@ -108,7 +108,7 @@ def run(context: Context, options: FramePushover) -> Result:
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
     context.warnings += [
-        f"Run {row['name']}: no stiffness, because the curve has no displacement up to its greatest base shear ({row['stop']})."
+        (f"Run {row['name']}: no stiffness is given, because the curve has no displacement up to its greatest base shear ({row['stop']}).")
         for row in runs
         if row["stiffness_N_m"] is None
     ]
@@ -167,7 +167,7 @@ def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -
     loose = [s.name for s, f in zip(frame.strips, force, strict=True) if s.kind == "pier" and f[0] <= 0.0]
     if loose:
         context.warnings.append(
-            f"{len(loose)} piers carry no vertical load at rest and resist no horizontal force; the first is {loose[0]}."
+            f"{len(loose)} piers carry no vertical load at rest and therefore resist no horizontal force; the first of them is {loose[0]}."
         )
     for strip, element, f in zip(frame.strips, frame.elements, force, strict=True):
         limit = element.strength * element.depth * element.thickness
@@ -232,7 +232,7 @@ def place_of(frame: EquivalentFrame, freedom: int) -> str:
             moves = "moves vertically" if freedom == node.freedoms[0] else "rotates"
             return f"the rigid node of wall '{frame.plan.walls[node.wall].name}' at {node.s:.3g} m on level {node.level} {moves}"
     w, level = next(place for place, own in frame.along.items() if own == freedom)
-    return f"wall '{frame.plan.walls[w].name}' moves along itself on level {level}"
+    return f"on level {level}, wall '{frame.plan.walls[w].name}' moves along its own plane"
 
 
 def _limits(frame: EquivalentFrame, push: Push, path: Path) -> list[dict[str, Any]]:
@@ -317,17 +317,16 @@ def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> No
 def _answer(r: out.FramePushover) -> str:
     worst = next(row for row in r.runs if row.name == r.governing)
     text = (
-        f"The least base shear of {len(r.runs)} pushovers is {r.base_shear_N / 1e3:.3g} kN "
-        f"({r.base_shear_N / r.weight_N:.3g} of the weight), by {worst.name}, at a displacement of "
-        f"{1e3 * worst.displacement_at_peak_m:.3g} mm."
+        f"The least base shear of {len(r.runs)} pushovers is {r.base_shear_N / 1000.0:.3g} kN ({r.base_shear_N / r.weight_N:.3g} of the "
+        f"weight), in the pushover {worst.name}, at a displacement of {1000.0 * worst.displacement_at_peak_m:.3g} mm."
     )
     if worst.ultimate_displacement_m is not None:
-        text += f" The ultimate displacement of this run is {1e3 * worst.ultimate_displacement_m:.3g} mm."
+        text += f" In this pushover, the ultimate displacement is {1000.0 * worst.ultimate_displacement_m:.3g} mm."
     if worst.failed:
         first = worst.failed[0]
         text += (
-            f" The first element beyond its drift limit is {first.element}, in {first.mode}, at "
-            f"{1e3 * first.control_displacement_m:.3g} mm."
+            f" The first element that exceeds its drift limit is {first.element} (in {first.mode}), at {1000.0 * first.control_displacement_m:.3g} "
+            "mm."
         )
     if r.walls_out_of_plane:
         text += f" {r.weakest_wall()}"

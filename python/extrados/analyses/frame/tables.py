@@ -79,8 +79,8 @@ class FramePushover(FrameAnalysis):
     senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of each direction", min_length=1, max_length=2)
     patterns: list[Literal["uniform", "static", "modal"]] = key(
         ["uniform", "static"],
-        "patterns of the horizontal forces. uniform: in proportion to the masses; static: to the masses times "
-        "their height; modal: to the masses times the mode of greatest participating mass",
+        "patterns of the horizontal forces. uniform: in proportion to the masses; static: in proportion to the masses times their "
+        "height; modal: in proportion to the masses times the mode with the greatest participating mass",
         min_length=1,
         max_length=3,
         source="NTC 2018, 7.3.4.2",
@@ -95,25 +95,28 @@ class FramePushover(FrameAnalysis):
     verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
     out_of_plane: bool = key(
         True,
-        "with a seismic action: check every wall, above the foot of each storey, for out-of-plane failure by "
-        "`local-mechanism`. The floor spectrum uses the period of the frame",
+        "with a seismic action: check each wall, above the foot of each storey, for out-of-plane failure "
+        "by `local-mechanism`. The floor spectrum uses the period of the frame",
     )
     deflected_walls: bool = key(
         True,
-        "calculate the greatest constant acceleration that every wall carries out of its plane, with cracking, crushing and the "
-        "second-order effect of its deflection between rigid floors",
+        "calculate the greatest constant acceleration that each wall carries out of its plane, with "
+        "cracking, crushing and second-order effects of its deflection between rigid floors",
         source="after Vanin, Penna and Beyer 2020",
     )
     control_level: int | None = key(
         None,
-        "number of the control storey: the control displacement is the mean displacement, weighted by the masses, at the top "
-        "of this storey; default: the highest storey with masses",
+        "number of the control storey. The control displacement is the mean displacement at the top of "
+        "this storey, weighted by the masses; default: the highest storey with masses",
         ge=1,
     )
-    target_drift: float = key(0.02, "ratio of the greatest control displacement to the height of the control level", gt=0, le=0.2)
+    target_drift: float = key(0.02, "greatest control displacement, divided by the height of the control level", gt=0, le=0.2)
     steps: int = key(200, "number of steps up to the target; a step is divided if necessary", ge=10, le=10_000)
     drop: float = key(
-        0.5, "end of the run: base shear below this share of its greatest value; 0.8 means the 20 % decrease of codes", ge=0, le=0.95
+        0.5,
+        "the run ends when the base shear drops below this share of its greatest value; 0.8 means the 20 % decrease of codes",
+        ge=0,
+        le=0.95,
     )
 
     @model_validator(mode="after")
@@ -134,7 +137,8 @@ class FrameMotion(FrameAnalysis):
     damping_ratio: float = key(0.03, "damping ratio of the Rayleigh damping at its two frequencies", ge=0, le=0.5)
     damping_frequencies: list[Annotated[float, Field(gt=0)]] | None = key(
         None,
-        "two frequencies in Hz with this damping ratio; default: the first frequency of the direction, and three times this value",
+        "two frequencies in Hz at which the damping ratio applies; default: the first frequency along "
+        "the motion, and three times this value",
         min_length=2,
         max_length=2,
     )
@@ -155,46 +159,51 @@ class FrameFragility(FrameMotion):
     starter_motion: ClassVar = "generated"
     by: Literal["history", "pushover"] = key(
         "history",
-        "method. history: the motion of the frame under every record; pushover: N2 with the spectrum of every record, "
-        "for the capacity curves of both senses",
+        "method. history: response of the frame to each record; pushover: N2 with the spectrum of each "
+        "record, for the capacity curves in both senses",
         source="Fajfar 2000",
     )
     patterns: list[Literal["uniform", "static", "modal"]] = key(
-        ["uniform", "static"],
-        'for by = "pushover": patterns of the horizontal forces, with the same words as in frame-pushover',
-        min_length=1,
-        max_length=3,
+        ["uniform", "static"], 'for by = "pushover": patterns of the horizontal forces, as in `frame-pushover`', min_length=1, max_length=3
     )
     target_drift: float = key(
-        0.02, 'for by = "pushover": ratio of the greatest control displacement to the height of the highest level', gt=0, le=0.2
+        0.02, 'for by = "pushover": greatest control displacement, divided by the height of the highest level', gt=0, le=0.2
     )
     count: int | None = key(None, "number of motions; default 100, or the whole set", ge=2, le=1_000_000)
     seed: int | None = key(
-        None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
+        None,
+        "seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions",
+        ge=0,
+        le=2**62,
     )
-    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(sa_period) [g]")
+    intensity: Literal["pga", "sa"] = key("pga", "intensity measure of the motions. pga: PGA [g]; sa: SA(`sa_period`) [g]")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     levels: list[Annotated[float, Field(gt=0, le=100)]] | None = key(
         None,
-        'for by = "history": intensities [g] to which every motion is scaled; default: the motions are not scaled',
+        'for by = "history": intensities [g] to which each motion is scaled; default: the motions are not scaled',
         min_length=1,
         max_length=200,
     )
     uncertain: dict[str, float] = key(
         {},
-        "coefficients of variation of " + ", ".join(f"`{name}`" for name in UNCERTAIN) + "; lognormal factors of mean 1, one "
-        "for the whole building, drawn by a Sobol sequence; `strength` multiplies all strengths of the masonry",
+        "coefficients of variation of "
+        + ", ".join(f"`{name}`" for name in UNCERTAIN)
+        + (
+            "; lognormal factors with a mean of 1, one for the whole building, drawn by a Sobol sequence; "
+            "`strength` multiplies all strengths of the masonry"
+        ),
     )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
-    bootstrap: int = key(500, "number of bootstrap samples for the intervals of the curves", ge=0, le=100_000)
+    bootstrap: int = key(500, "number of bootstrap samples for the confidence intervals of the curves", ge=0, le=100_000)
 
     @model_validator(mode="after")
     def _sensible(self) -> "FrameFragility":
         if (self.intensity == "sa") != (self.sa_period is not None):
-            raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
+            raise ValueError('intensity = "sa" requires `sa_period`, and `sa_period` requires intensity = "sa"')
         if self.by == "pushover" and self.levels is not None:
             raise ValueError(
-                'the key `levels` is used only with by = "history". N2 calculates the intensity that each motion needs to reach a limit state'
+                'the key `levels` is used only with by = "history", because N2 calculates the intensity at which '
+                "each motion reaches a limit state: remove `levels`"
             )
         for name, value in self.uncertain.items():
             if name not in UNCERTAIN:

@@ -71,15 +71,15 @@ def verify_frame(
     if sliding:
         _, limit, storey, name, peak = min(sliding)
         violated.append(
-            f"In {len(sliding)} of {len(pushes)} curves the base shear exceeds the sliding limit of a storey by Coulomb's "
-            f"law, most in {name}: storey {storey} slides at a base shear of {limit / 1e3:.3g} kN, and the curve reaches "
-            f"{peak / 1e3:.3g} kN."
+            f"In {len(sliding)} of {len(pushes)} capacity curves the base shear exceeds the sliding limit of "
+            f"a storey by Coulomb's law. The greatest excess is in {name}: storey {storey} slides at a base "
+            f"shear of {limit / 1000.0:.3g} kN, but the curve reaches {peak / 1000.0:.3g} kN."
         )
     if options.out_of_plane and demands(context, options.verification):
         walls = out_of_plane(context, options, max(1.0 / push.mode.frequency for push in pushes))
         result.results = result.results.model_copy(update={"out_of_plane": walls})
         if walls.outcome in ("collapses", "cannot-stand"):
-            violated.append(f"A wall does not satisfy its check of out-of-plane failure. {walls.statement}")
+            violated.append(f"At least one wall does not satisfy the check for out-of-plane failure. {walls.statement}")
     return verify(context, result, options.verification, rows, violated, options.frame.confidence_factor)
 
 

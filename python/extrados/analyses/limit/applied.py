@@ -79,14 +79,12 @@ def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[i
     key = ("analysis", "load", number)
     if load.x_end is not None or load.y is None:
         raise Refused(
-            "a load on blocks in space acts at a point: give x and y in plan. If the load does not act on the top, also give z", key
+            "a load on blocks in space acts at a point: give `x` and `y` in plan. If the load does not act on the top, also give `z`", key
         )
     if load.z is not None:
         point = np.array([load.x, load.y, load.z])
         try:
-            return solid_at(
-                assembly, point, None, f"load {number + 1}", key, "z", ("Move the load", "move the load into one of them")
-            ), point
+            return solid_at(assembly, point, None, f"load {number + 1}", key, "z", ("Move the load", "move the load to one of them")), point
         except BadGeometry as error:
             raise Refused(str(error), key) from None
     best, top = -1, -np.inf

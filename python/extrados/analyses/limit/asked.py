@@ -42,7 +42,7 @@ def _is_whole(model: Table | tuple[Table, ...], table: str, path: str) -> bool:
     for part in path.split("."):
         if isinstance(held, list):
             if not part.isdecimal() or int(part) >= len(held):
-                raise Refused(f"vary: '{path}': expected a number from 0 to {len(held) - 1} instead of '{part}'", VARY)
+                raise Refused(f"vary: '{path}': give a number from 0 to {len(held) - 1} in place of '{part}'", VARY)
             held = held[int(part)]
             place = type(held)
             continue
@@ -76,7 +76,7 @@ def number_of(value: float | str | None, unit: str, at: Key) -> float:
     if not isinstance(value, str):
         return float(value or 0.0)
     if not unit:
-        raise Refused(f"'{value}': the key to vary has no unit, so give a number", at)
+        raise Refused(f"'{value}': the key in `vary` has no unit, so give a plain number", at)
     try:
         return parse(value, "m/s^2" if unit == "g" else unit) / (GRAVITY if unit == "g" else 1.0)
     except ValueError as error:
@@ -89,7 +89,7 @@ def values_of(building: Building, options: Sweep) -> tuple[str, str, str, bool, 
     table, path = _placed(options.vary)
     model = options if table == "analysis" else getattr(building, table)
     if model == ():
-        raise Refused("vary: the deck has no [[ties]]", VARY)
+        raise Refused("`vary` names a tie, but the deck has no [[ties]]", VARY)
     whole = _is_whole(model, table, path)
     unit = unit_at(type(model[0] if isinstance(model, tuple) else model), path)
     if options.values:
@@ -145,15 +145,15 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     if deviation is None:
         deviation = getattr(building.structure, "contact_tolerance", None)
     if deviation is None:
-        raise Refused("give the key deviation. Only `blocks` have a default for it, their contact_tolerance", ("analysis",))
+        raise Refused("give the key `deviation`: only `blocks` have a default for it (their `contact_tolerance`)", ("analysis",))
     stones = stones_of(building, options)
     plane = isinstance(stones, Assembly)
     extent = stones.length if isinstance(stones, Assembly) else stones.area / np.array([_diameter(p) for p in stones.polygon])
     shortest = float(extent.min())
     if 4.0 * deviation > shortest:
         raise Refused(
-            f"a deviation of {1e3 * deviation:.3g} mm is more than 1/4 of the {'shortest' if plane else 'narrowest'} joint, "
-            f"'{stones.joint_names[int(extent.argmin())]}' ({1e3 * shortest:.3g} mm)",
+            f"a `deviation` of {1000.0 * deviation:.3g} mm is more than 1/4 of the {('shortest' if plane else 'narrowest')} "
+            f"joint, '{stones.joint_names[int(extent.argmin())]}' ({1000.0 * shortest:.3g} mm)",
             ("analysis", "deviation"),
         )
     return float(deviation)
@@ -192,7 +192,7 @@ def cuts_of(building: Building, options: Thrust) -> list[Cut]:
         if len(contacts):
             found.append(_cut(assembly, table, contacts, above, middle, None if options.section else options.direction or 0.0, key))
         elif options.section:
-            raise Refused(f"section '{table.name}': the cut crosses no contact between two blocks", key)
+            raise Refused(f"section '{table.name}': its cut crosses no contact between two blocks", key)
     return found
 
 
@@ -210,7 +210,7 @@ def _contacts_of(assembly: SolidAssembly, table: Section, key: Key) -> tuple[np.
                 wanted.add(assembly.joint_names.index(name))
             else:
                 known = ", ".join([*assembly.groups, "ground", *assembly.joint_names[:6]])
-                raise Refused(f"section '{table.name}' names no contact '{name}'; there are {known}, ...", (*key, "joints"))
+                raise Refused(f"section '{table.name}': no contact has the name '{name}'; there are {known}, ...", (*key, "joints"))
         contacts = np.array(sorted(wanted), dtype=int)
         height = np.append(assembly.centroid[:, 2], -np.inf)  # the ground is below
         return contacts, height[a[contacts]] >= height[b[contacts]]
@@ -235,8 +235,8 @@ def _cut(
     if turn is None and (central := np.flatnonzero(far < 1e-6 * assembly.size)).size:
         if otherwise is None:
             raise Refused(
-                f"section '{table.name}': '{assembly.joint_names[int(contacts[central[0]])]}' lies in the middle of the structure and has "
-                "no direction outward: give toward",
+                f"section '{table.name}': the contact '{assembly.joint_names[int(contacts[central[0]])]}' lies in "
+                "the middle of the structure and has no outward direction: give the key `toward`",
                 key,
             )
         turn = otherwise
@@ -254,7 +254,7 @@ def refuse_still(building: Building, options: MovingSupports) -> None:
     if building.initial.movements:
         movements_of(building)
     elif options.spread == 0.0 and options.settle == 0.0:
-        raise Refused("with spread = 0 and settle = 0 no support moves", ("analysis",))
+        raise Refused("with `spread` = 0 and `settle` = 0, no support moves", ("analysis",))
 
 
 def movements_of(building: Building) -> np.ndarray:

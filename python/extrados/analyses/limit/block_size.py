@@ -51,8 +51,8 @@ def warning_of(rows: list[out.BlockSize]) -> str | None:
     if most is None or abs(most.relative_change or 0.0) <= LARGE:
         return None
     return (
-        f"The capacity depends on the blocks: with {most.change} it changes by "
-        f"{100.0 * (most.relative_change or 0.0):+.2g} %. Use the size and bond of the real blocks, or use the least value"
+        f"The capacity depends on the size of the blocks: with {most.change} it changes by {100.0 * (most.relative_change or 0.0):+.2g} "
+        "%. Use the size and bond of the real blocks, or use the lowest value"
     )
 
 
@@ -61,7 +61,7 @@ def in_words(rows: list[out.BlockSize] | None) -> str:
     if not rows:
         return ""
     told = [
-        f"{row.change} ({row.blocks} blocks) {row.collapse_acceleration_g:.4f} g ({100.0 * row.relative_change:+.2g} %)"
+        (f"{row.change} ({row.blocks} blocks): {row.collapse_acceleration_g:.4f} g ({100.0 * row.relative_change:+.2g} %)")
         if row.collapse_acceleration_g is not None and row.relative_change is not None
         else f"{row.change}: no value ({row.reason})"
         for row in rows

@@ -96,14 +96,16 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
     except NoEquilibrium as error:
         raise Refused(str(error), WHOLE) from None
     if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):
-        raise NoAnswer(f"the lower bound (equilibrium) and the upper bound (mechanism) differ by {answer.gap:.2e} g")
+        raise NoAnswer(f"the lower bound (from equilibrium) and the upper bound (from a mechanism) differ by {answer.gap:.2e} g")
     return answer
 
 
 def collapse_beside(without_dilatancy: LimitAnalysis, direction: int) -> tuple[State, Mechanism]:
     """The least state without dilatancy, to be given beside an upper bound by associated friction; NoAnswer of large structures."""
     if len(without_dilatancy.assembly.a) > MOST_BESIDE:
-        raise NoAnswer(f'the structure has more than {MOST_BESIDE} joints. To calculate this state, give friction_rule = "non-associated"')
+        raise NoAnswer(
+            f'the structure has more than {MOST_BESIDE} joints, so this state is calculated only with friction_rule = "non-associated"'
+        )
     return without_dilatancy.collapse(direction)
 
 
@@ -132,22 +134,25 @@ def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: floa
     except (BadGeometry, Refused, NoEquilibrium, NoAnswer, Immovable) as error:
         return f"{told} the structure has no capacity: {error}"
     text = f"{told} the collapse acceleration to +x is {closed_g:.4f} g"
-    return f"{text}, {closed_g / gamma:.2f} times the {gamma:.4f} g of the given survey" if gamma > 0.0 else text
+    return f"{text}, which is {closed_g / gamma:.2f} times the {gamma:.4f} g of the given survey" if gamma > 0.0 else text
 
 
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
     """What every picture of the structure needs."""
     outlines = [np.asarray(o) for o in assembly.outlines]
     return earth_arrays(assembly) | {
-        "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first ends of the joints (intrados)"),
-        "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second ends of the joints (extrados)"),
+        "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first end of each joint (at the intrados of an arch)"),
+        "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second end of each joint (at the extrados of an arch)"),
         "outline": Array(np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"),
         "outline_start": Array(
             np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "index of the first vertex of each block; the last value is the end"
         ),
         "centroid": Array(assembly.centroid, ("block", "axis"), "m", "centroids of the blocks"),
         "joint_block": Array(
-            np.column_stack([assembly.a, assembly.b]), ("joint", "joint_side"), "", "numbers of the blocks on both sides; -1 is the ground"
+            np.column_stack([assembly.a, assembly.b]),
+            ("joint", "joint_side"),
+            "",
+            "numbers of the two blocks at each joint; -1 is the ground",
         ),
         **named_places("joint", assembly.joint_names, 0.5 * (assembly.p + assembly.q), "middles of the joints"),
         **named_places("block", assembly.block_names, assembly.centroid, "centroids of the blocks"),
@@ -193,9 +198,12 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
         return {}
     return {
         "load_point": Array(
-            np.array(point), ("load_piece", "axis"), "m", "points of the constant loads; a spread load is divided into pieces"
+            np.array(point),
+            ("load_piece", "axis"),
+            "m",
+            "points at which the constant loads act; a distributed load is divided into pieces",
         ),
-        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "forces at these points, to +x and upward"),
+        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "forces at these points, horizontal (to +x) and upward"),
         "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, counted from 0"),
     }
 
@@ -274,7 +282,7 @@ def zone_arrays(assembly: Assembly, state: State, strength: float | None) -> dic
             assembly.p + (state.position + sign * half)[:, None] * along,
             ("joint", "axis"),
             "m",
-            f"{about} end of the thrust zone in each joint",
+            f"{about} end of the thrust zone (compressed part) in each joint",
         )
         for name, sign, about in (("inner", -1.0, "intrados"), ("outer", 1.0, "extrados"))
     }
@@ -316,7 +324,10 @@ def line_arrays(name: str, found: list[ThrustPath], about: str) -> dict[str, Arr
             f"index of the first vertex of each path of {title}; the last value is the end",
         ),
         f"{title}_of": Array(
-            np.array([path.name for path in found], dtype=object), (f"{title}_path",), "", f"arch, stack or block of each path of {title}"
+            np.array([path.name for path in found], dtype=object),
+            (f"{title}_path",),
+            "",
+            f"arch, stack or block to which each path of {title} belongs",
         ),
         f"{title}_force": Array(
             np.array([path.force for path in found]), (f"{title}_path",), "N", f"greatest force along each path of {title}"

@@ -107,14 +107,14 @@ def _radial(
     around = np.column_stack([np.cos(turn), np.sin(turn)])
     crossed = [[end[0] for bed in beds for end in _ends(bed, centre, way)[0] if end[0] > 0.0] for way in around]
     if not all(crossed):
-        raise Refused("a radial diagram requires supports all around: a meridian ends beside them", FORM)
+        raise Refused("a radial diagram requires supports all around, but one meridian ends beside them: give another `form`", FORM)
     feet = np.array([0.5 * (min(ends) + max(ends)) for ends in crossed])
     radius = float(feet.mean())
     reach = np.linspace(0.0, radius, PROFILE)
     section = columns_of(assembly, centre + reach[:, None] * np.array([np.cos(1e-3), np.sin(1e-3)]))
     there = np.flatnonzero(~np.isnan(section.low))
     if not len(there):
-        raise Refused("a radial diagram requires a dome: no block is found along its radius", FORM)
+        raise Refused("a radial diagram requires a dome, but no block is found along a radius: give another `form`", FORM)
     reach, middle = reach[there], 0.5 * (section.low + section.high)[there]
     length = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(reach), np.diff(middle)))])
     r = np.interp(np.linspace(0.0, length[-1], rings + 1), length, reach)
@@ -184,7 +184,7 @@ def _supports(
     middle = points.mean(axis=0)
     support = np.array([node for node in edge.tolist() if _cut(beds, inside[node], _unit(points[node] - middle)) is not None], dtype=int)
     if len(support) < 2:
-        raise Refused("the diagram has fewer than two nodes on the supports: give another form", FORM)
+        raise Refused("the diagram has fewer than two nodes on the supports: give another `form`", FORM)
     outward, seat = np.empty((len(support), 2)), np.empty((len(support), 2, 2))
     for k, node in enumerate(support.tolist()):
         others = np.concatenate([branch[branch[:, 0] == node, 1], branch[branch[:, 1] == node, 0]])
@@ -192,7 +192,7 @@ def _supports(
         outward[k] = _unit(points[node] - (points[free].mean(axis=0) if len(free) else middle))
         cut = _cut(beds, inside[node], outward[k])
         if cut is None:
-            raise Refused("a node of the diagram lies on the edge of a support: give another form, or other `lines`", FORM)
+            raise Refused("a node of the diagram lies on the edge of a support: give another `form`, or another number of `lines`", FORM)
         seat[k] = cut
     return support, outward, seat
 
@@ -243,7 +243,9 @@ def _weights(assembly: SolidAssembly, points: np.ndarray) -> np.ndarray:
     there = columns.depth > 0.0
     void = (columns.high - columns.low - columns.depth)[there] > VOID * (columns.high - columns.low)[there]
     if void.mean() > VOID:
-        raise Refused("vertical lines cross voids between the blocks: a thrust network requires one layer of masonry", ("structure",))
+        raise Refused(
+            "vertical lines cross voids between the blocks, but a thrust network requires a single layer of masonry", ("structure",)
+        )
     nearest = cKDTree(points)
     share = np.bincount(nearest.query(samples[there])[1], columns.mass[there], len(points))
     weight = GRAVITY * float(assembly.mass.sum()) * share / share.sum()

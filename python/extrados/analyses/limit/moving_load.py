@@ -49,7 +49,8 @@ HALVINGS, NEARLY = 4, 1.05
 PATTERNS = 500  # patterns of even loads that are tried at a place
 #: What makes the model of a bridge whole
 MODEL = (
-    'The ring alone does not represent a bridge. Add fill to the structure, and backing: as blocks, or with the structure of kind "bridge".'
+    "A ring alone does not represent a bridge. Add fill to the structure, and backing: give both as "
+    'blocks, or use a structure of kind "bridge".'
 )
 MOST_PLACES = 20_000  # of a train
 NIL = 1e-6  # of the greatest load on the way: places with less are left away
@@ -288,7 +289,9 @@ def run(context: Context, options: MovingLoad) -> Result:
         _refuse_unlimited(structure.word, job, train)
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
-        raise NoAnswer(f"the load at {places[k]:.4g} m causes collapse in the sweep, but not in the second calculation at this position")
+        raise NoAnswer(
+            f"the load at {places[k]:.4g} m causes collapse in the first calculation, but not in the second calculation at this position"
+        )
     state, mechanism = worst.state, worst.mechanism
     result = Result("moving-load")
     asked: Keys = {}
@@ -321,7 +324,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     result.results = r
     result.warnings += [f"{one} {MODEL}" for one in r.violated]
     if source := unverified(options.train):
-        result.warnings.append(f"The axles of {train.name} were not verified in the standard: compare them with {source}.")
+        result.warnings.append(f"The axles of {train.name} were not verified against the standard: compare them with {source}.")
     finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),
@@ -336,9 +339,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     }
     adequacy = np.where(np.isinf(factor), np.nan, factor)
     if train.known:
-        result.arrays["adequacy"] = Array(
-            adequacy, ("place",), "", "multiple of the factored train that causes collapse, for each position"
-        )
+        result.arrays["adequacy"] = Array(adequacy, ("place",), "", "multiple of the factored train that causes collapse, at each position")
     columns = {"place": places, **({"way": ways, "adequacy": adequacy} if train.known else {}), "collapse_load": finite}
     result.tables = {"moving_load": TableData({**columns, "mechanism": mechanisms}, {"place": "m", "collapse_load": "N"})}
     result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
@@ -372,7 +373,7 @@ def _worst_arrays(assembly: Assembly, job: Places, k: int, worst: Collapse, heav
             np.concatenate([np.array(j, dtype=int) for j in chains] or [np.empty(0, dtype=int)]),
             ("link",),
             "",
-            "joints of the chains, listed chain by chain",
+            "joints of each chain (arch or stack), one chain after the other",
         ),
         "chain_start": Array(
             np.cumsum([0, *map(len, chains)]), ("chain_edge",), "", "index of the first joint of each chain; the last value is the end"
@@ -384,7 +385,7 @@ def _refuse_unlimited(word: str, job: Places, train: Train) -> NoReturn:
     """Say why no position limits the load: none has a load on the structure, or loads only compress it."""
     low, high = job.span
     if not any(train.within(low, high, place if way > 0 else low + high - place) for place, way in zip(job.places, job.ways, strict=True)):
-        raise Refused(f"places: the loads do not act on the {word} at any of these positions", ("analysis", "places"))
+        raise Refused(f"places: at none of these positions does a load act on the {word}", ("analysis", "places"))
     raise Refused(f"no load of this kind causes collapse of the {word}, because such loads only compress the joints", WHOLE)
 
 
@@ -438,7 +439,9 @@ def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple
         ahead = ahead[laden > NIL * laden.max()]
         back = low + high - ahead
     if len(ahead) > MOST_PLACES:
-        raise Refused(f"{len(ahead)} positions of the train exceed {MOST_PLACES}: reduce count, or give places", ("analysis", "count"))
+        raise Refused(
+            f"{len(ahead)} positions of the train are more than {MOST_PLACES}: reduce `count`, or give `places`", ("analysis", "count")
+        )
     if not options.both_ways:
         return ahead, np.ones(len(ahead))
     return np.concatenate([ahead, back]), np.concatenate([np.ones(len(ahead)), -np.ones(len(back))])
@@ -498,7 +501,7 @@ def _with_places(
         return job, swept
     places, ways = np.array(more).T
     further = replace(job, places=places, ways=ways)
-    found = sweep(context, name, further, len(more), "further positions near the least factor", slow=True).whole()
+    found = sweep(context, name, further, len(more), "further positions near the one with the least factor", slow=True).whole()
     places, ways = np.append(job.places, places), np.append(job.ways, ways)
     order = np.lexsort((ways * places, -ways))
     swept = {key: np.concatenate([values, found[key]])[order] for key, values in swept.items()}
@@ -556,15 +559,15 @@ def _words(options: MovingLoad, r: out.MovingLoad, what: str, where: str, positi
         if not {"axles", "uniform"} & options.model_fields_set:
             text += " The load is a single axle (default)."
     if r.places_without_limit:
-        text += f" At {r.places_without_limit} of {positions} positions no multiple of the load causes collapse."
+        text += f" At {r.places_without_limit} of {positions} positions, the load never causes collapse."
     if options.force is not None:
-        text += f" The safety factor of the given load of {three_figures(options.force / 1e3)} kN is {r.safety_factor:.2f}."
+        text += f" The given load of {three_figures(options.force / 1000.0)} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
     if r.permissible_factor is not None:
         text += (
-            f" Up to {r.permissible_factor:.3g} times the train a thrust line exists with stresses below "
-            f"{r.permissible_stress_Pa / 1e6:.3g} MPa (permissible limit state)."
+            f" Permissible limit state: up to {r.permissible_factor:.3g} times the train, a thrust line exists "
+            f"with stresses below {r.permissible_stress_Pa / 1000000.0:.3g} MPa."
         )
     if r.dilating_joints:
         text += f" Joints slide, so the capacity is an {out.DILATANT}."

@@ -52,7 +52,7 @@ def doubt(paths: list[LoadPath], way: str) -> str | None:
     wrong = [f"{p.shear_stiffness_ratio:g}" for p in paths if not p.certified]
     if not wrong:
         return None
-    text = f"The load path {way} is not certified for the stiffness ratio of the joints {' and '.join(wrong)}"
+    text = f"The load path {way} is not certified with the joint stiffness ratio {' and '.join(wrong)}"
     if len(wrong) == len(paths):
-        return f"{text}. No design value is given, and only the upper bound is available"
-    return f"{text}. The design value is the least of the other load paths"
+        return f"{text}. No design value is given; only the upper bound is available"
+    return f"{text}. The design value is the lowest of the remaining load paths"

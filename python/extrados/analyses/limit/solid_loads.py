@@ -51,7 +51,7 @@ def warn_of_mortar(building: Building, limit: SolidLimit) -> str | None:
     j = int(less[(given - limit.tension)[less].argmax()])
     return (
         f"{len(less)} contacts carry less tension than the deck gives, because Coulomb's law allows at most cohesion / friction: "
-        f"{limit.assembly.joint_names[j]} {limit.tension[j] / 1e3:.3g} kPa instead of {given[j] / 1e3:.3g} kPa"
+        f"{limit.assembly.joint_names[j]} carries {limit.tension[j] / 1000.0:.3g} kPa instead of {given[j] / 1000.0:.3g} kPa"
     )
 
 

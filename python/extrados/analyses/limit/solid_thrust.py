@@ -34,8 +34,8 @@ def run(context: Context, options: Thrust) -> Result:
         refuse_falling(ends[0], ends[1], first)
     if len(ends) == 2 and not -ends[1].gamma <= options.gamma <= ends[0].gamma:
         raise Refused(
-            f"at {options.gamma:g} g no state of stress is admissible: along {first:g} degrees the blocks carry {-ends[1].gamma:.4f} to "
-            f"{ends[0].gamma:.4f} g",
+            f"at {options.gamma:g} g no admissible state of stress exists: along {first:g} degrees the blocks "
+            f"carry accelerations from {-ends[1].gamma:.4f} to {ends[0].gamma:.4f} g",
             ("analysis", "gamma"),
         )
     dead, live = limit.ways(first)
@@ -123,7 +123,12 @@ def _arrays(
     arrays = scene_arrays(assembly) | {
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
-        "contact_block": Array(np.column_stack([assembly.a, assembly.b]), ("contact", "side"), "", "blocks of each contact, -1 the ground"),
+        "contact_block": Array(
+            np.column_stack([assembly.a, assembly.b]),
+            ("contact", "side"),
+            "",
+            "numbers of the two blocks of each contact; -1 is the ground",
+        ),
         "section_contact": Array(inside, ("section", "contact"), "", "whether a contact belongs to the section"),
     }
     for k, name in enumerate(("least", "greatest")):
@@ -140,7 +145,7 @@ def _arrays(
             central.force, ("contact", "axis3"), "N", "force on the first of the two blocks of each contact in the most central state"
         )
         arrays["central_centre"] = Array(central.centre, ("contact", "axis3"), "m", "centre of the compression in the most central state")
-        arrays["central_friction"] = Array(central.friction, ("contact",), "", "shear over compression in the most central state")
+        arrays["central_friction"] = Array(central.friction, ("contact",), "", "shear divided by compression in the most central state")
     return arrays
 
 
@@ -167,15 +172,14 @@ def _words(r: out.SolidThrust) -> str:
         told.append(
             f"at section '{one.name}' ({one.direction}{f', sum over {one.contacts} contacts' if one.contacts > 1 else ''}) from {least} to {most}{central}"
         )
-    text = f"At {r.gamma_g:g} g along {r.load_direction_deg:g} degrees the thrust is {'; '.join(told)}. " if told else ""
+    text = (f"At {r.gamma_g:g} g along {r.load_direction_deg:g} degrees in plan, the thrust is {'; '.join(told)}. ") if told else ""
     if r.least_part_of_joints is not None:
         text += (
-            f"The most central state stays within the middle {100.0 * r.least_part_of_joints:.1f} % of the contacts and "
-            f"needs a friction of "
-            f"{r.required_friction:.2f}. "
+            f"The most central state stays within the middle {100.0 * r.least_part_of_joints:.1f} % of the "
+            f"contacts and requires a coefficient of friction of {r.required_friction:.2f}. "
         )
     if r.admissible_interval_g:
         low, high = r.admissible_interval_g
         bound = f" (contacts slide there: {DILATANT})" if r.dilating else ""
-        text += f"States are admissible from {low:.4f} to {high:.4f} g{bound}."
+        text += f"Admissible states exist from {low:.4f} to {high:.4f} g{bound}."
     return text + spoken_ties(r.ties)

@@ -36,7 +36,7 @@ def evaluate_solids(building: Building, options: SpatialLimit) -> Outcome:
     except NoAnswer as error:
         return Outcome(reason=str(error), assembly=assembly, measures=measures)
     if isinstance(found, Falls) or found.gamma <= 0.0 or limit.falls() is not None:  # or only when it is pushed
-        proof = "cannot stand: a motion that no contact hinders, in which the weights do work"
+        proof = "cannot stand: a mechanism exists that no contact hinders and in which the weights do positive work"
         return Outcome(0.0, reason=proof, assembly=assembly, measures=measures)
     return Outcome(found.gamma, None, _signature(assembly, found), found.gap, "", assembly, found, dilating=dilating, measures=measures)
 
@@ -51,7 +51,7 @@ def push_by_rule(limit: SolidLimit, direction: float, options: SpatialLimit) -> 
         return found, True
     least = slide(limit, direction, found.gamma, options.starts)[1]
     if least is None:
-        raise NoAnswer("no state without dilatancy is certified")
+        raise NoAnswer("no collapse state without dilatancy is certified")
     return least, False
 
 
@@ -59,7 +59,7 @@ def _signature(assembly: SolidAssembly, found: Programme) -> Signature:
     """A mechanism but for its rates: how many blocks move, and the first of the fastest."""
     speed = np.linalg.norm(found.motion[:, :3], axis=1)
     fastest = assembly.block_names[int(np.round(speed / speed.max(), EQUAL).argmax())]
-    return ((f"{len(moving_blocks(assembly, found))} blocks move, {fastest} fastest", MOVES),)
+    return ((f"{len(moving_blocks(assembly, found))} blocks move, {fastest} moves fastest", MOVES),)
 
 
 @dataclass(frozen=True)

@@ -128,7 +128,7 @@ def _beside(
     if isinstance(limit, CrushingLimit):
         found["crushing_contacts"] = _crushing(limit.assembly, there)
         if options.face_law:
-            found["face_law_reason"] = "the face law neglects crushing, so the face law is not calculated"
+            found["face_law_reason"] = "the face law neglects crushing and is therefore not calculated here"
     elif options.face_law or (options.face_law is None and slides and len(limit.assembly.a) <= MOST_BESIDE):
         found |= _by_faces(limit, [found_at[round(d, 9)] for d in ends], ends, result)
     if options.block_size and isinstance(sound := found_at[round(ends[0], 9)], Programme):
@@ -147,8 +147,8 @@ def refuse_falling(there: Programme, back: Programme, first: float, neglects: tu
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
-            f"the structure can stand only under a horizontal load along {first:g} degrees between {low:.4f} and {high:.4f} "
-            "g; certificate: the mechanism of the smaller load, in which the weights do positive work",
+            f"the structure can stand only under a horizontal load between {low:.4f} and {high:.4f} g along {first:g} "
+            "degrees; certificate: the mechanism of the smaller load, in which the weights do positive work",
             neglects=neglects,
         )
 
@@ -209,7 +209,7 @@ def _without_dilatancy(
     if isinstance(limit, CrushingLimit) or options.mortar == "ductile":
         return {"non_associated_reason": "with crushing, or with mortar, only the upper bound is calculated"}, {}
     if options.friction_rule == "associated" and contacts > MOST_BESIDE:
-        why = f'the structure has more than {MOST_BESIDE} contacts. To calculate this state, give friction_rule = "non-associated"'
+        why = f'the structure has more than {MOST_BESIDE} contacts, so this state is calculated only with friction_rule = "non-associated"'
         return {"non_associated_reason": why}, {}
     rows, states = [], {}
     sought = list(dict.fromkeys(directions))
@@ -251,9 +251,9 @@ def _by_faces(limit: SolidLimit, corners: Sequence[Programme | Falls | None], di
         spread = max(spread, found.spread)
         if found.gamma < (1.0 - TWISTS) * one.gamma:
             result.warnings.append(
-                f"In the mechanism along {direction:g} degrees contact faces twist. The upper bound is {one.gamma:.4f} g if the "
-                f"pressure concentrates at corners (default), and {found.gamma:.3f} g under uniform pressure (face law, whose "
-                f"iteration varies by {found.spread:.3f} g). Do not rely on the difference"
+                f"In the mechanism along {direction:g} degrees, contact faces twist. The upper bound is {one.gamma:.4f} "
+                f"g if the pressure concentrates at corners (default), but {found.gamma:.3f} g under uniform "
+                f"pressure (face law, scatter of its iteration {found.spread:.3f} g). Do not rely on the difference"
             )
     return told | {"face_law_spread_g": spread}
 
@@ -287,7 +287,7 @@ def standing(found: Programme | Falls | None, assembly: SolidAssembly, neglects:
         raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks on all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
-        text = f"certificate: a mechanism, fastest at {name}, that no contact resists and in which the weights do positive work"
+        text = f"certificate: a mechanism, fastest at {name}, in which no contact resists and the weights do positive work"
         raise CannotStand(text, neglects=neglects)
     return found
 
@@ -409,11 +409,11 @@ def _told(r: out.SolidTilt) -> str:
         least = "none" if row.least_g is None else f"{row.least_g:.4f} g"
         most = "none" if row.associated_g is None else f"{row.associated_g:.4f} g"
         text += (
-            f"Without dilatancy along {row.direction_deg % 360.0:g} degrees, the design value is {design} (the least of "
-            f"{len(row.load_paths)} load paths of elastic joints), the lowest value found is {least}, and the upper bound is {most}. "
+            f"Without dilatancy, along {row.direction_deg % 360.0:g} degrees in plan: the design value is {design} (the lowest of "
+            f"{len(row.load_paths)} load paths with elastic joints), the lowest value found is {least}, and the upper bound is {most}. "
         )
     if r.non_associated_reason:
-        text += f"No state without dilatancy is given: {r.non_associated_reason}. "
+        text += f"Collapse without dilatancy is not given: {r.non_associated_reason}. "
     return text
 
 
@@ -434,20 +434,20 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
     text += f"In the mechanism {moving}, and {r.fastest_block} moves fastest{opens}. "
     if count:
         text += (
-            f"Among {count} directions the least collapse acceleration is {r.least_acceleration_g:.4f} g, along "
-            f"{r.least_direction_deg % 360.0:g} degrees. "
+            f"The lowest collapse acceleration of {count} directions is {r.least_acceleration_g:.4f} g, along {r.least_direction_deg % 360.0:g} "
+            "degrees. "
         )
     if r.dilating_contacts:
         text += f"Contacts slide, so the capacity is an {DILATANT}. " + _told(r)
     if r.crushing_contacts is not None:
-        text += f"Contacts crush at their compressive strength: {r.crushing_contacts} do in this mechanism. "
+        text += f"In this mechanism, {r.crushing_contacts} contacts crush at their compressive strength. "
     if r.least_acceleration_dry_g is not None:
         text += (
-            f"The joints keep cohesion and tension until collapse: {DUCTILE}. Without mortar the collapse acceleration is "
-            f"{_or_none(r.collapse_acceleration_dry_g)} along {r.load_direction_deg:g} degrees, "
-            f"{_or_none(r.collapse_acceleration_dry_opposite_g)} in the opposite direction. "
+            f"The joints keep their cohesion and tensile strength until collapse: {DUCTILE}. Without mortar, "
+            f"the collapse acceleration is {_or_none(r.collapse_acceleration_dry_g)} along {r.load_direction_deg:g} "
+            f"degrees, and {_or_none(r.collapse_acceleration_dry_opposite_g)} in the opposite direction. "
         )
-    text += f"The lower bound (equilibrium) and the upper bound (mechanism) differ by {r.duality_gap:.1e} g."
+    text += f"The lower bound (from equilibrium) and the upper bound (from a mechanism) differ by {r.duality_gap:.1e} g."
     text += in_words(r.block_sizes) + spoken_ties(r.ties)
     if r.pyramids is not None:
         low, high = ("none" if g is None else f"{g:.4f} g" for g in (r.pyramids.lower_g, r.pyramids.upper_g))

@@ -91,11 +91,10 @@ def run(context: Context, options: MovingSupports) -> Result:
     }
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
-        f"The right support {way}: the arch follows on three hinges "
-        f"({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) and collapses at {movement[-1]:.3g} "
-        f"m({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
-        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} "
-        f"to {three_figures(force[-1, 0] / 1e3)} kN."
+        f"The right support {way}: the arch follows on three hinges ({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) "
+        f"and collapses at {movement[-1]:.3g} m ({100 * movement[-1] / span:.2f} % of the span), after {len(stages) - 1} "
+        f"change{'s' if len(stages) != 2 else ''} of hinges. Up to then the thrust changes from {three_figures(force[0, 0] / 1e3)} to "
+        f"{three_figures(force[-1, 0] / 1e3)} kN."
     )
     return result
 
@@ -104,7 +103,7 @@ def _way_arrays(options: MovingSupports, states: list[SupportState]) -> dict[str
     """The states on the way of the support to the collapse."""
     movement = np.array([s.movement for s in states])
     pose_axes, line_axes = ("block", "component"), ("joint", "axis")
-    places, line = "places of the centroids, rotations", "thrust line on the displaced joints"
+    places, line = "places of the centroids, rotations", "thrust line, drawn through the displaced joints"
 
     def poses(index: Iterable[int], axis: str) -> Array:
         return Array(np.array([states[i].pose for i in index]), (axis, *pose_axes), "m, m, rad", places)
@@ -116,7 +115,9 @@ def _way_arrays(options: MovingSupports, states: list[SupportState]) -> dict[str
     arrays = {
         "movement": Array(movement, ("movement",), "m", "movement of the right support"),
         "force": Array(np.array([s.force for s in states]), ("movement", "axis"), "N", "force of the arch on the right support"),
-        "energy": Array(np.array([s.energy for s in states]), ("movement",), "J", "increase of the potential energy from rest"),
+        "energy": Array(
+            np.array([s.energy for s in states]), ("movement",), "J", "increase of the potential energy from the initial position"
+        ),
         "hinge": Array(np.array([[h[0] for h in s.hinges] for s in states]), ("movement", "hinge_number"), "", "joints that hinge"),
         "shown_movement": Array(movement[shown], ("shown",), "m", "movements drawn"),
         "shown_pose": poses(shown, "shown"),
@@ -143,8 +144,8 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            "the structure has only one support, whose movement moves all of it. Give [[initial.movements]] for the joints "
-            "on the ground that move",
+            "the structure has only one support, so its movement moves the whole structure. Give "
+            "[[initial.movements]] for the joints on the ground that move",
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -205,7 +206,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
             motion,
             ("joint", "component"),
             "m",
-            "opening at the first end (intrados of an arch) and at the second end (extrados) of each joint, and slip",
+            "opening of each joint at its first end (intrados of an arch) and second end (extrados), and slip",
         ),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
     }
@@ -228,8 +229,8 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
-            "dilatant friction: a joint that slides also opens by its friction times the slip. States without dilatancy, "
-            'which may carry less, are not calculated. To consider joints that only open, give `friction = "no-sliding"`'
+            "dilatant friction: a joint that slides also opens, by its friction times the slip. States without dilatancy, which may "
+            'carry less, are not calculated. For joints that only open, give `friction = "no-sliding"`'
         )
     result.answer = _opened_in_words(building.require_structure().word, movement, opened, len(slid), found.work) + spoken_ties(
         result.of(out.MovingSupports).ties

@@ -305,8 +305,10 @@ def _examples(ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: 
             moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
     of = [number for number, count in blocks.items() for _ in range(count)]
     return {
-        "example_mechanism": Array(np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each block illustrates"),
-        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number/block)"),
+        "example_mechanism": Array(
+            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism that each of these blocks shows"
+        ),
+        **packed("example", outlines, "m", "outlines of the blocks of one section for each mechanism (number of the mechanism / block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
 
@@ -347,17 +349,16 @@ def _words(options: Sweep, r: out.Sweep, located: bool) -> str:
     else:
         where = f"greatest at an optimum of {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, "
-        f"{most:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} "
-        f"mechanism{'s' if len(r.mechanisms) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: the collapse acceleration is {where}, {most:.4f} g "
+        f"({r.optimum_tilt_angle_deg:.2f} degrees). {len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if not located:
-        text += " Changes of the mechanism between these values are not located: locate = true locates them."
+        text += " The values at which the mechanism changes are not located precisely: `locate = true` locates them."
     if locked:
-        text += f" At {locked} the structure locks: beyond this value no load of this kind causes collapse."
+        text += f" At {locked} the structure locks: beyond this value a load of this kind never causes collapse."
     if r.stable_limits:
         text += f" The range in which the structure stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
     counts = {status: sum(gap.status == status for gap in r.gaps) for status in ("cannot-stand", "no-answer")}

@@ -16,24 +16,26 @@ class AppliedLoad(Table):
     """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
     x: Length = key(
-        about="x of the load. The load acts on the highest block below, or on the block at y. In the fill of a bridge, a load "
-        "without y spreads its weight"
+        about="x of the load. The load acts on the highest block there, or on the block at `y`. On the fill of "
+        "a bridge, a load without `y` is spread"
     )
     force: Force = key(0.0, "vertical force, downward; for a distributed load, its total")
     horizontal: Force = key(0.0, "horizontal force, towards +x; for a distributed load, its total")
-    x_end: Length | None = key(None, "end of a load that starts at x and is uniform per length of plan")
-    y: Length | None = key(None, "height at which the load acts; default: the surface below. In space: the second coordinate in plan")
-    z: Length | None = key(None, "in space: height at which the load acts; default: the surface below")
-    sways: bool = key(False, "whether the weight is accelerated with the ground, as that of a floor or a roof")
+    x_end: Length | None = key(None, "x of the end of a distributed load, which starts at `x` and is uniform per length of plan")
+    y: Length | None = key(
+        None, "height at which the load acts; default: the surface of the highest block. In space: the second coordinate in plan"
+    )
+    z: Length | None = key(None, "in space: height at which the load acts; default: the surface of the highest block")
+    sways: bool = key(False, "whether the weight of the load is accelerated with the ground, like that of a floor or a roof")
 
     @model_validator(mode="after")
     def _acts(self) -> "AppliedLoad":
         if self.force == 0.0 and self.horizontal == 0.0:
             raise ValueError("give force, horizontal, or both")
         if self.x_end is not None and self.x_end <= self.x:
-            raise ValueError("x_end must be greater than x")
+            raise ValueError("`x_end` must be greater than `x`")
         if self.sways and self.force <= 0.0:
-            raise ValueError("sways = true requires a weight: give a force above 0")
+            raise ValueError("sways = true requires a weight: give `force` above 0")
         return self
 
 
@@ -44,8 +46,9 @@ class LimitAnalysisTable(BuildingAnalysis):
     considers: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
-        'rule for sliding joints. "associated": sliding dilates, and the result is an upper bound; "non-associated": '
-        "sliding does not dilate, and of many possible states the least is searched",
+        'rule for sliding joints. "associated": sliding dilates, and the result is an upper bound; '
+        '"non-associated": sliding does not dilate, and the lowest of many possible collapse states is '
+        "searched",
         source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
     starts: int = key(
@@ -55,7 +58,7 @@ class LimitAnalysisTable(BuildingAnalysis):
         le=1000,
     )
     load: list[AppliedLoad] = key(
-        [], "constant loads in addition to self-weight and fill; their weight can be accelerated with the ground (sways)", max_length=1000
+        [], "constant loads in addition to self-weight and fill; with `sways`, the ground also accelerates their weight", max_length=1000
     )
 
 
@@ -64,12 +67,12 @@ class SpatialLimit(LimitAnalysisTable):
 
     solid: ClassVar = True
     fracture: bool = key(
-        False, "also consider a crack in the leeward buttress, and show the monolithic and the fractured structure side by side"
+        False, "also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side"
     )
     direction: Angle | None = key(
         None,
-        "direction of the horizontal load in plan: angle from +x towards +y, which is across a section. With this key, "
-        "and for structures without a plane section, the blocks are analysed as solids",
+        "direction of the horizontal load in plan: angle from +x towards +y (+y is across a plane section). If this key is given, or if "
+        "the structure has no plane section, the blocks are analysed as solids",
         ge=-360,
         le=360,
     )
@@ -79,23 +82,26 @@ class Tilt(SpatialLimit, Animated):
     """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
 
     kind: Literal["tilt"]
-    fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
+    fracture: bool = key(
+        False, "also calculate with a crack in the leeward buttress; figures show the uncracked and the cracked structure side by side"
+    )
     rose: int | None = key(
         None,
-        "for solids: number of directions all around in which the capacity is searched; default 16 up to 300 blocks; "
-        "above that, only the given direction",
+        "for solids: number of directions, at equal angles all around, in which the capacity is "
+        "searched; default 16 for up to 300 blocks; above that, only the given direction",
         ge=4,
         le=720,
     )
     mortar: Literal["neglected", "ductile"] = key(
         "neglected",
-        'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints keep both until '
-        "collapse. Mortar is brittle, so this result is an upper bound; the result for dry joints is given too",
+        'cohesion and tension of the joints. "neglected": dry joints; "ductile", for solids: the joints '
+        "keep both until collapse. Real mortar is brittle, so this result is an upper bound, and the "
+        "result for dry joints is given too",
     )
     face_law: bool | None = key(
         None,
-        "for solids: also calculate the capacity with uniform pressure on contact faces, which gives less resistance to "
-        "torsion; default: if up to 80 contacts slide",
+        "for solids: also calculate the capacity with uniform pressure on contact faces, which reduces the resistance to torsion; "
+        "default: true if contacts slide and the structure has at most 80 contacts",
         source="after Orduna and Lourenco 2005",
     )
     block_size: bool | None = key(
@@ -103,8 +109,8 @@ class Tilt(SpatialLimit, Animated):
     )
     pyramids: int | None = key(
         None,
-        "for solids: also bound the capacity by friction pyramids with this number of sides, inscribed in and "
-        "circumscribed about the friction cones",
+        "for solids: also calculate bounds with friction pyramids instead of friction cones, inscribed "
+        "and circumscribed, with this number of sides",
         ge=3,
         le=64,
     )
@@ -119,17 +125,16 @@ class Section(Table):
     """A section of blocks in space whose thrust is sought: a plane cut, or named contacts."""
 
     name: str = key(about="its name", max_length=80)
-    x: Length | None = key(None, "cut across x: contacts between blocks whose centroids lie on both sides")
+    x: Length | None = key(None, "x of a cut: all contacts between blocks whose centroids lie on both sides of it")
     y: Length | None = key(None, "cut across y")
     z: Length | None = key(None, "level cut at this height")
     joints: list[str] | None = key(
-        None, 'names of contacts, or of groups of contacts, in place of a cut; "ground" means all supports', min_length=1, max_length=10000
+        None, 'names of contacts, or of groups of contacts, instead of a cut; "ground" means all supports', min_length=1, max_length=10000
     )
     toward: Angle | None = key(
         None,
-        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, "
-        "or on the blocks or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the "
-        "middle of the structure",
+        "direction of the thrust in plan: angle from +x towards +y. The thrust acts on the blocks at greater x or y, or on the blocks "
+        "or the ground below. Default: perpendicular to a vertical cut, otherwise outward from the middle of the structure",
         ge=-360,
         le=360,
     )
@@ -146,13 +151,15 @@ class Thrust(SpatialLimit):
 
     kind: Literal["thrust"]
     gamma: Gravities = key(
-        0.0, "horizontal acceleration towards +x, or along the direction, for which the thrust lines are drawn", ge=-5, le=5
+        0.0, "horizontal acceleration (towards +x, or along `direction`) for which the thrust lines are drawn", ge=-5, le=5
     )
-    chain: str | None = key(None, "arch or stack whose least and greatest thrust are calculated; default: the first arch, vault or nave")
+    chain: str | None = key(
+        None, "name of the arch or column of blocks whose minimum and maximum thrust are calculated; default: the first arch, vault or nave"
+    )
     section: list[Section] = key(
         [],
-        "for solids: sections whose least and greatest thrust are calculated, [[analysis.section]]; default: cuts across x and y through "
-        "the middle, and the ground",
+        "for solids: sections whose minimum and maximum thrust are calculated, [[analysis.section]]; "
+        "default: cuts across x and y through the middle, and the ground",
         max_length=50,
     )
 
@@ -168,8 +175,8 @@ class ThrustNetwork(BuildingAnalysis):
     starter: ClassVar = {"lines": "5", "meridians": "8"}
     form: Literal["radial", "grid", "crossed"] | None = key(
         None,
-        "form diagram in plan. radial: meridians and hoops; grid: lines along x and y; crossed: a grid and both diagonals. "
-        "Default: radial for a dome, crossed for a cross-vault, otherwise grid",
+        "form diagram in plan. radial: meridians and hoops; grid: lines along x and y; crossed: a grid "
+        "with both diagonals. Default: radial for a dome, crossed for a cross vault, otherwise grid",
         source="O'Dwyer 1999; Block and Ochsendorf 2007",
     )
     lines: int = key(10, "number of branches along the longer side of the plan, or along a meridian", ge=2, le=60)
@@ -183,20 +190,21 @@ class Sweep(SpatialLimit):
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
-        about="key to vary. A key of [structure] is given without its table, for instance buttress_width, "
-        "right.buttress_width or spans.0.rise; any other key with its table, for instance joints.friction, "
-        "material.compressive_strength or ties.0.yield_force. For solids also `direction`, the direction of the "
-        "load"
+        about="key to vary. A key of [structure] is written without its table: `buttress_width`, "
+        "`right.buttress_width` or `spans.0.rise`. Any other key is written with its table: "
+        "`joints.friction`, `material.compressive_strength` or `ties.0.yield_force`. For solids also "
+        "`direction`, the direction of the load"
     )
-    start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
+    start: float | str | None = key(None, 'first value of the key in `vary`, in its unit, or as text such as "40 cm"')
     stop: float | str | None = key(None, "last value")
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
-    values: list[float | str] | None = key(None, "list of values, instead of start and stop", min_length=2, max_length=2000)
+    values: list[float | str] | None = key(None, "values of the key in `vary`; replaces `start` and `stop`", min_length=2, max_length=2000)
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
-    buttress_alone: bool = key(False, "also calculate the leeward buttress alone", source="thesis Fig. 3-4b")
+    buttress_alone: bool = key(False, "also calculate the leeward buttress alone, as a separate structure", source="thesis Fig. 3-4b")
     locate: bool | None = key(
         None,
-        "also locate the changes of mechanism, the optimum and the ends of the stable range precisely; default: true in a plane section",
+        "also locate precisely the values at which the mechanism changes, the optimum, and the ends of "
+        "the range in which the structure stands; default: true in a plane section",
     )
 
     @model_validator(mode="after")
@@ -212,8 +220,8 @@ class Survey(SpatialLimit):
     kind: Literal["survey"]
     starter: ClassVar = {"file": '"extrados:example-sections"'}
     file: str = key(
-        about="CSV file in the folder of the deck: a header of [structure] keys (lengths in m); each row has one section, or "
-        "one file of solids"
+        about="CSV file in the folder of the deck. Its header contains keys of [structure] (lengths in m); "
+        "each row gives one section, or one file of solids"
     )
     fracture: bool = key(False, "also calculate with a crack in the leeward buttress")
 
@@ -224,7 +232,7 @@ class Imperfections(SpatialLimit):
     kind: Literal["imperfections"]
     starter: ClassVar = {"deviation": '"5 mm"'}
     deviation: Length | None = key(
-        None, "greatest distance of a measured point from its true position; default: the contact_tolerance of `blocks`", gt=0, le=1
+        None, "greatest distance of a measured point from its true position; default: `contact_tolerance` of the `blocks`", gt=0, le=1
     )
     count: int = key(200, "number of random geometries", ge=10, le=100000)
     seed: int = key(1, "seed of the random numbers", ge=0)
@@ -239,12 +247,19 @@ class MovingSupports(BuildingAnalysis, Animated):
     kind: Literal["supports"]
     beside: ClassVar = ("material.density", "joints.friction", "initial.movements")
     considers: ClassVar[tuple[str, ...]] = ("[[ties]]",)
-    spread: float = key(1.0, "outward component of the movement of the right support; only its ratio to settle matters", ge=-10, le=10)
-    settle: float = key(0.0, "downward component of the movement of the right support; only its ratio to spread matters", ge=-10, le=10)
-    movement: Length | None = key(
-        None, "movement of the right support, for structures that are not followed to collapse; default: 1/1000 of the width", gt=0
+    spread: float = key(
+        1.0, "outward component of the movement of the right support; only the ratio of `spread` to `settle` matters", ge=-10, le=10
     )
-    steps: int = key(200, "for an arch: number of steps from rest to collapse", ge=10, le=5000)
+    settle: float = key(
+        0.0, "downward component of the movement of the right support; only the ratio of `spread` to `settle` matters", ge=-10, le=10
+    )
+    movement: Length | None = key(
+        None,
+        "size of the movement of the right support, for structures whose movement is not continued to "
+        "collapse; default: 1/1000 of the width",
+        gt=0,
+    )
+    steps: int = key(200, "for an arch: number of steps from the start of the movement to collapse", ge=10, le=5000)
 
     def reckons_with(self, building: "Building") -> set[str]:
         """Through its three-hinge states an arch opens alone, and does not slide."""
@@ -287,9 +302,13 @@ class UniformLoad(Table):
     """A load spread evenly along a train, over all of the width that carries it."""
 
     start: Length | None = key(
-        None, "start of the load, as a distance behind the first axle (without axles: behind the position of the train); default: unlimited"
+        None,
+        "start of the uniform load: distance behind the first axle (without axles: behind the position of the train); default: unlimited",
     )
-    stop: Length | None = key(None, "end of the load, as a distance behind the same point; default: unlimited")
+    stop: Length | None = key(
+        None,
+        "end of the uniform load: distance behind the first axle (without axles: behind the position of the train); default: unlimited",
+    )
     load: LineForce = key(about="load per length of bridge", gt=0)
 
 
@@ -300,7 +319,7 @@ class PartialFactors(Table):
     fill: float = key(1.0, "partial factor on the weight of the fill", gt=0, le=10)
     surfacing: float = key(1.0, "partial factor on the weight of the surfacing", gt=0, le=10)
     live: float = key(1.0, "partial factor on the moving load", gt=0, le=10)
-    dynamic: float = key(1.0, "dynamic factor of the moving load, in addition to `live`", gt=0, le=10)
+    dynamic: float = key(1.0, "dynamic factor of the moving load, by which the load is multiplied in addition to `live`", gt=0, le=10)
     strength: float = key(1.0, "partial factor by which the compressive strength is divided", gt=0, le=10)
     friction: float = key(1.0, "partial factor by which the coefficients of friction are divided", gt=0, le=10)
 
@@ -309,10 +328,15 @@ class Serviceability(Table):
     """A permissible limit state beside the collapse load: repeated traffic does not damage the structure progressively."""
 
     strength_share: float = key(
-        0.5, "ratio of the permissible compressive stress to the compressive strength; the default is a choice of this program", gt=0, le=1
+        0.5, "permissible compressive stress, divided by the compressive strength; the default is a choice of this program", gt=0, le=1
     )
-    passive_share: float = key(0.0, "share of `fill.passive` that acts under service loads, because their movements are small", ge=0, le=1)
-    live: float = key(1.0, "factor on the moving load, in addition to `factors.dynamic`", gt=0, le=10)
+    passive_share: float = key(
+        0.0,
+        "share of the passive pressure (`passive` of the fill) that acts under service loads, because their movements are small",
+        ge=0,
+        le=1,
+    )
+    live: float = key(1.0, "factor on the moving load under service conditions, in addition to `dynamic` of the factors", gt=0, le=10)
 
 
 class MovingLoad(LimitAnalysisTable):
@@ -320,7 +344,7 @@ class MovingLoad(LimitAnalysisTable):
 
     kind: Literal["moving-load"]
     chain: str | None = key(
-        None, "arch that the load crosses; default: the first arch, vault or nave. A bridge is crossed along its whole top"
+        None, "arch that the load crosses; default: the first arch, vault or nave. On a bridge, the load crosses the whole top"
     )
     train: TrainName | None = key(
         None,
@@ -332,24 +356,26 @@ class MovingLoad(LimitAnalysisTable):
     axles: list[Length] = key([0.0], "distance of each axle behind the first axle", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default: equal shares", max_length=200)
     force: Force | None = key(None, "total load of the axles; adds the safety factor", gt=0)
-    axle_loads: list[Force] | None = key(None, "load of each axle; replaces shares and force", max_length=200)
-    uniform: list[UniformLoad] = key([], "uniform loads along the train; these require axle_loads, or axles = []", max_length=50)
+    axle_loads: list[Force] | None = key(None, "load of each axle; replaces `shares` and `force`", max_length=200)
+    uniform: list[UniformLoad] = key([], "uniform loads along the train; these require `axle_loads`, or axles = []", max_length=50)
     adverse: bool = key(
-        True, "true: distributed loads act only over adverse lengths, on which they drive the mechanism; false: over their whole length"
+        True,
+        "true: distributed loads act only over the lengths on which they drive the mechanism (adverse "
+        "lengths); false: they act over their whole length",
     )
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "number of notional lanes that LM1 loads; default: all that fit into the width", ge=1, le=20)
-    width: Length | None = key(None, "transverse width that carries the load; not greater than the depth", gt=0)
-    contact_length: Length = key(0.3, "contact length of an axle along a bridge with fill", gt=0)
+    width: Length | None = key(None, "transverse width over which the load is carried; at most the depth", gt=0)
+    contact_length: Length = key(0.3, "contact length of an axle on the road, along a bridge with fill", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     serviceability: Serviceability | None = key(
         None,
-        "permissible limit state: multiple of the train up to which a thrust line exists with stresses below a share of "
-        "the compressive strength; requires compressive_strength",
+        "permissible limit state: greatest multiple of the train for which a thrust line exists with "
+        "stresses below a share of the compressive strength; requires `compressive_strength`",
     )
-    both_ways: bool = key(False, "whether the train also crosses towards the left, with its first axle in front")
+    both_ways: bool = key(False, "whether the train also crosses in the opposite direction (towards -x, first axle in front)")
     count: int = key(
-        81, "number of positions while a load crosses the span; a train longer than the span has proportionally more", ge=3, le=2000
+        81, "number of positions while a load crosses the span; more, in proportion, for a train longer than the span", ge=3, le=2000
     )
     places: list[Length] | None = key(None, "positions of the first axle; `count` is then not used", min_length=1, max_length=2000)
 
@@ -361,19 +387,21 @@ class MovingLoad(LimitAnalysisTable):
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
             raise ValueError("axle_loads: expected one load above 0 for each of the axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
-            raise ValueError("the key `train` replaces axles, shares, force, axle_loads and uniform: remove either train or these keys")
+            raise ValueError(
+                "the key `train` replaces `axles`, `shares`, `force`, `axle_loads` and `uniform`: remove either `train` or these keys"
+            )
         if self.axle_loads is not None and (self.shares is not None or self.force is not None):
             raise ValueError("axle_loads replaces shares and force")
         if self.uniform and self.axle_loads is None and self.axles:
-            raise ValueError("the key `uniform` requires axle_loads, or axles = [] if there are no axles")
+            raise ValueError("the key `uniform` requires `axle_loads`, or axles = [] if there are no axles")
         if self.serviceability is not None and self.train is None and self.axle_loads is None and not self.uniform:
             raise ValueError("the key `serviceability` requires one of the keys `train`, `axle_loads` and `uniform`")
         if not self.axles and not self.uniform:
             raise ValueError("axles: expected at least one axle, or uniform loads")
         if self.lanes is not None and self.train != "LM1":
-            raise ValueError('lanes is used only with train = "LM1": remove lanes')
+            raise ValueError('`lanes` is used only with train = "LM1": remove `lanes`')
         if self.gap is not None and not (self.train or "").startswith("SV"):
-            raise ValueError("gap is used only with the trains SV80, SV100 and SV196: remove gap")
+            raise ValueError("`gap` is used only with the trains SV80, SV100 and SV196: remove `gap`")
         if self.gap not in (None, 1.2, 5.0, 9.0):
             raise ValueError(f"gap: expected 1.2, 5 or 9 m, found {self.gap:g}")
         for one in self.uniform:

@@ -50,7 +50,8 @@ def run(context: Context, options: Thrust) -> Result:
         states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
-            f"no thrust line is admissible at {options.gamma:g} g: the structure can carry {low:.4f} to {high:.4f} g", ("analysis", "gamma")
+            f"no thrust line is admissible at {options.gamma:g} g: the structure can carry accelerations from {low:.4f} to {high:.4f} g",
+            ("analysis", "gamma"),
         ) from None
     safety = None if part is None else safety_factor(part)
     lines: Keys = {}
@@ -119,7 +120,7 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
     needs = ""
     if central is not None:
         keeps = (
-            "can pass within 1 % of the joint length from the middles of all joints (no horizontal demand)"
+            "can pass within 1 % of the joint length from the middle of each joint (no horizontal demand)"
             if safety is None
             else f"stays within the central {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
         )
@@ -127,8 +128,8 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
         needs = f"{keeps} and requires a friction of {needed:.2f}"
     if r.chain is None:
         text = (
-            f"At {r.gamma_g:g} g {f'the most central state {needs}' if needs else 'an equilibrium state is admissible'}. The "
-            "blocks form no arch or stack, so no least and greatest thrust are given."
+            f"At {r.gamma_g:g} g {(f'the most central state {needs}' if needs else 'an equilibrium state is admissible')}. "
+            "The blocks form no arch or column, so no minimum and maximum thrust are given."
         )
     else:
         tied = r.least.crown_N is not None

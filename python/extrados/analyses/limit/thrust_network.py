@@ -38,10 +38,10 @@ def run(context: Context, options: ThrustNetwork) -> Result:
         try:
             found[aim] = networks.extreme(aim)
         except NoEquilibrium as error:
-            raise Refused(f"{error}. This does not prove collapse: another form, or more `lines`, may hold one", FORM) from None
+            raise Refused(f"{error}. This does not prove collapse: another `form`, or more `lines`, may give a network", FORM) from None
     part = found["central"].value
     if part is None:
-        raise Refused("the search found no network on this diagram. Another form, or more `lines`, may hold one", FORM)
+        raise Refused("no network was found on this form diagram. Another `form`, or more `lines`, may give one", FORM)
     states = {aim: one.network for aim, one in found.items() if one.network is not None}
     values = {aim: found[aim] if aim in found else Extreme(None, None, None) for aim in AIMS}
     outside = {aim: outside_of(diagram, assembly, one) for aim, one in states.items()}
@@ -77,8 +77,10 @@ def run(context: Context, options: ThrustNetwork) -> Result:
     result.answer = words_of(r)
     more = "`lines` and `meridians`" if form == "radial" else "`lines`"
     result.warnings += [
-        f"between its nodes {ABOUT[aim]} leaves the blocks by up to {1e3 * by:.3g} mm, {100.0 * by / r.thickness_m:.2g} % of the thickness: "
-        f"give more {more}"
+        (
+            f"between its nodes, {ABOUT[aim]} leaves the blocks by up to {1000.0 * by:.3g} mm ({100.0 * by / r.thickness_m:.2g} "
+            f"% of the thickness): give more {more}"
+        )
         for aim, by in away.items()
         if by is not None and r.leaves(by)
     ]
@@ -91,8 +93,8 @@ def _arrays(diagram: Diagram, states: dict[Aim, Network]) -> dict[str, Array]:
     arrays = {
         "network_point": Array(diagram.point, ("node", "axis"), "m", "nodes of the form diagram in plan"),
         "network_branch": Array(diagram.branch, ("branch", "end"), "", "nodes at the ends of each branch"),
-        "network_low": Array(diagram.low[:n], ("node",), "m", "lowest place of the blocks at each node"),
-        "network_high": Array(diagram.high[:n], ("node",), "m", "highest place of the blocks at each node"),
+        "network_low": Array(diagram.low[:n], ("node",), "m", "lowest point of the blocks at each node"),
+        "network_high": Array(diagram.high[:n], ("node",), "m", "highest point of the blocks at each node"),
         "network_weight": Array(diagram.weight, ("node",), "N", "weight of each node"),
         "network_support": Array(diagram.support, ("support",), "", "nodes on the ground"),
     }
@@ -133,13 +135,16 @@ def words_of(r: out.ThrustNetwork) -> str:
     text = f"Networks on the {r.form} diagram of {r.branches} branches: "
     if r.least_part_of_depth > 1.0:
         return (
-            f"{text}no network found lies within the structure. The best one requires {r.least_part_of_depth:.2f} times its depth "
-            f"(bound of the diagram: {r.least_part_bound or 0.0:.2f} times). This does not prove collapse: the diagram is given."
+            f"{text}no network found lies within the structure. The best one requires {r.least_part_of_depth:.2f} "
+            f"times the depth (bound of the diagram: {r.least_part_bound or 0.0:.2f} times). This does not prove "
+            "collapse, because another form diagram can give a network."
         )
     text += (
-        f"the sum of the outward thrusts of the {r.supports} supports lies between {_between(r.least_thrust_N, r.least_thrust_bound_N, 1e3)} "
-        f"and {_between(r.greatest_thrust_N, r.greatest_thrust_bound_N, 1e3)} kN. The most central network found stays within the middle "
-        f"{100.0 * r.least_part_of_depth:.1f} % of the vertical depth (factor {1.0 / max(r.least_part_of_depth, 1e-3):.2f}, which exceeds the geometric safety factor where surfaces are steep). "
+        f"the sum of the outward thrusts at the {r.supports} supports lies between {_between(r.least_thrust_N, r.least_thrust_bound_N, 1000.0)} "
+        f"and {_between(r.greatest_thrust_N, r.greatest_thrust_bound_N, 1000.0)} kN. The most central "
+        f"network found stays within the middle {100.0 * r.least_part_of_depth:.1f} % of the vertical depth, "
+        f"which gives a safety factor of {1.0 / max(r.least_part_of_depth, 0.001):.2f}. Where surfaces are "
+        "steep, this factor exceeds the geometric safety factor. "
     )
     return text + _load_words(r)
 
@@ -149,15 +154,19 @@ def _load_words(r: out.ThrustNetwork) -> str:
     load, bound = r.horizontal_load_g, r.horizontal_load_bound_g
     along = f"Along {r.load_direction_deg:g} degrees "
     if bound is None:
-        return "No limit of the horizontal load was found on this diagram."
+        return "No upper limit of the horizontal load was found on this form diagram."
     if bound <= NOTHING:
-        return f"{along}the diagram carries no horizontal load: a straight free edge, or a span without supports, would require tension."
+        return (
+            f"{along}networks on this form diagram carry no horizontal load: a straight free edge, or a span "
+            "without supports, would require tension."
+        )
     if load is None or load <= NOTHING:
         return (
-            f"{along}the search found no network that carries a horizontal load. This proves no limit: the bound of the diagram is "
-            f"{bound:.4g} times the weight."
+            f"{along}no network was found that carries a horizontal load. This does not prove a limit: the upper bound "
+            f"for this form diagram is {bound:.4g} times the weight."
         )
     return (
-        f"{along}the networks carry a horizontal load of {_between(load, bound, 1.0)} times the weight, if it acts at the nodes. It acts "
-        f"at the centroids of the blocks, so the collapse load can be less. In the barrels compared, this value exceeds that of `tilt` by {ABOVE} %."
+        f"{along}networks carry a horizontal load of {_between(load, bound, 1.0)} times the weight, if the load acts at the nodes. The "
+        "real load acts at the centroids of the blocks, so the collapse load can be less. For the barrel vaults that were compared, "
+        f"this value exceeds that of `tilt` by {ABOVE} %."
     )

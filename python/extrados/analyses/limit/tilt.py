@@ -127,8 +127,8 @@ def run(context: Context, options: Tilt) -> Result:
     needed = found.required_friction or 0.0
     if building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
-            f"the structure requires a coefficient of friction of {needed:.2f}. Masonry has about {USUAL_FRICTION:g}, so "
-            "joints slide before this load: give friction"
+            f"the structure requires a coefficient of friction of {needed:.2f}, but masonry has about {USUAL_FRICTION:g}, "
+            "so joints slide before this load: give `friction`"
         )
     if preset := getattr(context.deck.structure, "preset", None):
         result.warnings.append(f'the dimensions of preset "{preset}" are inferred or estimated, not taken from a survey')
@@ -145,7 +145,7 @@ def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
     for gamma in np.linspace(0.0, answer.gamma * (1.0 - 1e-6), FILM).tolist():
         pair = limit.thrust(joints, gamma)
         rows.append([(s.points(answer.assembly)[joints], thrust_of(answer.assembly, s, joints, at)) for s in pair])
-    about = "for the first arch or stack, as the ground is tilted up to collapse"
+    about = "for the first arch or column of blocks, while the ground is tilted up to collapse"
     return {
         "film_tilt": Array(
             np.linspace(0.0, degrees(answer.gamma), FILM), ("film",), "deg", "tilt of the ground in each picture of the animation"
@@ -208,13 +208,13 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
         way = "to +x" if direction > 0 else "to -x"
         if limit.strength is not None:
             result.warnings.append(
-                f"Load paths {way} do not include crushing. The capacity is therefore the lowest value found, not the design value."
+                f"Load paths {way} do not include crushing, so there is no design value. The capacity is the lowest value found."
             )
         elif limit.associated and len(limit.assembly.a) > MOST_FOLLOWED:
             result.warnings.append(
-                f"Load paths {way} are not calculated, because the structure has more than {MOST_FOLLOWED} joints. The capacity "
-                "is therefore the lowest value found, not the design value. To calculate load paths, give friction_rule = "
-                '"non-associated".'
+                f"Load paths {way} are not calculated, because the structure has more than {MOST_FOLLOWED} "
+                "joints, so there is no design value. The capacity is the lowest value found. To calculate load "
+                'paths, give friction_rule = "non-associated".'
             )
         elif beside.coulomb[direction].falling is None:
             paths, ends = _paths(beside, direction, patient=not limit.associated)
@@ -254,8 +254,8 @@ def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int,
         if found.falling is not None:
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
-                f"{stone} is carried only by friction between its neighbours. In a state without dilatancy it slides out at any "
-                f"load, so no horizontal load {way} is carried reliably"
+                f"{stone} is carried only by friction between its neighbours. In a state without dilatancy, this "
+                f"block slides out at any load, so no horizontal load {way} is carried reliably"
             )
         if not certified:
             told["non_associated_reason"] = (
@@ -291,7 +291,7 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
         if found is not None and found.gamma <= 0.0:
             raise NoEquilibrium
     except NoEquilibrium:
-        result.warnings.append("with a crack in its leeward buttress the structure cannot stand upright")
+        result.warnings.append("with a crack in its leeward buttress, the structure cannot stand, even without a horizontal load")
         return {"fracture": out.Fracture(stands=False)}
     if found is None or block is None:
         return {"fracture": out.Fracture(cracks=False, collapse_acceleration_g=answer.gamma, ratio=1.0)}
@@ -361,13 +361,15 @@ def _told(found: out.Tilt) -> str:
         upper = "none" if r.associated_g is None else f"{r.associated_g:.4f} g"
         lower = "nothing stands" if r.frictionless_g is None else f"{r.frictionless_g:z.4f} g"
         if design is not None:
-            text += f"Without dilatancy, the design value {way} is {design:.4f} g, the least of {len(paths)} load paths of elastic joints. "
+            text += (
+                f"Without dilatancy, the design value {way} is {design:.4f} g, the lowest of {len(paths)} load paths with elastic joints. "
+            )
         text += (
-            f"The lowest of {len(r.starts_g)} values found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The lower "
-            f"bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
+            f"The lowest of {len(r.starts_g)} collapse accelerations found {way} is {least:.4f} g (scatter {r.spread_g:.4f} g). The "
+            f"lower bound without friction is {lower}, and the upper bound with dilatancy is {upper}. "
         )
     if found.non_associated_reason:
-        text += f"No state without dilatancy is given: {found.non_associated_reason}. "
+        text += f"Collapse without dilatancy is not given: {found.non_associated_reason}. "
     return text
 
 
@@ -401,8 +403,8 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
         f"; the geometric safety factor of the upright {what} is {answer.safety:.2f}."
         if np.isfinite(answer.safety)
         else (
-            f"; in the upright {what} a thrust line passes within 1 % of the joint length from the middles of all joints, "
-            "so self-weight causes no horizontal demand."
+            "; for self-weight alone, a thrust line passes within 1 % of the joint length from the middle of "
+            f"each joint of the {what}: there is no horizontal demand."
         )
         if answer.part < CENTRAL
         else "."
@@ -411,9 +413,9 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     fracture = found.fracture
     if fracture and fracture.cracks:
         text += (
-            f"If the leeward buttress cracks from {fracture.crack_height_m:.2f} m above its base down to the toe, the "
-            f"collapse acceleration is {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} degrees), "
-            f"{fracture.ratio:.2f} of the value above."
+            f"If the leeward buttress cracks ({fracture.crack_height_m:.2f} m above its base, down to the toe), "
+            f"the collapse acceleration is {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} "
+            f"degrees), which is {fracture.ratio:.2f} of the uncracked value."
         )
     elif fracture and fracture.cracks is False:
         text += " The leeward buttress does not crack before this collapse."

@@ -214,13 +214,14 @@ def describe(name: str, r: out.OneMotion) -> str:
     )
     if r.rotd100_pga_g is not None:
         text += (
-            f"Over all directions the median peak is {r.rotd50_pga_g:.4g} g (RotD50), and the greatest peak is "
-            f"{r.rotd100_pga_g:.4g} g (RotD100). "
+            f"Over all directions, the median of the peaks is {r.rotd50_pga_g:.4g} g (RotD50), and the greatest "
+            f"peak is {r.rotd100_pga_g:.4g} g (RotD100). "
         )
     if first := r.primary_impulse:
         text += (
-            f"The primary impulse has {abs(first.amplitude_g):.3g} g and a period of {first.period_s:.3g} s, and starts at "
-            f"{first.start_s:.2f} s (it explains {100 * first.goodness_of_fit:.0f} % of the motion over its duration). "
+            f"The primary impulse is a sine with an amplitude of {abs(first.amplitude_g):.3g} g and a period of {first.period_s:.3g} "
+            f"s, starting at {first.start_s:.2f} s. This sine explains {100 * first.goodness_of_fit:.0f} % of the "
+            "motion over its duration. "
         )
     if r.directed_pulses is not None:
         like = [one for one in r.directed_pulses if one.pulse_like]
@@ -340,7 +341,9 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
             f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
         )
         if not isinstance(model, models.Suite) or model.selection is not None:
-            result.warnings.append("The target of the set is that of the ground. The motions of the floor are not compared with it.")
+            result.warnings.append(
+                "The target spectrum of the set is that of the ground, so the motions of the floor are not compared with it."
+            )
     elif isinstance(model, models.Generated):
         r |= _compare_with_intensity(result, r, model, context)
     elif isinstance(model, models.Compatible):
@@ -350,9 +353,8 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         r |= _compare_with_target(result, r, model, periods, psa, target)
     else:
         result.answer = (
-            f"{count} records: median peak acceleration {r['median_pga_g']:.3g} g (largest {r['largest_pga_g']:.3g} g), "
-            f"median peak velocity {100 * r['median_pgv_m_s']:.3g} cm/s, median Arias intensity {r['median_arias_m_s']:.3g} "
-            "m/s."
+            f"{count} records: median peak acceleration {r['median_pga_g']:.3g} g (largest {r['largest_pga_g']:.3g} g), median peak "
+            f"velocity {100 * r['median_pgv_m_s']:.3g} cm/s, median Arias intensity {r['median_arias_m_s']:.3g} m/s."
         )
         if isinstance(model, models.Suite) and model.selection is not None:
             r |= _beside_selection(result, model.selection, folder, periods, psa)
@@ -402,17 +404,17 @@ def _compare_with_intensity(result: Result, r: dict[str, Any], model: models.Gen
     }
     ratio = further["pga_over_expected"]
     result.answer = (
-        f"{r['count']} generated motions of intensity {model.mmi:g}: median peak acceleration {r['median_pga_g']:.3g} g, "
-        f"median peak velocity {100 * r['median_pgv_m_s']:.3g} cm/s, Arias intensity {r['median_arias_m_s']:.3g} m/s. "
-        f"Records of this intensity have medians of {further['expected_pga_g']:.3g} g and "
-        f"{100 * further['expected_pgv_m_s']:.3g} cm/s (Worden et al. 2012), and the target spectrum has an Arias "
-        f"intensity of {further['expected_arias_m_s']:.3g} m/s. The peak acceleration of the set is {ratio:.2f} times "
-        "that of the records."
+        f"{r['count']} generated motions of intensity {model.mmi:g}: median peak acceleration {r['median_pga_g']:.3g} "
+        f"g, median peak velocity {100 * r['median_pgv_m_s']:.3g} cm/s, Arias intensity {r['median_arias_m_s']:.3g} "
+        f"m/s. Records of this intensity have medians of {further['expected_pga_g']:.3g} g and {100 * further['expected_pgv_m_s']:.3g} "
+        f"cm/s (Worden et al. 2012); the Arias intensity of the target spectrum is {further['expected_arias_m_s']:.3g} "
+        f"m/s. The peak acceleration of the set is {ratio:.2f} times that of the records."
     )
     if not 0.5 <= ratio <= 2.0:
         result.warnings.append(
-            f'the set\'s PGA is {ratio:.2f} times the median of intensity {model.mmi:g}: scaling = "{model.scaling}" with '
-            f"factor {model.factor:g} does not represent that intensity (see the documentation of Eq. 6.6)"
+            f'the PGA of the set is {ratio:.2f} times the median of intensity {model.mmi:g}: scaling = "{model.scaling}" '
+            f"with factor {model.factor:g} does not represent that intensity (see the documentation of Eq. "
+            "6.6)"
         )
     return further
 

@@ -17,11 +17,11 @@ class MotionStudy(Analysis):
     kind: Literal["motion"]
     starter: ClassVar = {"count": "10"}
     needs_motion: ClassVar = True
-    count: int = key(100, "number of motions used from a generated set", ge=1, le=1_000_000)
+    count: int = key(100, "number of motions taken from a generated set", ge=1, le=1_000_000)
     dampings: list[float] = key([0.02, 0.05, 0.10], "damping ratios of the response spectra", min_length=1, max_length=8)
     shortest: Time = key(0.02, "shortest period of the spectra", ge=0.005)
     longest: Time = key(10.0, "longest period of the spectra", le=50)
-    periods: int = key(200, "number of periods of the spectra, in equal ratios", ge=10, le=4000)
+    periods: int = key(200, "number of periods of the spectra; the ratio of neighbouring periods is constant", ge=10, le=4000)
     impulses: int = key(3, "number of the strongest impulses that are fitted", ge=1, le=20, source="thesis 5.3.2")
     max_period: Time = key(4.0, "longest impulse sought", gt=0)
     export: list[Literal["AT2", "columns"]] = key(["AT2", "columns"], "formats in which the motion is written")
@@ -47,7 +47,7 @@ class ShakeTable(Analysis):
     flow: FlowRate = key(0.75 * GALLON / 60.0, "flow of the pump", gt=0, source="thesis C.2")
     piston_area: Area = key(0.40 * INCH**2, "area of the actuator's piston", gt=0, source="thesis C.2")
     max_force: Force = key(1100.0 * POUND * 9.80665, "greatest force of the actuator", gt=0, source="thesis C.2")
-    max_velocity: Velocity | None = key(None, "greatest velocity of a table without a pump; replaces flow and area", gt=0)
+    max_velocity: Velocity | None = key(None, "greatest velocity of a table without a pump; replaces `flow` and `area`", gt=0)
     masses: list[Mass] = key(
         [500.0 * POUND, 1000.0 * POUND], "moving masses, table included", min_length=1, max_length=10, source="thesis Fig. C-1"
     )

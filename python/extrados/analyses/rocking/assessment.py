@@ -43,7 +43,7 @@ def run(context: Context, options: Assessment) -> Result:
     rocker = rocker_of(context, options)
     arch = rocker.model.arch if isinstance(rocker.model, ArchModel) else None
     if context.motion.ground.channels > 1:
-        context.warnings.append("The criterion covers the horizontal motion only: the vertical component is neglected.")
+        context.warnings.append("The criterion covers the horizontal motion only; the vertical component is neglected.")
     gamma, scale = rocker.uplift, rocker.scale
     time, acceleration = context.motion.series()
     impulses = primary_impulses(time, acceleration, options.impulses, options.min_period, options.max_period)
@@ -61,8 +61,8 @@ def run(context: Context, options: Assessment) -> Result:
         table = interpolated(ratio, embrace, gamma)
     if by_table and table is None:
         result.warnings.append(
-            f"Table 5.3 covers t/R from 0.12 to 0.21 and 140 to 180 deg. This arch has t/R {ratio:.3f} and {embrace:g} deg, "
-            "so only the failure curve fitted to this arch is used"
+            "Table 5.3 of the thesis covers t/R from 0.12 to 0.21 and an embrace of 140 to 180 deg. This "
+            f"arch has t/R {ratio:.3f} and {embrace:g} deg, so only the failure curve fitted to this arch is used"
         )
     fit = table or own
     rows = [_row(k + 1, impulse, fit, own, scale) for k, impulse in enumerate(impulses)]
@@ -103,7 +103,9 @@ def run(context: Context, options: Assessment) -> Result:
         "impulse_start": Array(np.array([i.start for i in impulses]), ("impulse",), "s"),
         "period": Array(periods, ("period",), "s"),
         "failing_amplitude": Array(fit.amplitude(periods, scale), ("period",), "g", "Eq. 5.8"),
-        "failing_amplitude_own": Array(own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 fitted to this {rocker.word}"),
+        "failing_amplitude_own": Array(
+            own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 of the thesis, fitted to this {rocker.word}"
+        ),
         "computed_period": Array(own_periods * np.sqrt(scale), ("computed",), "s"),
         "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve calculated for this structure"),
     }
@@ -119,8 +121,8 @@ def _limits_of_criterion(context: Context, r: out.Assessment) -> list[str]:
     if beyond:
         warnings.append(
             f"the criterion follows the failure curve up to {CAP:g} times the acceleration that starts rocking "
-            f"({CAP * gamma:.3g} g). An impulse of this motion exceeds this range ({abs(beyond[0].amplitude_g):.3g} g over "
-            f"{beyond[0].period_s:.3g} s), and may cause collapse in one swing: use `failure-domain`"
+            f"({CAP * gamma:.3g} g). An impulse of this motion exceeds this range ({abs(beyond[0].amplitude_g):.3g} "
+            f"g over {beyond[0].period_s:.3g} s) and may cause collapse in one swing: use `failure-domain`"
         )
     if r.run_outcome is not None and (r.verdict == "fails") != (r.run_outcome == "collapse"):
         why = (
@@ -136,9 +138,9 @@ def _limits_of_criterion(context: Context, r: out.Assessment) -> list[str]:
     if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
         first = rows[0]
         warnings.append(
-            "the criterion was derived for single sines. The strongest impulse of this motion is replaced by a sine of "
-            f"{abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s, which removes {100 * first.goodness_of_fit:.0f} % "
-            "of the squared acceleration over the duration of the sine"
+            "the criterion was derived for single sines. For it, the strongest impulse of this motion is "
+            f"replaced by a sine of {abs(first.amplitude_g):.3g} g and a period of {first.period_s:.3g} s. This sine "
+            f"explains {100 * first.goodness_of_fit:.0f} % of the squared acceleration over its duration"
         )
     return warnings
 
@@ -160,7 +162,10 @@ def _at_margin(context: Context, rocker: Rocker, margin: float | None) -> list[s
         return []
     _, found = _run_through(context, rocker, margin)
     return [
-        f"The safety factor is conditional: at {margin:.3g} times the motion an assumption of rocking is violated. {text}"
+        (
+            f"The safety factor is conditional: under {margin:.3g} times the motion, an assumption of the rocking "
+            f"analysis is violated. {text}"
+        )
         for text in found["conditions"].violated
     ]
 
@@ -185,7 +190,7 @@ def _undecided(margins: dict[str, float | None]) -> list[str]:
     if len(falls) < 2:
         return []
     each = ", ".join(f'"{rule}" {"none" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
-    return [f"The impact rule decides the verdict. Safety factor by each rule: {each}."]
+    return [f"The impact rule decides the verdict. Safety factor by each impact rule: {each}."]
 
 
 def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:
@@ -213,14 +218,14 @@ def _coefficients(fit: Fit) -> out.Coefficients:
 def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> str:
     first = r.primary_impulse
     if worst is None or first is None:
-        return "The motion contains no impulse in the given range of periods: the motion is too short, or zero."
+        return "In the given range of periods, the motion contains no impulse: the motion is too short, or zero."
     text = (
-        f"The primary impulse of the motion is {abs(first.amplitude_g):.3f} g over {first.period_s:.3f} s, "
-        f"starting at {first.start_s:.2f} s. "
+        f"The primary impulse of the motion is a sine with an amplitude of {abs(first.amplitude_g):.3f} g and "
+        f"a period of {first.period_s:.3f} s, starting at {first.start_s:.2f} s. "
     )
     which = "the primary impulse" if worst.rank == 1 else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
     if worst.margin is None:
-        text += f"Predicted for the {what}: no collapse. All impulses are too short to cause collapse. "
+        text += f"Predicted for the {what}: no collapse. All impulses of the motion are too short to cause collapse. "
     elif r.verdict == "fails":
         text += (
             f"Predicted for the {what}: collapse. The amplitude of {which} is {1 / worst.margin:.2f} times the amplitude that "
@@ -234,6 +239,6 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> 
     also = "also " if r.static_verdict == r.verdict else ""
     static = "collapse" if r.static_verdict == "fails" else "no collapse"
     return (
-        f"{text}Limit analysis with the peak of {r.peak_ground_acceleration_g:.3f} g as a constant horizontal acceleration (collapse acceleration "
-        f"{r.uplift_acceleration_g:.3f} g) {also}predicts {static}."
+        f"{text}Limit analysis with the peak acceleration of {r.peak_ground_acceleration_g:.3f} g as a constant horizontal acceleration "
+        f"(collapse acceleration {r.uplift_acceleration_g:.3f} g) {also}predicts {static}."
     )

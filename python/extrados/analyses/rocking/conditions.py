@@ -49,11 +49,11 @@ def not_checked(rocker: Rocker) -> str:
     if isinstance(rocker.model, StackModel | SoftBaseModel):
         return ""
     if watch is None or not len(watch.joints):
-        return "Friction and thrust line are not checked, because the forces at the hinges are statically indeterminate."
+        return "Sliding and the thrust line are not checked, because the forces at the hinges are statically indeterminate."
     if watch.unknown:
         return (
-            f"Friction and thrust line are checked at {len(watch.joints)} of {len(watch.assembly.a)} joints, because the "
-            "forces at the other joints are statically indeterminate."
+            f"Sliding and the thrust line are checked at {len(watch.joints)} of {len(watch.assembly.a)} "
+            "joints only, because the forces at the other joints are statically indeterminate."
         )
     return ""
 
@@ -160,14 +160,12 @@ def _of_stack(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     """The same of two stacked blocks, and on a compliant base."""
     found = []
     soft = isinstance(rocker.model, SoftBaseModel)
-    if counted.sliding and (np.isfinite(counted.friction) or not soft):
+    if counted.sliding:
         share = _share(counted.sliding, counted.runs, runs)
+        requires = f": rocking requires up to {counted.friction:.2f}" if np.isfinite(counted.friction) else ""
         found.append(
-            (
-                f"Friction {friction_of(rocker):.2f} is too low {share}: rocking requires up to {counted.friction:.2f}. Blocks "
-                "slide first. Use dem, or check the friction."
-            )
-            if np.isfinite(counted.friction)
+            f"Friction {friction_of(rocker):.2f} is too low {share}{requires}. Blocks slide first. Use dem, or check the friction."
+            if requires or soft
             else f"A joint slides or opens over its whole length {share}. Use dem."
         )
     if counted.elsewhere:

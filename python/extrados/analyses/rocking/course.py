@@ -54,8 +54,8 @@ def refuse_long_history(end_time: float, output_step: float, width: int) -> None
     if end_time / output_step * width > LARGEST:
         least = end_time * width / LARGEST
         raise Refused(
-            f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store: give an output_step of at least "
-            f"{least:.2g} s",
+            f"a history of {end_time:g} s in steps of {output_step:g} s is too long to store: give an "
+            f"`output_step` of at least {least:.2g} s",
             ("analysis", "output_step"),
         )
 
@@ -83,7 +83,7 @@ def build_result(context: Context, r: rocking.Course, course: Course, **further:
     if r.events_found > len(r.events):
         result.warnings.append(f"only the first {len(r.events)} of {r.events_found} events are saved")
     if not course.settled and not r.interrupted:
-        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s, so the outcome is open: give a later end_time")
+        result.warnings.append(f"{course.moves} at the end time of {r.stop_time:g} s, so the outcome is open: give a later `end_time`")
     results = {
         "rotation_of": course.of,
         "outcome": r.outcome,

@@ -70,7 +70,7 @@ def fit(periods: np.ndarray, amplitudes: np.ndarray, gamma: float) -> Fit:
     good = np.isfinite(amplitudes) & (amplitudes > FLOOR * gamma) & (amplitudes < CAP * gamma)
     t, a = periods[good], amplitudes[good]
     if len(t) < 4:
-        raise ValueError(f"only {len(t)} points of the failure curve lie below the cap, which is too few for a fit")
+        raise ValueError(f"only {len(t)} points of the failure curve lie below `max_amplitude`, which is too few for a fit")
 
     def misfit(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         left = t - x[2]

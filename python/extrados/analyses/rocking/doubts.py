@@ -53,8 +53,8 @@ def beat(context: Context, response: Response) -> float:
 def too_fast(limit: float) -> str:
     """Why motion that repeats itself above a frequency [Hz] is worse than fixed hinges say."""
     return (
-        f"in an arch of this size, successive impacts at more than {limit:.2g} Hz lose too much energy if the hinges stay "
-        "fixed. Discrete elements collapsed at 1/3 of the amplitude"
+        f"in an arch of this size, successive impacts at more than {limit:.2g} Hz lose too much energy if the "
+        "hinges stay fixed: discrete elements collapsed at 1/3 of the amplitude"
     )
 
 

@@ -98,8 +98,8 @@ def run(context: Context, options: FailureCurves) -> Result:
     )
     if r.agreement is not None and r.agreement < 1.0:
         result.warnings.append(
-            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs of the whole motion, because a "
-            "curve covers a single impulse, not the motion before and after it. Use the outcomes of the runs"
+            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs under the whole motion, because a curve "
+            "covers a single impulse, not the motion before and after it. Use the outcomes of the runs"
         )
     longest = max(len(d) for d, _, _ in curves)
     padded = [np.array([np.append(np.asarray(c[k]), np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]
@@ -109,7 +109,7 @@ def run(context: Context, options: FailureCurves) -> Result:
         "natural_time": Array(np.array([v.rocker.time_unit if _slender(v) else v.natural for v in variants]), ("curve",), "s"),
         "slender": Array(np.array([_slender(v) for v in variants]), ("curve",), "", "true of a block"),
     }
-    for name, about in (("fit", "Eq. 5.5, fitted to each failure curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
+    for name, about in (("fit", "Eq. 5.5 of the thesis, fitted to each failure curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
         if any(name in fit for fit in fits):
             lines = [fit[name][1](padded[0][k]) if name in fit else np.full(longest, np.nan) for k, fit in enumerate(fits)]
             result.arrays[name] = Array(np.array(lines), ("curve", "point"), "g", about)
@@ -150,7 +150,7 @@ def _fits(
     model = variant.rocker.model
     if not isinstance(model, ArchModel):
         raise Refused(
-            f"the key `fits` is only for arches, and this structure is a {variant.rocker.word}: remove fits", ("analysis", "fits")
+            f"the key `fits` is only for arches, and this structure is a {variant.rocker.word}: remove `fits`", ("analysis", "fits")
         )
     gamma, arch = model.collapse[0].gamma, model.arch
     ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
@@ -158,13 +158,12 @@ def _fits(
     try:
         found["fit"] = criterion.fit(durations, amplitudes, gamma), 1.0
     except ValueError as error:
-        context.warnings.append(
-            f"{variant.label}: Eq. 5.5 of the dissertation (amplitude over duration at collapse) cannot be fitted: {error}"
-        )
+        context.warnings.append(f"{variant.label}: Eq. 5.5 of the thesis (amplitude over duration at collapse) cannot be fitted: {error}")
     table = criterion.interpolated(ratio, embrace, gamma)
     if table is None:
         context.warnings.append(
-            f"{variant.label}: Table 5.3 covers t/R from 0.12 to 0.21 and 140 to 180 deg. This arch has t/R {ratio:.3f} and {embrace:g} deg"
+            f"{variant.label}: Table 5.3 of the thesis covers t/R from 0.12 to 0.21 and an embrace of 140 to "
+            f"180 deg. This arch has t/R {ratio:.3f} and {embrace:g} deg"
         )
     else:
         found["criterion"] = table, arch.radius
@@ -204,7 +203,7 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
         context.warnings += [told + warning for warning in rocker.warnings]
         limit = rocker.model.fastest_beat if isinstance(rocker.model, ArchModel) else None
         if limit is not None and max(options.cycles) >= OFTEN:
-            context.warnings.append(f"{told}trains of sines repeat themselves: {too_fast(limit)}")
+            context.warnings.append(f"{told}trains of sines repeat impacts regularly: {too_fast(limit)}")
         for cycles in options.cycles:
             of_train = [f"{cycles} cycle{'s' if cycles > 1 else ''}"] if len(options.cycles) > 1 else []
             found.append(Variant(", ".join(parts + of_train) or rocker.word, rocker, cycles))
@@ -327,7 +326,7 @@ def _answer(r: out.FailureCurves) -> str:
     parts = []
     for c in r.curves:
         failing = [a for a in c.amplitudes_g if a is not None]
-        low = f"collapses from {min(failing):.3f} g on" if failing else "no collapse below the cap of the amplitudes"
+        low = f"collapses from {min(failing):.3f} g on" if failing else "no amplitude up to `max_amplitude` causes collapse"
         parts.append(f"{c.label}: rocking starts at {c.uplift_acceleration_g:.3f} g, {low}")
     text = f"Failure curves of {r.pulse} pulses. {'; '.join(parts)}."
     if r.scaling_misfit is not None:
@@ -341,6 +340,9 @@ def _answer(r: out.FailureCurves) -> str:
             falls = sum(o == "collapse" for o in c.run_outcomes)
             above = sum(v == "fails" for v in c.curve_verdicts)
             static = sum(v == "fails" for v in c.static_verdicts)
-            told.append(f"{c.label}: {static} by a static check, {above} by the failure curve, {falls} in a run of the whole motion")
+            told.append(
+                f"{c.label}: {static} by the peak acceleration as a constant acceleration, {above} by the failure "
+                f"curve, {falls} in a run of the whole motion"
+            )
         text += f" Of {len(r.impulses)} motions the following numbers cause collapse: {'; '.join(told)}."
     return text

@@ -382,12 +382,14 @@ def run(context: Context, options: FailureDomain) -> Result:
     if handed:
         friction = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
         result.warnings.append(
-            f"{handed} of {curves.codes.size} pulses were decided with rigid contacts: joints slide{friction} in "
-            f"{conditions.sliding} pulses, and hinges form at other joints in {conditions.hinges_elsewhere}. At these "
-            "durations the failure curves are accurate to one cell of the map."
+            f"{handed} of {curves.codes.size} pulses were continued with rigid contacts: joints slide{friction} "
+            f"in {conditions.sliding} pulses, and hinges form at other joints in {conditions.hinges_elsewhere}. "
+            "At these durations the failure curves are accurate to one cell of the map."
         )
         if options.at_amplitudes:
-            result.warnings.append("The shortest durations that cause collapse (at_amplitudes) are those for fixed hinges without sliding.")
+            result.warnings.append(
+                "The shortest durations that cause collapse (`at_amplitudes`) are calculated with fixed hinges and without sliding."
+            )
     return result
 
 
@@ -514,13 +516,13 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
         start = "lift an edge (held on)"
     below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
     modes = (
-        "Collapse after an impact (Mode I) governs at durations where its curve is the lower one"
+        "Collapse after an impact (Mode I) governs at durations at which its curve is the lower one"
         if below.any()
-        else "At no duration does an impact (Mode I) lower the amplitude of collapse below that without an impact (Mode II)"
+        else "At no duration does an impact (Mode I) reduce the amplitude that causes collapse"
     )
     return (
-        f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. With amplitudes up to "
-        f"{options.max_amplitude / GRAVITY:g} g, it collapses for durations from {shortest:.3f} s upwards. Over the "
-        f"calculated durations, the lowest amplitude that causes collapse is {governing:.3f} g. {modes}. At {pockets} of "
-        f"{len(durations)} durations there are safe regions above the curve: do not rely on them."
+        f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. With amplitudes up to {options.max_amplitude / GRAVITY:g} "
+        f"g, it collapses for durations of {shortest:.3f} s or more. The lowest amplitude that causes "
+        f"collapse, over the calculated durations, is {governing:.3f} g. {modes}. At {pockets} of {len(durations)} "
+        "durations there are safe regions above the curve: do not rely on them."
     )

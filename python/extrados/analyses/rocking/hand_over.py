@@ -619,8 +619,8 @@ def decide_cells(
         return unknown
     if len(index) > limit:
         context.warnings.append(
-            f"Joints slide or hinges form at other joints in {len(index)} cells of the map. This exceeds hand_over_cells = "
-            f"{limit}, so these cells are not decided with rigid contacts."
+            f"Joints slide or hinges form at other joints in {len(index)} cells of the map. This exceeds "
+            f"`hand_over_cells` = {limit}, so these cells are not continued with rigid contacts."
         )
         return unknown
     return decide(context, "map-contacts", contacts, grounds, index, scale, end, steps)

@@ -112,7 +112,7 @@ def rocking_result(context: Context, ran: Ran, rocker: Rocker, of: str, friction
         lost="the energy lost at impacts, minus the energy absorbed by restraints",
         friction=friction,
         coordinates={"rotation": (response.rotation, "rad"), "rotation_rate": (response.rate, "rad/s")},
-        event_value="rotation in rad at peak and collapse; angular velocity in rad/s before impact; side at uplift",
+        event_value="at peak and collapse: rotation in rad; before an impact: angular velocity in rad/s; at uplift: the side",
         chaotic=doubt.chaotic,
         growth=doubt.growth,
         violated=doubt.violated,
@@ -192,7 +192,7 @@ def snapshot_index(response: Response, options: Rocking, warnings: list[str]) ->
     end = float(response.time[-1])
     asked = [t for t in options.thrust_line_times if 0.0 <= t <= end + options.output_step]
     if len(asked) < len(options.thrust_line_times):
-        warnings.append(f"some thrust_line_times lie outside the run, which ends at {end:g} s, and are not drawn")
+        warnings.append(f"some `thrust_line_times` are later than the end of the run at {end:g} s and are not drawn")
     if not asked:
         peaks = [t for kind, t, _ in response.events if kind in ("peak", "collapse")]
         size = np.abs(np.interp(peaks, response.time, response.rotation)) if peaks else np.zeros(0)
@@ -221,8 +221,8 @@ def answer_of(context: Context, ran: Ran, who: str, falls: str, uplift: float) -
         return answer(context, response, who, falls, uplift)
     before = f"rocks ({count(response.impacts, 'impact')})" if response.half_cycles else "rests"
     return (
-        f"By rigid contacts: {ran.run.answer} {who} {before} by the assumed mechanism until {over.time_s:.3f} s. From "
-        f"then on the motion of the blocks is calculated with rigid contacts. {over.reason}"
+        f"With rigid contacts: {ran.run.answer} {who} {before} by the assumed mechanism until {over.time_s:.3f} "
+        f"s. From then on, the motion of the blocks is calculated with rigid contacts. {over.reason}"
     )
 
 

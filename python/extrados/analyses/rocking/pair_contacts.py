@@ -75,7 +75,7 @@ def _handed(
     result.arrays |= stored(further)
     result.arrays |= on_contacts(context.building.blocks(), result)
     result.answer = (
-        f"By {contacts.name}: {further.answer} {'Rocking' if left.rocks else 'The rest'} without sliding lasts until {time:.3f} s. "
-        f"From then on the blocks are followed with {contacts.name}. {over.reason}"
+        f"By {contacts.name}: {further.answer} {('Rocking' if left.rocks else 'The rest')} without sliding lasts until {time:.3f} s. "
+        f"From then on, the motion of the blocks is calculated with {contacts.name}. {over.reason}"
     )
     return result

@@ -133,14 +133,17 @@ def _result(
     )
     result.warnings += violated
     if rigid is not None and rigid[0] != r.outcome:
-        result.warnings.append(f"on a rigid base, with the impact rule of Housner, the outcome is different: {rigid[0]}")
+        result.warnings.append(f"on a rigid base (impact rule of Housner), the outcome is different: {rigid[0]}")
     pressed = np.where(flies[:, None], np.nan, r.range)
     result.arrays |= {
         "rotation": Array(r.rotation, ("time",), "rad", "rotation of the block, positive to +x"),
         "rate": Array(r.rate, ("time",), "rad/s"),
         "sinking": Array(r.sinking, ("time",), "m", "settlement of the base below the centre of the block"),
         "pressed": Array(
-            pressed, ("time", "end"), "m", "ends of the part of the base in contact, measured from the point below the centre of the block"
+            pressed,
+            ("time", "end"),
+            "m",
+            "both ends of the part of the base that is in contact, measured from the point below the centre of the block",
         ),
     }
     return result
@@ -199,7 +202,7 @@ def _answer(context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: 
         }[rigid[0]]
     word = context.building.structure.word if context.building.structure is not None else "block"
     return (
-        f"On its compliant base the {word} {said}. An edge lifts {count(lifts, 'time')}. The peak ground acceleration is "
-        f"{context.motion.peak / GRAVITY:.3f} g. As constant accelerations, {found.uplift_acceleration_g:.3f} g lift an "
-        f"edge and {found.soft_base.capacity_g:.3f} g overturn the block.{rigidly}"
+        f"On its compliant base the {word} {said}. An edge lifts {count(lifts, 'time')}. The peak ground "
+        f"acceleration is {context.motion.peak / GRAVITY:.3f} g. A constant acceleration of {found.uplift_acceleration_g:.3f} "
+        f"g lifts an edge, and one of {found.soft_base.capacity_g:.3f} g overturns the block.{rigidly}"
     )

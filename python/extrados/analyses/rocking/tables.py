@@ -20,8 +20,8 @@ def hand_over_cells() -> Any:
     """Key of analyses that draw a map."""
     return key(
         100,
-        "limit on the number of cells of the map in which joints slide or hinges form at other joints: up to this "
-        "number, these cells are decided with rigid contacts; 0: never",
+        "if joints slide or hinges form at other joints in at most this number of cells of the map, "
+        "these cells are continued with rigid contacts; if there are more, none is continued. 0: never",
         ge=0,
         le=1_000_000,
         source="Moreau 1988",
@@ -46,7 +46,9 @@ class RockingTable(BuildingAnalysis):
     considers: ClassVar[tuple[str, ...]] = HOLDS
     soft_base: ClassVar = False
     form: Literal["nonlinear", "linear"] = key(
-        "nonlinear", "form of the equations. nonlinear: full equations; linear: linear equations for slender blocks", source="Housner 1963"
+        "nonlinear",
+        "form of the equations of motion. nonlinear: full equations; linear: equations for slender blocks and small rotations",
+        source="Housner 1963",
     )
 
     def rests_on(self, building: Building) -> dict[str, str | None]:
@@ -83,8 +85,8 @@ class Rocking(RockingTable, Animated):
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
     hand_over: bool = key(
         True,
-        "if joints slide or hinges form at other joints, continue the run with rigid contacts from that state; false "
-        "leaves the outcome open",
+        "if joints slide or hinges form outside the rocking mechanism, continue the run with rigid "
+        "contacts from that state; false leaves the outcome open",
         source="Moreau 1988",
     )
     thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key(
@@ -103,14 +105,16 @@ class FailureDomain(RockingTable):
     considers: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
-        "step", "shape: step pulse of duration t_p, single sine of period T_p, or another shape of `pulse`", source="thesis 5.2.3"
+        "step",
+        "shape of the pulse: step pulse of duration t_p, single sine of period T_p, or another shape of `pulse`",
+        source="thesis 5.2.3",
     )
     durations: list[Annotated[Time, Field(gt=0)]] | None = key(
         None, "durations t_p or periods T_p; default: 40 values scaled to the structure", min_length=1, max_length=2000
     )
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
-    accuracy: float = key(1e-4, "accuracy of the failure curves: amplitudes in g, durations in s", ge=1e-9, le=0.1)
+    accuracy: float = key(1e-4, "accuracy of the failure curves, in g for amplitudes and in s for durations", ge=1e-9, le=0.1)
     hand_over_cells: int = hand_over_cells()
     at_amplitudes: list[Annotated[Acceleration, Field(gt=0)]] = key(
         [], "also find the shortest durations that cause collapse at these amplitudes", max_length=200
@@ -139,14 +143,16 @@ class FailureCurves(RockingTable):
     )
     count: int = key(40, "number of durations of each failure curve, if `durations` is not given", ge=2, le=2000)
     amplitudes: int = key(
-        60, "number of amplitudes up to the cap that are tried before the lowest one that causes collapse is refined", ge=2, le=2000
+        60, "number of amplitudes up to `max_amplitude` that are tried; the lowest one that causes collapse is then refined", ge=2, le=2000
     )
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the failure curves, in g", ge=1e-9, le=0.1)
     motions: int = key(12, "greatest number of motions of a suite or a generated set in the figure", ge=1, le=200)
     max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
     fits: bool = key(
-        False, "for arches: also fit Eq. 5.5 to each curve, and apply the criterion of Eq. 5.8 with Table 5.3", source="thesis Fig. 5-14"
+        False,
+        "for arches: also fit Eq. 5.5 of the thesis to each curve, and apply the criterion of Eq. 5.8 with Table 5.3",
+        source="thesis Fig. 5-14",
     )
 
     @model_validator(mode="after")
@@ -154,11 +160,13 @@ class FailureCurves(RockingTable):
         if self.pulse != "sine" and self.cycles != [1]:
             raise ValueError(f"the key `cycles` is only for sine pulses; a pulse of shape '{self.pulse}' has only one cycle")
         if self.fits and (self.pulse != "sine" or self.cycles != [1]):
-            raise ValueError('the key `fits` requires failure curves of single sines: give pulse = "sine" and cycles = [1], or remove fits')
+            raise ValueError(
+                'the key `fits` requires failure curves of single sines: give pulse = "sine" and cycles = [1], or remove `fits`'
+            )
         if len(set(self.cycles)) < len(self.cycles):
             raise ValueError("cycles holds a number twice")
         if max(1, len(self.variants)) * len(self.cycles) > 24:
-            raise ValueError("the number of variants times cycles exceeds the 24 curves that a figure can show")
+            raise ValueError("variants times cycles give more than 24 curves, the greatest number that a figure can show")
         return self
 
 

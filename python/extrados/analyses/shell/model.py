@@ -179,13 +179,13 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     groups += spring_groups(mesh.springs)
     if options.without_equilibrium not in ("load-unload", "continue") and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
         raise Refused(
-            'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = "no-sliding", or '
-            "remove without_equilibrium",
+            'only "continue" and "load-unload" can follow joints that slide. Give the joints friction = '
+            '"no-sliding", or remove `without_equilibrium`',
             ("analysis", "without_equilibrium"),
         )
     if options.without_equilibrium != "continue" and any(joint.floor for joint in mesh.joints):
         raise Refused(
-            'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove without_equilibrium, or the seats',
+            'only without_equilibrium = "continue" can follow floors that slide on their seats. Remove `without_equilibrium`, or the seats',
             ("analysis", "without_equilibrium"),
         )
     mass = mesh.mass()
@@ -285,7 +285,7 @@ def _place(mesh: ShellMesh, drive: Drive, what: str) -> np.ndarray:
 def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> list[tuple[int, int, float]]:
     """Freedoms that move by given parts of one displacement."""
     if np.abs(along).max() < 1.0:
-        raise BadGeometry("drives: a prescribed displacement goes along x or y: direction is 0, 90, 180 or 270")
+        raise BadGeometry("drives: an imposed displacement acts along x or y: give direction = 0, 90, 180 or 270")
     axis = int(np.abs(along).argmax())
     tie: dict[int, float] = {}
     for k, drive in enumerate(options.drives):

@@ -41,10 +41,12 @@ def _run(context: Context, options: Pushover) -> Result:
     model = build(context.building.shell(options.mesh), options)
     context.warnings += model.warnings
     if not any(g.tension is not None for g in model.groups if isinstance(g, Shells | ShellJoints)):
-        context.warnings.append("nothing in the structure can crack, because [material] has no tensile_strength or no fracture_energy")
+        context.warnings.append(
+            "nothing in the structure can crack, because [material] gives no `tensile_strength` or no `fracture_energy`"
+        )
     elastic = _elastic(model, options)
     if model.mesh.walls and not sliding_limits(model, context.building, options, elastic["under"]):
-        why = "if imposed displacements load the walls, the shear force at these heights is not known"
+        why = "with imposed displacements (`drives`), the shear force at these heights is not known"
         if context.building.joints.coefficient is None:
             why = "[joints] friction excludes it"
         context.warnings.append(f"Sliding of the whole building on a bed joint or on the base of a storey is not checked: {why}.")
@@ -108,7 +110,9 @@ def _stages(
     staged = run_stages(model, options, context.threads, progress_of(context, model, options), chains_of(context, model, options))
     main = min(options.main, len(staged) - 1)
     if main != options.main:
-        result.warnings.append(f"the reported results are those of stage {options.stage_names[main]}, the last stage that began")
+        result.warnings.append(
+            f"the reported results are those of stage {options.stage_names[main]}, because it is the last stage that began"
+        )
     if {stage.sense for stage in options.stages if not stage.settlements} == {"+", "-"} and not options.closes:
         result.warnings.append(
             "cracks stay open when the load is reversed: a crack that opened in one sense carries no compression in the "

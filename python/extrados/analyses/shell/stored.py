@@ -21,7 +21,7 @@ def store_mesh(result: Result, model: ShellModel) -> None:
             part.connect, (f"elements_of_{k}", f"corner_{corner}"), "", f"nodes of {part.name}, from 0", "elements"
         )
         result.arrays[f"wall_of_{k}"] = Array(
-            np.array([part.wall]), ("one",), "", f"number of the wall that {part.name} belongs to, from 0; -1: none", "wall_of"
+            np.array([part.wall]), ("one",), "", f"number of the wall to which {part.name} belongs, counted from 0; -1: none", "wall_of"
         )
         result.arrays[f"bends_{k}"] = Array(
             np.array([int(part.bends)]), ("one",), "", f"whether {part.name} resists bending; a floor does not", "bends"
@@ -45,7 +45,7 @@ def store_seats(result: Result, model: ShellModel, curve: Curve, prefix: str) ->
     if model.seats and len(curve.events):
         slips = np.column_stack([slip[:, 0] for slip in model.slips(curve.events.monitors)])
         result.arrays[f"{prefix}event_seat_slip"] = Array(
-            slips, (f"{prefix}events", "seats"), "m", "greatest displacement of an end of a floor off each of its seats"
+            slips, (f"{prefix}events", "seats"), "m", "greatest displacement of an end of a floor away from each of its seats"
         )
 
 
@@ -65,14 +65,14 @@ def store_states(result: Result, model: ShellModel, curve: Curve, prefix: str) -
             np.stack([curve.sign * facing_of_walls(model) * forces_of_walls(model, sections(model, s.report))[0] for s in states]),
             (*dims, "walls"),
             "N",
-            "in-plane shear of each wall at its foot, along the load",
+            "in-plane shear force of each wall at its foot, along the load",
         )
     seen = [cracks(model, s.report) for s in states]
     for name, unit, about in (
         ("width", "m", "greatest crack width through the thickness"),
         ("angle", "rad", "direction of the crack normal in the wall"),
         ("part", "", "share of the thickness that has cracked"),
-        ("side", "", "position of the greatest crack width through the thickness, from -1 to 1 on the side of the normal"),
+        ("side", "", ("position through the thickness of the greatest crack width: from -1 to 1, positive on the side of the normal")),
     ):
         result.arrays[f"{prefix}state_{name}"] = Array(np.stack([s[name] for s in seen]), (*dims, "places"), unit, about)
     _pier_table(result, model, curve, states, prefix)

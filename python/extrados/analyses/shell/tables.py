@@ -31,8 +31,8 @@ class Settlement(Table):
     wall: str | None = key(None, "name of the wall above the support that moves", min_length=1, max_length=40)
     foot: str | None = key(
         None,
-        "for a vault: the side of the support (left or right, springing of a dome, north-east and so on of a groin "
-        "vault, a support of a mesh file, or all)",
+        "for a vault: name of the support that moves (left or right, springing of a dome, north-east and "
+        "so on of a groin vault, a support of a mesh file, or all)",
         min_length=1,
         max_length=200,
     )
@@ -62,17 +62,17 @@ class PushStage(Table):
 
     name: str | None = key(None, "name of the stage; default: its number", min_length=1, max_length=40)
     settlements: list[Settlement] = key(
-        [], "settlements of the ground in this stage; without them, the stage applies a horizontal load", max_length=100
+        [], "settlements of the ground in this stage; if none are given, the stage applies a horizontal load", max_length=100
     )
     direction: Angle | None = key(None, "direction of the load in plan; default: the direction of the analysis", ge=-360, le=360)
     sense: Literal["+", "-"] = key("+", "of the push")
     base_shear: Force | None = key(
         None,
-        "base shear at which the stage ends, in its direction and sense; the loads that remain from earlier stages are "
-        "included, so 0 removes an earlier load in the other sense",
+        "base shear at which the stage ends, in the direction of its load, including loads that remain "
+        "from earlier stages; 0 removes an earlier load in the opposite direction",
     )
-    target_displacement: Length | None = key(None, "control displacement at which the stage ends, counted from the building without loads")
-    stop_fraction: float = key(0.0, "stop when the load drops below this share of the peak of the stage", ge=0, lt=1)
+    target_displacement: Length | None = key(None, "control displacement at which the stage ends, measured from the building without loads")
+    stop_fraction: float = key(0.0, "the stage ends when the load drops below this share of its peak in the stage", ge=0, lt=1)
     events: int | None = key(None, "greatest number of events of the stage; default: that of the analysis", ge=1, le=100_000_000)
 
     @model_validator(mode="after")
@@ -80,8 +80,8 @@ class PushStage(Table):
         own = {"direction", "sense", "base_shear", "target_displacement", "stop_fraction"} & self.model_fields_set
         if self.settlements and own:
             raise ValueError(
-                f"{', '.join(sorted(own))} are keys of a stage with a horizontal load. A stage of settlements ends at "
-                f"the values of the settlements: give two stages"
+                f"{', '.join(sorted(own))} are keys of a stage with a horizontal load. A stage of settlements "
+                "ends when the settlements reach their values: give two stages"
             )
         return self
 
@@ -94,7 +94,7 @@ class Variant(Table):
     energy: float = key(1.0, "on their fracture energy", gt=0, le=1000)
     young: float = key(1.0, "on their modulus of elasticity", gt=0, le=100)
     density: float = key(1.0, "on their density", gt=0, le=100)
-    thickness: float = key(1.0, "factor on the thickness of all walls and vaults, but not of floors", gt=0, le=10)
+    thickness: float = key(1.0, "factor on the thickness of all walls and vaults (not of floors)", gt=0, le=10)
     floors: float = key(1.0, "factor on the stiffness of flexible floors and joists", gt=0, le=1e6)
     prestress: float = key(1.0, "factor on the forces on top of the walls", ge=0, le=100)
 
@@ -102,9 +102,11 @@ class Variant(Table):
 class FrameRules(Table):
     """Strengths of piers by formulas of codes, beside the push: the equivalent frame's storeys."""
 
-    cohesion: Stress = key(0.0, "shear strength of bed joints without compression", ge=0)
+    cohesion: Stress = key(0.0, "shear strength of bed joints at zero compression", ge=0)
     friction: float = key(0.4, "coefficient of friction of bed joints", ge=0, le=1.5)
-    diagonal_strength: Stress = key(about="tau_0 of diagonal cracking, without compression", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I")
+    diagonal_strength: Stress = key(
+        about="tau_0 of diagonal cracking: shear strength at zero compression", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I"
+    )
     compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
         "double",
@@ -134,28 +136,35 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     starter: ClassVar = {"mesh": '{ size = "0.6 m", layers = 3 }', "ripple": "0.2", "events": "1500"}
 
     direction: Angle = key(0.0, "direction of the load in plan, counter-clockwise from x", ge=-360, le=360)
-    directions: list[Literal["+", "-"]] = key(["+"], "senses of the load; each run begins from the same start", min_length=1, max_length=2)
+    directions: list[Literal["+", "-"]] = key(
+        ["+"],
+        "senses of the load (along and against the direction); each run begins from the same initial state",
+        min_length=1,
+        max_length=2,
+    )
     pattern: Literal["mass", "triangular", "modal"] = key(
         "mass",
-        "distribution of the horizontal forces. mass: in proportion to the masses; triangular: to the masses times "
-        "their height; modal: to the masses times the first mode in this direction",
+        "distribution of the horizontal forces. mass: in proportion to the masses; triangular: in proportion to the masses times their "
+        "height; modal: in proportion to the masses times the first mode in this direction",
     )
     drives: list[Drive] = key(
         [],
-        "imposed displacements in place of the horizontal forces: the top of each storey of a wall moves by a given multiple of the control displacement",
+        "imposed displacements instead of the horizontal forces: the top of each storey of a wall moves "
+        "by a given multiple of the control displacement",
         max_length=100,
     )
     control: Drive | None = key(
         None,
-        "place whose mean displacement in the direction is the control displacement; default: all walls on the highest "
-        "level, or all masses if this level is propped",
+        "place whose mean displacement along the load is the control displacement; default: all walls on "
+        "the highest level, or all masses if this level is propped",
     )
-    settlements: list[Settlement] = key([], "settlements that increase together with the weight, [[analysis.settlements]]", max_length=100)
+    settlements: list[Settlement] = key(
+        [], "settlements that are imposed in proportion to the weight, [[analysis.settlements]]", max_length=100
+    )
     stages: list[PushStage] = key(
         [],
-        "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either sense, or "
-        "settlements. Each stage keeps the damage of the stages before. The weight is applied first, together with "
-        "`settlements`",
+        "sequence of stages, [[analysis.stages]], instead of a single load: horizontal loads in either direction, or settlements. Each "
+        "stage keeps the damage of the stages before. The weight is applied first, together with `settlements`",
         min_length=1,
         max_length=50,
     )
@@ -175,31 +184,35 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
         None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
     )
-    target_displacement: Length | None = key(None, "stop when the control displacement reaches this value", gt=0)
-    stop_fraction: float = key(0.0, "stop when the load drops below this share of its peak", ge=0, lt=1)
-    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "stop when the compliance has increased by this factor")
+    target_displacement: Length | None = key(None, "the run ends when the control displacement reaches this value", gt=0)
+    stop_fraction: float = key(0.0, "the run ends when the load drops below this share of its peak", ge=0, lt=1)
+    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(1e4, "the run ends when the compliance has increased by this factor")
     crack_closure: bool | None = key(
         None,
-        "cracks that close regain their stiffness; default: true for rotating cracks followed by equilibrium iterations, otherwise false",
+        "whether cracks that close regain their stiffness; default: true for rotating cracks followed by "
+        "equilibrium iterations, otherwise false",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        'method if no load is admissible at all points (see sla). "continue": equilibrium iterations in displacement '
-        'control (for rotating cracks, and for joints that slide from the first load on). "load-unload": loads A remain, '
-        "and the greatest lower limit decides; this is the default with stages",
+        'method after an event for which no load is admissible at all points (see sla). "continue": '
+        "equilibrium iterations in displacement control (for rotating cracks, and for joints that slide "
+        'from the first load on). "load-unload": loads A remain, and the greatest lower limit decides; '
+        "this is the default with stages",
         source="thesis 4.3.1",
     )
     continuation: Literal["newton", "implicit-explicit", "dissipation"] = key("newton", "equilibrium iterations, see sla")
     states: list[Annotated[int, Field(ge=1)]] = key(
-        [], "numbers of events whose state is saved, in addition to the peak and the last event", max_length=200
+        [], "numbers of the events whose state is saved, besides the peak and the last event", max_length=200
     )
-    probes: list[Length] = key([], "report the load of the envelope at these displacements", max_length=100)
+    probes: list[Length] = key([], "control displacements at which the load of the envelope is reported", max_length=100)
     frame: FrameRules | None = key(None, "strengths of the piers by code formulas, [analysis.frame]")
     verification: Verification = key(
-        Verification(), "displacement-based verification of a building that is given by its plan, [analysis.verification]"
+        Verification(), "displacement-based verification of a building given by its plan, [analysis.verification]"
     )
     variants: list[Variant] = key(
-        [], "repeat the first sense with other assumptions, for a band of capacity curves, [[analysis.variants]]", max_length=50
+        [],
+        "other assumptions with which the run in the first sense is repeated, for a band of capacity curves, [[analysis.variants]]",
+        max_length=50,
     )
     #: What the events of sla ask for and a push does not offer
     solution: ClassVar = "events"
@@ -245,15 +258,15 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
             }
         )
         if self.settlements and not self.constant_damage:
-            raise ValueError("settlements are applied together with the weight: they require constant_damage = true")
+            raise ValueError("settlements are applied together with the weight: give constant_damage = true")
         if self.drives and self.pattern != "mass":
-            raise ValueError("the key `drives` replaces the key `pattern`: remove pattern")
+            raise ValueError("the key `drives` replaces the key `pattern`: remove `pattern`")
         if len({variant.name for variant in self.variants}) < len(self.variants):
             raise ValueError("variants: a name occurs twice")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         if self.verification.model_fields_set and (self.stages or self.drives):
-            raise ValueError("the key `verification` requires a single load by inertia forces: remove stages and drives")
+            raise ValueError("the key `verification` requires a single load by inertia forces: remove `stages` and `drives`")
         return self
 
     @property

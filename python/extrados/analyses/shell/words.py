@@ -22,13 +22,13 @@ def answer_of_push(building: Building, options: Pushover, numbers: dict[str, Any
     parts = []
     if "stages" in numbers:
         ends = [_stage_told(stage) for stage in numbers["stages"]]
-        parts.append(f"Stages, each with the damage of the stages before: {'; '.join(ends)}.")
+        parts.append(f"Stages, each starting with the damage of the stages before: {'; '.join(ends)}.")
     for curve in [numbers, *([numbers["minus"]] if "minus" in numbers else [])]:
         parts.append(_curve_told(options, numbers, curve, word, grouped))
     if numbers.get("band_N"):
         low, high = numbers["band_N"]
         parts.append(
-            f"Under the other assumptions of {len(numbers['variants'])} variants, the base shear is {low / 1e3:.4g} to {high / 1e3:.4g} kN."
+            f"The base shear of {len(numbers['variants'])} variants with other assumptions is {low / 1000.0:.4g} to {high / 1000.0:.4g} kN."
         )
     if "frame" in numbers:
         words = [f"{row['base_shear_N'] / 1e3:.4g} kN by {row['code']} (storey {row['storey']})" for row in numbers["frame"]]
@@ -70,9 +70,7 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
     )
     if load is None:
         if curve["stop"] == "no point limits the load":
-            return (
-                f"{sense} there is no limit of the load, because the deck gives no strength by which the masonry cracks, crushes or slides."
-            )
+            return f"{sense} the load has no limit, because the deck gives no strength at which the masonry cracks, crushes or slides."
         return f"{sense}: no equilibrium state was found."
     carries = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
     part = f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
@@ -135,8 +133,8 @@ def remarks_of_curve(model: ShellModel, curve: Curve) -> list[str]:
         return said  # a stage that ends at its target
     if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
         said.append(
-            f"the base shear{sense} had not passed a peak when the run ended ({events.reason or 'number of events'}). Its "
-            f"greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
+            f"the run{sense} ended before the base shear decreased ({events.reason or 'number of events'}). The greatest value, "
+            f"{engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
         )
     return said
 
@@ -148,9 +146,8 @@ def warn_unequal_drives(options: Pushover, numbers: dict[str, Any]) -> list[str]
     carried, load = sum(row["shear_N"] for row in numbers["walls"]), numbers["greatest_load_N"]
     return [
         (
-            "The drives move their storeys by different ratios. The load of the curve is therefore the work of all drives "
-            f"divided by the control displacement, not the base shear. At the greatest load of {engineering(load, 'N')}, the "
-            f"walls carry {engineering(carried, 'N')} along the load at their feet. Compare this shear of the walls with "
-            "measured base shears."
+            "The `drives` move their storeys by different ratios. The load of the curve is therefore the work of all drives divided by "
+            f"the control displacement, not the base shear. At the greatest load of {engineering(load, 'N')}, the walls carry "
+            f"{engineering(carried, 'N')} along the load at their feet. Compare measured base shears with this value."
         )
     ]

@@ -63,8 +63,8 @@ def _run(context: Context, options: Sla) -> Result:
     context.warnings += mesh.warnings
     if any(len({part.ratio for part in load.parts}) > 1 for load in options.reference or []):
         context.warnings.append(
-            "The parts of the displacement move by different ratios. The load is therefore the work of all parts divided by "
-            "the displacement, not the sum of their forces."
+            "The parts of the imposed displacement move by different ratios. The load is therefore the work "
+            "of all parts divided by the displacement, not the sum of their forces."
         )
     damage, earlier = start_of(context, options, model)
 
@@ -161,7 +161,7 @@ def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], 
             }
         )
     if options.stages[options.main :] and main.name != options.stage_names[options.main]:
-        result.warnings.append(f"the reported results are those of stage {main.name}, the last stage that began")
+        result.warnings.append(f"the reported results are those of stage {main.name}, because it is the last stage that began")
     ends = "; ".join(
         f"{stage['name']} at {stage['end_load_N'] / 1e3:.4g} kN ({stage['stop']})" for stage in found if stage["end_load_N"] is not None
     )
@@ -192,8 +192,8 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         events, sense = curve.events, f" (load to {curve.sense})"
         if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
             result.warnings.append(
-                f"the load{sense} had not passed a peak when the run ended ({events.reason or 'number of events'}). Its greatest "
-                f"value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
+                f"the run{sense} ended before the load decreased ({events.reason or 'number of events'}). The greatest value, "
+                f"{engineering(curve.force(model.unit)[curve.peak], 'N')}, is therefore not a capacity"
             )
         if far := out_of_reach(curve):
             result.warnings.append(far)

@@ -220,8 +220,8 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    f"resume_from: the earlier wall has {damage.shape[1]} integration points with its bars, and this wall has "
-                    f"{core_model.points}",
+                    f"resume_from: the earlier wall has {damage.shape[1]} integration points (with those of bars), "
+                    f"but this wall has {core_model.points}",
                     ("analysis", "resume_from"),
                 )
             core_model.set_damage(damage)
@@ -296,8 +296,7 @@ def bring_on_constant_loads(
         if not far <= FAR * model.extent:
             raise NotCarried(
                 f"the structure cannot carry the constant loads. They would move it by {far:.3g} m, more than 1/10 of its size of "
-                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and "
-                "cracks",
+                f"{model.extent:.3g} m: the structure is a mechanism, held only by the residual stiffness of open joints and cracks",
                 WHOLE,
             )
     return found, rubs
@@ -372,12 +371,14 @@ def _constant_stage(
         most = float(events.load.max()) if len(events) else 0.0
         if events.reason == SPENT:
             raise NotCarried(
-                f"the budget of {options.budget:.4g} s of processor time ended while the constant loads were applied, at "
-                f"{100 * most:.3g} % of them. Increase budget, or use larger elements",
+                f"the `budget` of {options.budget:.4g} s of processor time ended while the constant loads were "
+                f"applied, at {100 * most:.3g} % of them. Increase `budget`, or use larger elements",
                 WHOLE,
             )
         why = events.reason or f"{way.done} events were not enough"
-        raise NotCarried(f"the structure cannot carry the constant loads: with damage it reaches {100 * most:.3g} % of them ({why})", WHOLE)
+        raise NotCarried(
+            f"the structure cannot carry the constant loads: with damage, it carries at most {100 * most:.3g} % of them ({why})", WHOLE
+        )
     return events
 
 
@@ -498,8 +499,8 @@ class _Run:
             if error.status != status_code("beyond_strength"):
                 raise
             raise Refused(
-                "the constant loads alone exceed the strength, and no multiplier of the reference load relieves them. Reduce "
-                "them, or apply them with damage: constant_damage = true",
+                "the constant loads alone exceed the strength, and no multiplier of the reference load relieves "
+                "them. Reduce the constant loads, or apply them with damage: constant_damage = true",
                 WHOLE,
             ) from None
         if self.model.driven and not part.steps.any():  # as of a force that moves them
@@ -568,9 +569,9 @@ class _Run:
         k = int(drop.argmax())
         if drop[k] > LARGE_DROP * float(np.abs(load).max()):
             curve.warnings.append(
-                f"Between {1e3 * moved[k]:.3g} and {1e3 * moved[k + 1]:.3g} mm one step in displacement control passes over a snap-back: "
-                f"the load drops from {engineering(float(load[k]), 'N')} to {engineering(float(load[k + 1]), 'N')}. The peak may be "
-                "missed, and the energy of the drop counts as dissipated."
+                f"Between {1000.0 * moved[k]:.3g} and {1000.0 * moved[k + 1]:.3g} mm, one step in displacement control "
+                f"passes over a snap-back, in which the load drops from {engineering(float(load[k]), 'N')} to {engineering(float(load[k + 1]), 'N')}. "
+                "The peak may be missed, and the energy of the drop counts as dissipated."
             )
 
     def _warn(self, curve: Curve) -> None:
@@ -578,15 +579,17 @@ class _Run:
         events = curve.events
         if events.reason == SPENT and len(events):
             curve.warnings.append(
-                f"The budget of {self.options.budget:.4g} s of processor time ended the run at a displacement of "
-                f"{1e3 * events.monitors[-1, 0]:.3g} mm: peak and drifts are those up to there. Increase budget, or use larger elements."
+                f"The `budget` of {self.options.budget:.4g} s of processor time ended the run at a displacement of {1000.0 * events.monitors[-1, 0]:.3g} "
+                "mm; peak and drifts are those up to this displacement. Increase `budget`, or use larger "
+                "elements."
             )
         lost = np.flatnonzero(~events.equilibrium)
         if self.options.without_equilibrium == "continue" and not (self.goes_on or self.model.mesh.has_joints) and len(lost):
             curve.warnings.append(
-                f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations can follow only "
-                "rotating cracks of isotropic masonry (no bed joints, lateral reduction, confinement, shear retention or bars). "
-                "The events after that are therefore those of load-unload."
+                f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations can "
+                "follow only rotating cracks of isotropic masonry (no bed joints, lateral reduction, "
+                "confinement, shear retention or bars). The later events are therefore calculated with "
+                '"load-unload".'
             )
         if self.options.continuation == "dissipation":
             self._warn_of_drops(curve)
@@ -597,9 +600,8 @@ class _Run:
             gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
             if gap > UNBALANCED:
                 curve.warnings.append(
-                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the "
-                    f"loads by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not "
-                    "reliable."
+                    "In the steps with displacement control, the sum of stored and dissipated energy differs from the work of the loads "
+                    f"by {100 * gap:.0f} %. Loads and displacements are in equilibrium, but the dissipated energy is not reliable."
                 )
 
     def _end_on_a_line(self, curve: Curve) -> None:
@@ -633,7 +635,7 @@ class _Run:
                 events.interrupted = True
             else:
                 if state is None:
-                    curve.warnings.append("the state at the peak could not be calculated again from the batch before it")
+                    curve.warnings.append("the state at the peak could not be recalculated from the batch of events before it")
                 else:
                     kept.append(state)
         for step in (self.drop_step, self.last_step):

@@ -126,9 +126,9 @@ def out_of_reach(curve: Curve) -> str | None:
     if not count or (count == 1 and out[-1] and curve.events.reason == MECHANISM_REACHED):
         return None  # the way of a mechanism, which the run ends with
     return (
-        f"{count} of {len(curve.events)} events have a displacement above {FAR * curve.extent:.3g} m (1/10 of the size of "
-        f"the structure), or a load above {FAR_ABOVE:g} times the greatest load. These events are not valid states, and "
-        "no result uses them"
+        f"{count} of {len(curve.events)} events have a displacement above {FAR * curve.extent:.3g} m (1/10 of "
+        f"the size of the structure), or a load above {FAR_ABOVE:g} times the greatest load. These events "
+        "are not valid states and are used for no result"
     )
 
 

@@ -241,7 +241,7 @@ def _freedoms(mesh: Mesh, held: set[tuple[int, int]], moved: Load | None) -> tup
         for part in moved.parts:
             common += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
         if all(share == 0.0 for _, _, share in common):
-            raise BadGeometry("displacement: every ratio is 0, so nothing moves")
+            raise BadGeometry("displacement: every `ratio` is 0, so nothing moves")
         if len({n for n, _, _ in common}) < len(common):
             raise BadGeometry("two parts of the displacement have a node in common")
         ties.append(common)
@@ -273,8 +273,8 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
     if ratio > MOST_OF_FLOOR / floor:
         raise BadGeometry(
-            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would carry the load. "
-            f"Give at most {MOST_OF_FLOOR / floor:g}"
+            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, which would "
+            f"carry the load. Give at most {MOST_OF_FLOOR / floor:g}"
         )
     most = MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes
     return core.Behaviour(options.cracking, options.shear_retention, closure, most, floor), ratio
@@ -283,7 +283,7 @@ def _behaviour(mesh: Mesh, options: Sla, several: bool) -> tuple[core.Behaviour,
 def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     held, springs = _held(mesh)
     if mesh.has_joints and options.cracking == "isotropic":
-        raise BadGeometry("joints open along their own direction, so isotropic cracking is only for walls without blocks")
+        raise BadGeometry("joints open perpendicular to their own direction, so isotropic cracking is only for walls without blocks")
     constant_loads, reference_loads = loads_of(mesh, options)
     moved = next((load for load in reference_loads if load.kind == "displacement"), None)
     freedoms, common = _freedoms(mesh, held, moved)
@@ -425,7 +425,7 @@ def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOp
     if not any(criterion is not None for criterion in found):
         return None
     if options.cracking == "isotropic":
-        raise BadGeometry("compressive_strength_parallel requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`compressive_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
     return found
 
 
@@ -466,7 +466,7 @@ def values_of(
     tension = [None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)]
     beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
-        raise BadGeometry("tensile_strength_parallel requires cracks with a direction, and isotropic cracking has none")
+        raise BadGeometry("`tensile_strength_parallel` requires cracks with a direction, and isotropic cracking has none")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
     widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):

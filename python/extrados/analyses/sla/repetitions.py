@@ -49,7 +49,7 @@ def refuse_alike(building: Building, options: Sla) -> bool:
     """Whether seeds change the mesh; Refused where they change neither mesh nor strength."""
     random_mesh = options.mesh.pattern == "random" or bool(getattr(building.structure, "outline", None))
     if not random_mesh and options.strength_variation == 0.0:
-        raise Refused('seeds require a random mesh (mesh.pattern = "random") or a strength_variation above 0', ("analysis", "seeds"))
+        raise Refused('`seeds` require a random mesh (mesh.pattern = "random"), or a `strength_variation` above 0', ("analysis", "seeds"))
     return random_mesh
 
 
@@ -79,7 +79,7 @@ def repeat(context: Context, options: Sla, result: Result) -> dict[str, out.Scat
     done = [options.seeds[k] for k in swept.members[passed]]
     if len(passed) < len(swept.members):
         left = ", ".join(str(options.seeds[k]) for k in np.delete(swept.members, passed))
-        result.warnings.append(f"the scatter of the peaks does not include the repetitions that did not pass a peak: seeds {left}")
+        result.warnings.append(f"the scatter of the peaks does not include the repetitions that did not pass a peak, with the seeds {left}")
     if not done:
         return {}
     loads = swept["peak_load"][passed]

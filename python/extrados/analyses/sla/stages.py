@@ -92,7 +92,7 @@ class Supports:
                 raise BadGeometry(f"{what}: two parts of the displacement have a node in common, or nodes that are tied")
             rate[at] = by
         if not np.nan_to_num(rate).any():
-            raise BadGeometry(f"{what}: every ratio is 0, so nothing moves")
+            raise BadGeometry(f"{what}: every `ratio` is 0, so nothing moves")
         return rate
 
 
@@ -143,7 +143,7 @@ def run_stages(
                 curve.warnings += warnings
             if away > SAME * most and most > 0.0:
                 curve.warnings.append(
-                    f"stage {name} does not start exactly where the stage before ended: nodes are up to {away:.2g} m away"
+                    f"stage {name} does not start exactly at the end of the stage before: nodes are up to {away:.2g} m away"
                 )
             curves.append(curve)
             events = curve.events
@@ -207,7 +207,7 @@ def _prepare(
     if stage.free:
         freed = supports.at(stage.free, f"{what}.free")
         if not wall.fixed[freed].all():
-            raise BadGeometry(f"{what}.free: a place is not restrained when this stage begins")
+            raise BadGeometry(f"{what}.free: one of these places is not restrained when this stage begins: remove it")
         force = supports.forces(freed, _reactions(supports, wall, options, freed, threads))
         wall.fixed[freed] = False
         wall.loads.append((force, 1.0))

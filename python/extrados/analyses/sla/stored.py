@@ -40,7 +40,7 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
             for g, h in zip(model.mesh.groups, model.bands, strict=True)
         ]
         each = np.concatenate([np.repeat(h, n) for h, n in zip(reach, per, strict=True)])
-        arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that belongs to an integration point")
+        arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that an integration point represents")
     return arrays
 
 
@@ -53,18 +53,21 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     columns = {
         "load": (curve.force(unit), "N", "load in the chosen sense"),
         "displacement": (e.monitors[:, 0], "m", "control displacement"),
-        "limit_t": (limits[0], "N", "least of the upper limits of the load"),
-        "limit_c": (limits[1], "N", "greatest of the lower limits of the load"),
+        "limit_t": (limits[0], "N", "least of the upper limits of the load multiplier"),
+        "limit_c": (limits[1], "N", "greatest of the lower limits of the load multiplier"),
         "stored": (e.stored, "J", "elastic energy"),
-        "external": (e.external, "J", "work of all loads along straight lines between events"),
+        "external": (e.external, "J", "work of all loads, if displacements change linearly between events"),
         "lost": (
             e.lost,
             "J",
-            ("part of this work that is not stored as energy; it may decrease, because events without equilibrium are not states"),
+            (
+                "part of the work of all loads that is not stored as energy; it may decrease, because events "
+                "without equilibrium are not states"
+            ),
         ),
-        "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; it never decreases"),
+        "dissipated": (curve.dissipated, "J", "energy dissipated from one equilibrium state to the next; it never decreases"),
         "crack": (e.crack, "J", "area of the teeth passed"),
-        "scale": (e.scale, "", "applied share of all loads; below 1 if all loads were reduced together"),
+        "scale": (e.scale, "", "applied share of all loads; below 1 after all loads were reduced together"),
     }
     for name, (data, u, about) in columns.items():
         result.arrays[f"{prefix}event_{name}"] = Array(data, dim, u, about)

@@ -36,13 +36,15 @@ class Load(Table):
     y: Range | None = key(None, "y of the place, or its range [from, to]")
     ax: Acceleration = key(0.0, "of gravity: acceleration to +x")
     ay: Acceleration = key(-GRAVITY, "of gravity: acceleration to +y")
-    value: Stress = key(0.0, 'for kind = "pressure": pressure; a positive value acts onto the wall')
+    value: Stress = key(0.0, 'for kind = "pressure": value of the pressure; positive if it acts onto the wall')
     px: LineForce = key(0.0, 'for kind = "line": force per length towards +x')
     py: LineForce = key(0.0, 'for kind = "line": force per length towards +y')
     fx: Force = key(0.0, 'for kind = "point" or "spread": force towards +x')
     fy: Force = key(0.0, 'for kind = "point" or "spread": force towards +y')
     direction: Literal["x", "y"] = key("x", "of displacement")
-    parts: list[Part] = key([], 'for kind = "displacement": places with their ratios, which move together', max_length=50)
+    parts: list[Part] = key(
+        [], 'for kind = "displacement": places that move together, with the ratios of their displacements', max_length=50
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> "Load":
@@ -61,7 +63,7 @@ class Load(Table):
             if not self.parts:
                 raise ValueError("a load of kind displacement requires parts = [{edge = ..., ratio = ...}, ...]")
         elif self.kind != "gravity" and self.edge is None and self.x is None and self.y is None:
-            raise ValueError(f"the place of the {self.kind} load is missing: give edge, x or y")
+            raise ValueError(f"the place of the {self.kind} load is missing: give `edge`, `x` or `y`")
         return self
 
 
@@ -69,7 +71,7 @@ class Watch(Placed):
     """A displacement that is followed: the mean of the place's nodes times `weight`."""
 
     direction: Literal["x", "y"] = key("x", "direction of the displacement")
-    weight: float = key(1.0, "weight of this term in the sum; not 0")
+    weight: float = key(1.0, "weight of this term in the sum; a value other than 0")
 
     @field_validator("weight")
     @classmethod
@@ -90,36 +92,37 @@ class Stage(Table):
     before it ended: its displacements, its loads and its damage."""
 
     name: str | None = key(None, "name of the stage, in figures and results; default: its number", min_length=1, max_length=40)
-    hold: list[Hold] = key([], "places that are held from the start of this stage on, at the positions that they have then", max_length=100)
+    hold: list[Hold] = key([], "places that are held from the start of this stage, at the positions that they have then", max_length=100)
     free: list[Hold] = key(
         [],
-        "supports that are removed in this stage, either supports of the building or of an earlier stage. Their "
+        "supports (of the building, or of an earlier stage) that are removed in this stage. Their "
         "reactions are reduced to zero in proportion",
         max_length=100,
     )
     reference: list[Load] = key(
         [],
-        "loads B of this stage, multiplied by lambda. Or one imposed displacement: places (also supports) move from "
-        "their present positions, and remain held at the end",
+        "loads B of this stage, multiplied by lambda. Alternatively one imposed displacement: places "
+        "(also supports) move from their present positions, and are held at the end",
         max_length=100,
     )
     control: list[Watch] = key(
         [],
-        "control displacement of the curve: a sum of terms; default: that of the analysis, or the mean displacement under loads B",
+        "control displacement of the curve, as a sum of terms; default: that of the analysis, or the mean displacement under loads B",
         max_length=50,
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
-        None, "value of lambda at which the stage ends; its loads then remain. With `free` supports, 1 is their full removal"
+        None, "value of lambda at which the stage ends; its loads then remain. With `free` supports, lambda = 1 removes them fully"
     )
-    target_displacement: Length | None = key(None, "control displacement at which the stage ends exactly, counted from the unloaded wall")
-    stop_fraction: float = key(0.0, "stop when the load drops below this share of the peak of the stage", ge=0, lt=1)
+    target_displacement: Length | None = key(None, "control displacement at which the stage ends exactly, measured from the unloaded wall")
+    stop_fraction: float = key(0.0, "the stage ends when the load drops below this share of its peak in the stage", ge=0, lt=1)
     events: int | None = key(None, "greatest number of events of the stage; default: that of the analysis", ge=1, le=10_000_000)
 
     @model_validator(mode="after")
     def _one_cause(self) -> "Stage":
         if self.free and self.reference:
             raise ValueError(
-                "the keys `free` and `reference` exclude each other, because removed supports are the load of their stage: give two stages"
+                "the keys `free` and `reference` exclude each other, because the removed supports are the load "
+                "of their stage: give two stages"
             )
         if not (self.free or self.reference):
             raise ValueError("a stage requires a load that increases: give the key `reference`, or the key `free`")
@@ -172,18 +175,18 @@ class CrackOptions(Table):
 
     teeth: Literal["exact", "ripple"] = key(
         "exact",
-        "rule for the teeth of the saw-tooth law: teeth that give the exact energy, or the ripple rule of the thesis",
+        "rule for the teeth of the saw-tooth law: teeth with the exact fracture energy, or the ripple rule of the thesis",
         source="thesis 4.2",
     )
     ripple: float = key(
         0.05,
-        "ratio p of the half-width of the teeth to the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
+        "half-width of the teeth as a ratio p of the strength; the load is overestimated by up to about p/2. The thesis uses 0.1 and 0.2",
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
     )
     overshoot: bool = key(True, "true: the first tooth rises above the strength; false: the first tooth ends at the strength")
-    crack_band: Length | None = key(None, "width h of the crack band; default: by crack_band_rule", gt=0)
+    crack_band: Length | None = key(None, "width h of the crack band; default: by `crack_band_rule`", gt=0)
     crack_band_rule: Literal["projected", "area"] = key(
         "projected",
         "rule for the width of the crack band. projected: the width of the element across its crack; area: the "
@@ -191,13 +194,14 @@ class CrackOptions(Table):
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
-        "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed "
-        "direction from their first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); "
-        "isotropic: isotropic damage",
+        "kind of cracking. rotating: cracks rotate with the principal strain; orthotropic: cracks have a fixed direction from their "
+        "first tooth, as in the thesis (overestimates the capacity, see docs/sla.md); isotropic: isotropic damage",
         source="Eq. 4.10",
     )
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
-        None, "constant shear retention factor of cracked points; default: from the smaller modulus", source="Eq. 4.11"
+        None,
+        "shear retention factor of cracked points, as a constant; default: from the smaller modulus of both directions",
+        source="Eq. 4.11",
     )
 
 
@@ -234,7 +238,7 @@ class Staged:
         names = self.stage_names
         if not self.stages:
             if self.main_stage is not None:
-                raise ValueError("main_stage is given without stages: give `stages`, or remove main_stage")
+                raise ValueError("`main_stage` is given without stages: give `stages`, or remove `main_stage`")
             return
         if len(set(names)) < len(names):
             raise ValueError(f"stages: a name occurs twice among {', '.join(names)}")
@@ -298,11 +302,13 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "true: loads A increase from 0 to 1 and cause damage before loads B act; false: loads B act on the undamaged wall",
         source="thesis 4.3.1",
     )
-    directions: list[Literal["+", "-"]] = key(["+"], "senses of loads B; each run begins from the same start", min_length=1, max_length=2)
+    directions: list[Literal["+", "-"]] = key(
+        ["+"], "senses of loads B (as given, or opposite); each run begins from the same initial state", min_length=1, max_length=2
+    )
     stages: list[Stage] = key(
         [],
-        "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own supports, loads and "
-        "end, and keeps the damage of the stages before; `constant` is applied first",
+        "sequence of stages, [[analysis.stages]], instead of `reference`. Each stage has its own supports, loads and end, and keeps the "
+        "damage of the stages before. `constant` is applied before the first stage",
         min_length=1,
         max_length=50,
     )
@@ -310,71 +316,70 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         None, "name of the stage whose results and figures are reported as those of the analysis; default: the last stage"
     )
     control: list[Watch] = key(
-        [], "control displacement of the curve: a sum of terms; default: the mean displacement under loads B", max_length=50
+        [], "control displacement of the curve, as a sum of terms; default: the mean displacement under loads B", max_length=50
     )
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
     budget: Annotated[float, Field(ge=0.01, le=1e7)] | None = key(
         None, "processor time in s after which each curve or stage ends with the results so far; default: no limit"
     )
-    target_displacement: Length | None = key(None, "stop when the control displacement reaches this value", gt=0)
-    stop_fraction: float = key(0.0, "stop when the load drops below this share of its peak", ge=0, lt=1)
+    target_displacement: Length | None = key(None, "the run ends when the control displacement reaches this value", gt=0)
+    stop_fraction: float = key(0.0, "the run ends when the load drops below this share of its peak", ge=0, lt=1)
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] | None = key(
-        None, "stop when the compliance has increased by this factor; default 1e4, for blocks 1e5"
+        None, "the run ends when the compliance has increased by this factor; default 1e4, for blocks 1e5"
     )
     friction_ripple: float = key(
-        0.02,
-        "ripple p of friction: a joint that slides sticks again after a reverse slip of 4 p times the elastic slip of its friction",
-        ge=0.001,
-        le=0.1,
+        0.02, "ripple p of friction: a joint that slides sticks again after a reverse slip of 4 p times its elastic slip", ge=0.001, le=0.1
     )
     crack_closure: bool | None = key(
         None,
-        "cracks that close regain their stiffness; default true, except for walls with fixed or isotropic cracks, and "
-        "for walls under a single increasing load without constant loads or stages",
+        "whether cracks that close regain their stiffness. Default true, with two exceptions: walls with fixed or isotropic cracks, and "
+        "walls under a single increasing load without constant loads or stages",
     )
     solution: Literal["events", "incremental"] = key(
         "events",
-        "solution method. events: one integration point after the other; incremental, for comparison: steps of arc "
-        "length with a secant iteration, in which all overloaded points lose teeth together (the key `events` then "
-        "limits the number of these steps)",
+        "solution method. events: one integration point after the other; incremental, for comparison: steps of arc length with a secant "
+        "iteration, in which all overloaded points lose teeth together (the key `events` then limits the number of these steps)",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        'method if no multiplier of loads B is admissible at all points. "continue": equilibrium iterations in displacement '
-        'control (for rotating cracks without bed joints, bars and joints; otherwise load-unload). "load-unload": '
-        'loads A remain, and the greatest lower limit decides. "proportional": all loads of the last equilibrium '
-        "state are "
-        'reduced together (intermittent proportional loading). "force-release": the force that a tooth releases acts on '
-        "the other points before the load increases again",
+        "method after an event for which no multiplier of loads B is admissible at all points. "
+        '"continue": equilibrium iterations in displacement control (for rotating cracks without bed '
+        'joints, bars and joints; otherwise load-unload). "load-unload": loads A remain, and the '
+        'greatest lower limit decides. "proportional": all loads of the last equilibrium state are '
+        'reduced together (intermittent proportional loading). "force-release": the force that a tooth '
+        "releases acts on the other points before the load increases again",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
     continuation: Literal["newton", "implicit-explicit", "dissipation"] = key(
         "newton",
-        "equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
-        "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster "
-        "and less accurate); dissipation: as newton, from the first load on, with an arc length on dissipated energy where the "
-        "displacement snaps back",
+        "method of the equilibrium iterations. newton: Newton's method, with staggered steps if it does not converge; "
+        "implicit-explicit: damage is extrapolated from the last step (one convex problem for each step: faster and less accurate); "
+        "dissipation: as newton, from the first load on, with an arc length on dissipated energy where the displacement snaps back",
         source="Oliver, Huespe and Cante 2008; Gutierrez 2004",
     )
     algorithm: Literal["update", "refactor"] = key(
         "update", "matrix factor at each event. update: the factor is updated; refactor: the matrix is factorised again"
     )
     states: list[Annotated[int, Field(ge=1)]] = key(
-        [], "numbers of events whose state is saved, in addition to the peak and the last event", max_length=200
+        [], "numbers of the events whose state is saved, besides the peak and the last event", max_length=200
     )
-    probes: list[Length] = key([], "report the load of the envelope at these displacements", max_length=100)
+    probes: list[Length] = key([], "control displacements at which the load of the envelope is reported", max_length=100)
     measured: str | None = key(
         None,
-        "CSV file of a test, drawn with the curve and compared with it. Columns: 'displacement (mm)' and 'load (N)', or "
-        "'least (N)' and 'greatest (N)' of several tests; lines that begin with # give the source",
+        "CSV file of a test, with which the calculated curve is compared. Columns: 'displacement (mm)' and 'load (N)', or 'least (N)' "
+        "and 'greatest (N)' of several tests; lines that begin with # give the source",
     )
     section_x: list[Length] = key(
-        [], "draw the admissible ranges of lambda, the multiplier of loads B, along these vertical sections of the wall", max_length=10
+        [],
+        "x of vertical sections of the wall along which the admissible ranges of lambda (multiplier of loads B) are drawn",
+        max_length=10,
     )
-    seeds: list[int] = key([], "repeat the analysis with these seeds of the random mesh and strength, for a scatter band", max_length=200)
+    seeds: list[int] = key(
+        [], "seeds of the random mesh and strength with which the analysis is repeated, for a scatter band", max_length=200
+    )
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
-    strength_length: Length | None = key(None, "correlation length of the strength; default: one element", gt=0)
+    strength_length: Length | None = key(None, "correlation length of the random strength; default: one element", gt=0)
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
     verification: Verification = key(
         Verification(),
@@ -384,7 +389,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     resume_from: str | None = key(
         None, "results folder of an earlier run of the same wall, from which this run continues; inside the folder of the deck, or absolute"
     )
-    resume_event: int | None = key(None, "number of the event of that run before which this run continues; default: the last event", ge=1)
+    resume_event: int | None = key(
+        None, "number of the event of the earlier run before which this run continues; default: the last event", ge=1
+    )
 
     @field_validator("directions")
     @classmethod
@@ -396,7 +403,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":
         if any(load.kind == "displacement" for load in self.constant or []):
-            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could not move under loads B")
+            raise ValueError("an imposed displacement cannot be a constant load, because its nodes could then not move under loads B")
         reference = self.reference or []
         self.check_stages(
             {
@@ -421,11 +428,11 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         if self.solution == "incremental" and (self.without_equilibrium not in ("continue", "load-unload") or self.states or self.budget):
-            raise ValueError("an incremental solution has no events: remove without_equilibrium, states and budget")
+            raise ValueError("an incremental solution has no events: remove `without_equilibrium`, `states` and `budget`")
         if self.verification.model_fields_set and not self.by_inertia:
             raise ValueError("the key `verification` requires one horizontal load by the masses only, without stages")
         if self.verification.shape == "mode":
-            raise ValueError('verification: shape = "mode" is only for buildings: remove shape')
+            raise ValueError('verification: shape = "mode" is only for buildings: remove `shape`')
         return self
 
     @property

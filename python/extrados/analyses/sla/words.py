@@ -32,10 +32,9 @@ def answer_of_wall(r: dict[str, Any], both: bool, row: str = "event") -> str:
         return f"No equilibrium state was found in {r['events']} events. The run ended for this reason: {r['stop']}."
     peaks = r["peak_load_N"] is not None
     text = (
-        f"The load {'has its peak at' if peaks else 'has reached'} {r['greatest_load_N'] / 1e3:.4g} kN with a "
-        f"displacement of {r['greatest_load_displacement_m'] * 1e3:.4g} "
-        f"mm{'' if peaks else ', without having passed a peak'} ({row} {r['greatest_load_event']} of the {r['events']} calculated). The "
-        f"run ended for this reason: {r['stop']}."
+        f"The load {'has its peak at' if peaks else 'has reached'} {r['greatest_load_N'] / 1e3:.4g} kN with a displacement of "
+        f"{r['greatest_load_displacement_m'] * 1e3:.4g} mm{'' if peaks else ', without having passed a peak'} ({row} "
+        f"{r['greatest_load_event']} of the {r['events']} calculated). The run ended for this reason: {r['stop']}."
     )
     text += steps_in_words(r)
     if both and (minus := r.get("minus", {})).get("greatest_load_N") is not None:
@@ -53,14 +52,20 @@ def steps_in_words(r: dict[str, Any]) -> str:
         return ""
     steps, begin = r["equilibrium_steps"], r["equilibrium_from_m"] * 1e3
     if steps == r["events"]:  # a stage that continues another one
-        text = f" All {steps} steps use displacement control, from {begin:.3g} mm."
+        text = f" All {steps} steps use displacement control, from a displacement of {begin:.3g} mm."
     else:
-        text = f" Beyond {begin:.3g} mm single events find no equilibrium, so the run continues with {steps} steps in displacement control."
+        text = (
+            f" Beyond a displacement of {begin:.3g} mm, single events find no equilibrium, so the run continues "
+            f"with {steps} steps in displacement control."
+        )
     if r["drop_displacement_m"] is not None:
-        text += f" The load decreases to 80 % of the peak at {r['drop_displacement_m'] * 1e3:.3g} mm (drift {r['drop_drift']:.2%})."
+        text += (
+            f" The load drops to 80 % of the peak at a displacement of {r['drop_displacement_m'] * 1000.0:.3g} mm "
+            f"(drift {r['drop_drift']:.2%})."
+        )
     if r["axial_loss_displacement_m"] is not None:
         text += (
-            f" The axial capacity is lost at {r['axial_loss_displacement_m'] * 1e3:.3g} mm (drift "
-            f"{r['axial_loss_drift']:.2%}). Beyond this displacement no state carries the constant loads."
+            f" The axial capacity is lost at a displacement of {r['axial_loss_displacement_m'] * 1000.0:.3g} mm "
+            f"(drift {r['axial_loss_drift']:.2%}): beyond it, no state carries the constant loads."
         )
     return text

@@ -88,9 +88,9 @@ def annual_collapse(
     if missing > TOLD * rate:
         first, last = hazard.intensity[[0, -1]]
         result.warnings.append(
-            f"intensities below {first:.4g} or above {last:.4g}{f' {unit}' if unit else ''}, the ends of the hazard curve, "
-            f"may add up to {missing:.2g} a year, {100 * missing / rate:.0f} % of the rate of collapse: give a hazard curve "
-            "with a wider range"
+            f"intensities below {first:.4g} or above {last:.4g}{(f' {unit}' if unit else '')} are beyond the ends of "
+            f"the hazard curve. They may add up to {missing:.2g} a year, {100 * missing / rate:.0f} % of the rate of "
+            "collapse: give a hazard curve with a wider range"
         )
     x = np.geomspace(hazard.intensity[0], hazard.intensity[-1], GRID)
     density = probability(x) * hazard.density(x)
@@ -118,7 +118,7 @@ def spoken(r: dict[str, Any], name: str, unit: str, confidence: float) -> str:
     low, high = r["annual_collapse_rate_interval"]
     band = f" ({low:.2g} to {high:.2g} at {100 * confidence:g} %)" if np.isfinite(low) else ""
     return (
-        f"With the hazard of the site the annual rate of collapse is {r['annual_collapse_rate']:.3g}{band}: "
-        f"{100 * r['collapse_probability_in_years']:.2g} % in {r['years']:g} years. Motions with {name} about "
-        f"{r['decisive_intensity']:.3g}{f' {unit}' if unit else ''} contribute most."
+        f"With the hazard of the site, the annual rate of collapse is {r['annual_collapse_rate']:.3g}{band}; the probability of "
+        f"collapse is {100 * r['collapse_probability_in_years']:.2g} % in {r['years']:g} years. Motions with {name} about "
+        f"{r['decisive_intensity']:.3g}{(f' {unit}' if unit else '')} contribute most."
     )

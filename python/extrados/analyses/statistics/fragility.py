@@ -325,7 +325,7 @@ def _histogram(options: Fragility, swept: Swept) -> dict[str, Array]:
         upright = (rows["outcome"] != FAILED) & (rows["outcome"] != COLLAPSE)
         counts += np.histogram(np.minimum(rows["peak_ratio"][upright], 1.0), edges)[0]
     return {
-        "bin_edge": Array(edges, ("bin_edge",), "", "ratio of the peak rotation to the critical rotation"),
+        "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation divided by the critical rotation"),
         "bin_count": Array(counts, ("bin",), "", "members that do not collapse"),
     }
 
@@ -342,11 +342,11 @@ def _words(context: Context, options: Fragility, base: Rocker, r: Keys) -> str:
         else f"{r['collapsed']} of {r['count']} samples of the building with uncertain values collapse"
     )
     return (
-        f"{counted}: probability of collapse {100 * p:.1f} % ({100 * options.confidence:g} % interval {100 * low:.1f} to "
-        f"{100 * high:.1f} %). Rocking starts in {100 * r['uplift_probability']:.1f} % of the runs. The mean ratio of the "
-        f"greatest to the critical rotation is {r['mean_peak_rotation_ratio']:.2f} (collapse counts as 1). The "
-        f"{'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; rocking "
-        f"starts at {base.uplift:.3f} g."
+        f"{counted}: probability of collapse {100 * p:.1f} % ({100 * options.confidence:g} % confidence "
+        f"interval {100 * low:.1f} to {100 * high:.1f} %). Rocking starts in {100 * r['uplift_probability']:.1f} % "
+        f"of the runs. The greatest rotation, divided by the critical rotation, has a mean of {r['mean_peak_rotation_ratio']:.2f} "
+        f"(collapse counts as 1). The {('motions have a median' if many else 'motion has a')} peak "
+        f"acceleration of {r['median_pga_g']:.3f} g; rocking starts at {base.uplift:.3f} g."
     )
 
 
@@ -380,8 +380,8 @@ def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarra
     before it rocks."""
     if options.uncertain and base.watch is not None and not isinstance(base.model, BlockModel) and not options.watches_samples:
         why = (
-            "Friction and thrust line are not checked, because the forces at the joints are those of the nominal building, "
-            "not of the sampled buildings."
+            "Sliding and the thrust line are not checked, because the calculated forces at the joints are "
+            "those of the nominal building, not of the sampled buildings."
         )
         return {"conditions": Conditions(not_checked=why, violated=slides_at_rest(base, rows, "motions"))}
     found = of_many(base, Counted.of(rows), "motions")
@@ -436,8 +436,8 @@ def _by_rule(context: Context, options: Fragility, base: Rocker, job: EnsembleJo
         f"collapse by two rules differ by up to {100.0 * apart:.3g} %."
     )
     result.arrays |= {
-        "stripe_rule_least": Array(every.min(axis=0), ("stripe",), "", "lowest probability of collapse among the impact rules"),
-        "stripe_rule_most": Array(every.max(axis=0), ("stripe",), "", "highest probability of collapse among the impact rules"),
+        "stripe_rule_least": Array(every.min(axis=0), ("stripe",), "", "lowest probability of collapse of all impact rules"),
+        "stripe_rule_most": Array(every.max(axis=0), ("stripe",), "", "highest probability of collapse of all impact rules"),
     }
     return {"collapse_by_rule": rows, "rule_band": apart}
 
@@ -458,7 +458,7 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
             ("motion_time", "motion_time", at[thin], "s", f"motion {k + 1}"),
             ("motion", "motion_time", ground_acceleration[thin] / GRAVITY, "g", "ground acceleration"),
             ("time", "history_time", h.time, "s", ""),
-            ("rotation", "history_time", h.rotation / critical, "", f"ratio of rotation to critical rotation: {h.outcome}"),
+            ("rotation", "history_time", h.rotation / critical, "", f"rotation divided by the critical rotation: {h.outcome}"),
         ):
             result.arrays[f"history_{what}_{k + 1}"] = Array(data, (f"{axis}_{k + 1}",), unit, about, series=f"history_{what}")
 
@@ -503,7 +503,7 @@ def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Resu
             if len(told) <= 5:
                 result.warnings.append(f"{name} has no result: {why}")
     if len(told) > 5:
-        result.warnings.append(f"{count} members have no result in total, see ensemble.csv")
+        result.warnings.append(f"in total, {count} runs have no result, see ensemble.csv")
 
 
 def _stopped(swept: Swept, result: Result) -> None:
@@ -549,7 +549,7 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
     )
     result.arrays |= {
         "outcome": Array(swept.column("outcome"), ("member",), "", "outcome: -1 failed, 0 at rest, 1 recovery, 2 collapse"),
-        "peak_ratio": Array(swept.column("peak_ratio"), ("member",), "", "ratio of the greatest rotation to the critical rotation"),
+        "peak_ratio": Array(swept.column("peak_ratio"), ("member",), "", "greatest rotation divided by the critical rotation"),
         "pga": Array(swept.column("pga", lambda rows: rows / GRAVITY), ("member",), "g"),
         "pgv": Array(swept.column("pgv"), ("member",), "m/s"),
     }
@@ -615,6 +615,6 @@ def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[floa
         if row["count"]
     )
     result.answer = (
-        f"Results over the duration of the motions ({rows[0]['count'] if rows else 0} each), rotations as shares of the "
-        f"critical rotation (collapse counts as 1): {text}."
+        f"Results for each duration of the motion ({(rows[0]['count'] if rows else 0)} each), rotations "
+        f"divided by the critical rotation (collapse counts as 1): {text}."
     )

@@ -64,8 +64,8 @@ def run(context: Context, options: HarmonicMap) -> Result:
             conditions = conditions.model_copy(update={"violated": []})
         if handed:
             result.warnings.append(
-                f"{handed} of {outcome.size} motions of the map were decided with rigid contacts: joints slide in "
-                f"{conditions.sliding}, and hinges form at other joints in {conditions.hinges_elsewhere}."
+                f"{handed} of {outcome.size} motions of the map were continued with rigid contacts: joints slide "
+                f"in {conditions.sliding}, and hinges form at other joints in {conditions.hinges_elsewhere}."
             )
     outcome = outcome.reshape(shape)
     over = outcome == COLLAPSE
@@ -114,7 +114,7 @@ def store_map(
         "frequency": Array(frequency, ("frequency",), "Hz"),
         "amplitude": Array(amplitude / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(outcome, ("frequency", "amplitude"), "", f"outcome: 0 at rest, 1 recovery, 2 collapse, {SLID} sliding alone"),
-        "peak_ratio": Array(ratio, ("frequency", "amplitude"), "", "ratio of the greatest rotation to the critical rotation"),
+        "peak_ratio": Array(ratio, ("frequency", "amplitude"), "", "greatest rotation divided by the critical rotation"),
         "lowest": Array(lowest, ("frequency",), "g", "lowest overturning amplitude"),
     }
 
@@ -128,8 +128,7 @@ def answer_of(options: HarmonicMap, model: Rocker, found: out.HarmonicMap, cap: 
         )
     k = int(np.nanargmin(lowest))
     return (
-        f"Under {options.cycles} cycles rocking of the {model.word} starts at {model.uplift:.3f} g. The lowest amplitude "
-        f"that causes collapse is {lowest[k]:.3f} g, at {found.frequencies_Hz[k]:.3f} Hz (omega/p = "
-        f"{found.frequency_ratios[k]:.2f}). {found.safe_pocket_cells} cells of the map are safe although a lower "
-        "amplitude causes collapse."
+        f"Under {options.cycles} cycles, rocking of the {model.word} starts at {model.uplift:.3f} g. The lowest amplitude that causes "
+        f"collapse is {lowest[k]:.3f} g, at {found.frequencies_Hz[k]:.3f} Hz (omega/p = {found.frequency_ratios[k]:.2f}). "
+        f"{found.safe_pocket_cells} cells of the map are safe, although a lower amplitude causes collapse."
     )

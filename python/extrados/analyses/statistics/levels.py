@@ -104,7 +104,7 @@ def describe(
     repeats: int,
     seed: int,
     result: Result,
-    ratio: str = "ratio of peak to critical rotation",
+    ratio: str = "peak rotation divided by the critical rotation",
 ) -> dict[str, Any]:
     """Tables, arrays, warnings and answer of the levels into `result`; returns the results of levels alone.
 
@@ -215,7 +215,7 @@ def _incremental(seen: Stripes, unit: str, ratio: str, r: dict[str, Any], result
             risen[:SHOWN].astype(np.int8),
             ("shown", "stripe"),
             "",
-            "1: the structure survives at this level although a lower level of the motion overturns it",
+            "1: the structure survives at this level, although a lower level of the same motion overturns it",
         ),
     }
 

@@ -47,7 +47,7 @@ def _refuse_of_spectra(building: Building) -> None:
         )
     if building.supports.stiffness is not None:
         raise Refused(
-            "spectra are calculated for structures on rigid ground: remove the stiffness of [supports], or use `rocking` of a block",
+            "spectra are calculated for structures on rigid ground: remove `stiffness` of [supports], or use `rocking` of a block",
             ("supports", "stiffness"),
         )
 
@@ -65,7 +65,10 @@ def _foretell(context: Context, options: tables.Fragility) -> None:
     of = f"{count:,} motions or buildings" + (f" at {levels} level{'s' if levels > 1 else ''}" if options.levels else "")
     key = "count" if options.count or not options.levels else "levels"
     refuse_memory(
-        cell * runs, f"{of}, {runs:.3g} runs,", f"at most {int(SHARE * room.total() / cell * count / runs)} runs fit", ("analysis", key)
+        cell * runs,
+        f"{of}, {runs:.3g} runs,",
+        f"at most {int(SHARE * room.total() / cell * count / runs)} runs fit into the memory",
+        ("analysis", key),
     )
     disk = f", {CELL_ON_DISK * runs / 1e9:.2g} GB of disk" if on_disk else ""
     context.tell(

@@ -165,8 +165,8 @@ def run(context: Context, options: Resonance) -> Result:
     )
     result.answer = (
         f"The ground acceleration is +-{cap / GRAVITY:.3f} g ({cap / GRAVITY / model.uplift:.2f} times the uplift "
-        f"acceleration), always against the motion of the {model.word}. From {_start(context):g} times the critical "
-        f"rotation, the {model.word} is {fate}"
+        f"acceleration), always against the motion of the {model.word}. Starting from {_start(context):g} "
+        f"times the critical rotation, the {model.word} is {fate}"
     ) + (
         f"; the time between the changes of sign is {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last."
         if len(spacing) > 1
@@ -225,26 +225,29 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     by_rotation = np.array([[_energy_change(own, model, x, amplitude, 0.5, s) for s in STARTS] for x in INITIAL_ROTATIONS])
     result.arrays |= {
         "aspect": Array(ASPECTS, ("aspect",), "", "B/H"),
-        "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "ratio of the initial rotation to the critical rotation"),
+        "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "initial rotation divided by the critical rotation"),
         "least_cap_ratio": Array(
-            table, ("aspect", "initial_ratio"), "", "ratio of the least limit on the acceleration to the uplift acceleration"
+            table,
+            ("aspect", "initial_ratio"),
+            "",
+            "lowest limit of the acceleration at which the rotation grows, divided by the uplift acceleration",
         ),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
         "impulse_rotation": Array(
-            np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "ratio of the initial rotation to the critical rotation"
+            np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "initial rotation divided by the critical rotation"
         ),
         "impulse_start": Array(STARTS, ("impulse_start",), "", "t_start/T_n"),
         "energy_by_period": Array(
             by_period,
             ("impulse_period_ratio", "impulse_start"),
             "",
-            "ratio of the supplied energy to the energy at the start, for a start at a quarter of the critical rotation",
+            "energy supplied divided by the energy at the start; start at a quarter of the critical rotation",
         ),
         "energy_by_rotation": Array(
             by_rotation,
             ("impulse_rotation", "impulse_start"),
             "",
-            "ratio of the supplied energy to the energy at the start, for an impulse of half the natural period (T_p = T_n/2)",
+            "energy supplied divided by the energy at the start; impulse of half the natural period (T_p = T_n/2)",
         ),
     }
     numbers |= {
@@ -253,8 +256,8 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
     }
     if least is not None:
         result.answer += (
-            f" From this start, any cap above {least:.3f} g ({least / model.uplift:.2f} times the uplift acceleration) makes the "
-            f"rotation grow until the {model.word} overturns."
+            f" From this start, any limit of the acceleration above {least:.3f} g ({least / model.uplift:.2f} times "
+            f"the uplift acceleration) makes the rotation grow until the {model.word} overturns."
         )
     return numbers
 

@@ -91,7 +91,7 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         "period": Array(periods, ("period",), "s", "2 pi/p for a block, 2 pi times the natural time for an arch"),
         "size": Array(sizes, ("period",), "m", "half-diagonal of the block, or radius of the arch"),
         "peak_ratio": Array(
-            ratio, ("family", "period"), "", "ratio of the greatest rotation to the critical rotation; NaN if the structure overturns"
+            ratio, ("family", "period"), "", "greatest rotation divided by the critical rotation; NaN if the structure overturns"
         ),
         "overturned": Array(overturned.astype(np.int8), ("family", "period")),
     }
@@ -120,8 +120,12 @@ def _by_rule(context: Context, rockers: list[Rocker], job_of: Callable[[list[Bod
     least, most = np.min(ratios, axis=0), np.max(ratios, axis=0)
     decided = int((np.isinf(least) != np.isinf(most)).sum())
     result.arrays |= {
-        "rule_least": Array(least, ("period",), "", "least ratio of peak to critical rotation among the impact rules; infinite: collapse"),
-        "rule_most": Array(most, ("period",), "", "greatest ratio of peak to critical rotation among the impact rules; infinite: collapse"),
+        "rule_least": Array(
+            least, ("period",), "", "peak rotation divided by the critical rotation, lowest of all impact rules; infinite: collapse"
+        ),
+        "rule_most": Array(
+            most, ("period",), "", "peak rotation divided by the critical rotation, highest of all impact rules; infinite: collapse"
+        ),
     }
     told_rules = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.overturned}' for one in rows)
     result.warnings.append(

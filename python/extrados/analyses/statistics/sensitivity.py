@@ -58,8 +58,8 @@ def sensitivity(
     without = [body for body in made.bodies if isinstance(body, str)] + ["cannot stand"] * int(made.fallen.sum())
     if without:
         raise Refused(
-            f"{len(without)} of {len(made.bodies)} sampled buildings do not rock ({without[0]}), but sensitivity indices "
-            "require all of them. Try smaller scatters",
+            f"{len(without)} of {len(made.bodies)} sampled buildings do not rock ({without[0]}), but "
+            "sensitivity indices require that all rock. Try smaller coefficients of variation",
             ("analysis", "uncertain"),
         )
     bodies = [body for body in made.bodies if not isinstance(body, str)]

@@ -35,15 +35,20 @@ class Hazard(Table):
     """Seismic hazard of the site: how often a year each intensity is exceeded, in the measure of the levels."""
 
     intensities: list[Level] | None = key(
-        None, "intensities in increasing order: numbers in the unit of the measure, or text", min_length=2, max_length=1000
-    )
-    annual_rates: list[Rate] | None = key(
         None,
-        "mean annual rates at which these intensities are exceeded, in decreasing order; interpolated linearly between logarithms",
+        "intensities of the hazard curve, in increasing order: numbers in the unit of the measure, or text",
         min_length=2,
         max_length=1000,
     )
-    file: str | None = key(None, "CSV file with both columns, instead of the lists; lines that begin with # are ignored")
+    annual_rates: list[Rate] | None = key(
+        None,
+        "mean annual rates at which the `intensities` are exceeded, in decreasing order; interpolated linearly between logarithms",
+        min_length=2,
+        max_length=1000,
+    )
+    file: str | None = key(
+        None, "CSV file with both columns, instead of `intensities` and `annual_rates`; lines that begin with # are ignored"
+    )
     years: float = key(50.0, "number of years for which the probability of collapse is given", gt=0, le=1e5)
     acceptable_rate: Rate | None = key(None, "annual rate of collapse that is acceptable: the demand of the verdict")
 
@@ -51,7 +56,7 @@ class Hazard(Table):
     def _curve(self) -> "Hazard":
         lists = (self.intensities, self.annual_rates)
         if (self.file is None) == (None in lists) or (self.file is not None and lists != (None, None)):
-            raise ValueError("give either intensities and annual_rates, or a file")
+            raise ValueError("give either `intensities` and `annual_rates`, or a `file`")
         if self.intensities is not None and self.annual_rates is not None:
             check_hazard(self.intensities, self.annual_rates)
         return self
@@ -60,11 +65,11 @@ class Hazard(Table):
 def check_hazard(intensities: list[float], rates: list[float]) -> None:
     """ValueError where these are no hazard curve."""
     if len(intensities) != len(rates):
-        raise ValueError(f"{len(intensities)} intensities and {len(rates)} annual_rates were given; expected equal numbers")
+        raise ValueError(f"{len(intensities)} intensities and {len(rates)} `annual_rates` were given; expected equal numbers")
     if min(intensities) <= 0.0 or any(b <= a for a, b in pairwise(intensities)):
         raise ValueError("intensities must be above zero and increase")
     if min(rates) <= 0.0 or any(b >= a for a, b in pairwise(rates)):
-        raise ValueError("annual_rates must be above zero and decrease, because stronger motions are rarer")
+        raise ValueError("`annual_rates` must be above zero and decrease, because stronger motions are rarer")
 
 
 class Fragility(RockingTable):
@@ -78,38 +83,44 @@ class Fragility(RockingTable):
     starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole set", ge=1, le=10_000_000)
     seed: int | None = key(
-        None, "seed of the random numbers: replaces that of a generated set, and also draws the uncertain values", ge=0, le=2**62
+        None,
+        "seed of the random numbers, for the uncertain values and (instead of its own seed) for a generated set of motions",
+        ge=0,
+        le=2**62,
     )
     durations: list[Time] | None = key(
-        None, "repeat the analysis for these durations t_d of a generated set", source="thesis Fig. 6-8", min_length=1, max_length=100
+        None,
+        "durations t_d of the motions of a generated set, for each of which the analysis is repeated",
+        source="thesis Fig. 6-8",
+        min_length=1,
+        max_length=100,
     )
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
         "pga",
-        "intensity measure of the keys `levels`, `cloud` and `hazard`. pga: PGA [g]; pga-ratio: PGA/(g tan alpha); "
-        "pgv-ratio: p PGV/(g tan alpha); sa: SA(sa_period) [g]; arias: Arias intensity [m/s]; scale: the scale "
-        "factor itself. alpha: slenderness angle, p: frequency parameter",
+        "intensity measure of the keys `levels`, `cloud` and `hazard`. pga: PGA [g]; pga-ratio: PGA/(g "
+        "tan alpha); pgv-ratio: p PGV/(g tan alpha); sa: SA(`sa_period`) [g]; arias: Arias intensity "
+        "[m/s]; scale: the scale factor itself. alpha: slenderness angle, p: frequency parameter",
         source="Dimitrakopoulos and Paraskeva 2015",
     )
     levels: list[Level] | None = key(
         None,
-        'intensities to which every motion is scaled: numbers in the unit of the measure, or text such as "0.1 g"',
+        'intensities to which each motion is scaled: numbers in the unit of the measure, or text such as "0.1 g"',
         min_length=1,
         max_length=500,
     )
     cloud: bool = key(False, "fit fragility curves over the intensities of the unscaled motions", source="Jalayer and others 2017")
     rotation_limits: list[Annotated[float, Field(gt=0, le=1)]] = key(
-        [], "for a cloud: also fit the curves of exceeding these ratios of rotation to critical rotation", max_length=20
+        [], "for a cloud: also fit fragility curves for exceeding these values of rotation divided by critical rotation", max_length=20
     )
-    hazard: Hazard | None = key(None, "hazard curve of the site, from which the annual rate of collapse is calculated")
+    hazard: Hazard | None = key(None, "hazard curve of the site, which gives the annual rate of collapse")
     histories: int = key(0, "number of motions that are drawn with their responses", ge=0, le=12, source="thesis Fig. 6-6")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
         {},
-        "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; "
-        "of the `density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of "
-        "a compliant base. `imperfection`: deviation of corners and joints of blocks, divided by the shortest joint. "
-        "Sampled by a Sobol sequence",
+        "coefficients of variation of width, height, thickness and restitution; of the thickness lost at worn `corners`; of the "
+        "`density` of each block; of the `friction` of all joints together; of `stiffness` and `damping_ratio` of a compliant base. "
+        "`imperfection`: random displacement of corners and joints of blocks, divided by the shortest joint. Sampled by a Sobol sequence",
     )
     sensitivity: int | None = key(
         None,
@@ -120,15 +131,15 @@ class Fragility(RockingTable):
         source="Saltelli and others 2010",
     )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
-    bootstrap: int = key(500, "number of bootstrap samples for the band of the fitted curve", ge=0, le=100_000)
-    bins: int = key(20, "number of bins of the histogram up to the critical rotation", ge=2, le=1000)
+    bootstrap: int = key(500, "number of bootstrap samples for the confidence band of the fitted curve", ge=0, le=100_000)
+    bins: int = key(20, "number of bins of the histogram, from zero to the critical rotation", ge=2, le=1000)
     settle: Time | None = key(
         None, "time after the motion in which the structure must come to rest or collapse; default: 40 natural times", ge=0
     )
     hand_over: bool = key(
         False,
-        "if joints slide or hinges form at other joints, decide this run with rigid contacts; false gives the share of "
-        "these runs as a warning",
+        "if joints slide or hinges form at other joints, continue this run with rigid contacts; false "
+        "gives the share of these runs in a warning",
         source="Moreau 1988",
     )
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
@@ -147,25 +158,29 @@ class Fragility(RockingTable):
     @model_validator(mode="after")
     def _sensible(self) -> "Fragility":
         if self.hand_over and {"density", "imperfection"} & set(self.uncertain):
-            raise ValueError("hand_over uses the nominal blocks: remove uncertain.density and uncertain.imperfection")
+            raise ValueError("`hand_over` uses the nominal blocks: remove uncertain.density and uncertain.imperfection")
         if self.hand_over and self.sensitivity is not None:
-            raise ValueError("the key `sensitivity` uses only runs of the mechanism: remove sensitivity or hand_over")
+            raise ValueError("the key `sensitivity` uses only runs of the mechanism: remove `sensitivity` or `hand_over`")
         if "friction" in self.uncertain and self.sensitivity is not None:
             raise ValueError(
-                "friction does not change an outcome of the mechanism, so its Sobol index is zero: remove uncertain.friction or sensitivity"
+                "friction does not change an outcome of the mechanism, so its Sobol index is zero: remove "
+                "uncertain.friction or `sensitivity`"
             )
         if self.levels is not None and min(self.levels) <= 0.0:
             raise ValueError("levels must be above zero")
         if self.levels is not None and self.durations is not None:
             raise ValueError("give either the key `levels` or the key `durations`, not both")
         if (self.levels is not None or self.cloud) and (self.intensity == "sa") != (self.sa_period is not None):
-            raise ValueError('intensity = "sa" requires sa_period, and sa_period requires intensity = "sa"')
+            raise ValueError('intensity = "sa" requires `sa_period`, and `sa_period` requires intensity = "sa"')
         if self.cloud and (self.levels is not None or self.durations is not None):
             raise ValueError("a cloud uses unscaled motions: remove the keys `levels` and `durations`")
         if self.cloud and self.intensity == "scale":
-            raise ValueError('the motions of a cloud are not scaled, so intensity = "scale" would be the same for all of them')
+            raise ValueError(
+                'the motions of a cloud are not scaled, so intensity = "scale" has the same value for all of '
+                "them: give another intensity measure"
+            )
         if self.rotation_limits and not self.cloud:
-            raise ValueError("rotation_limits is used only with cloud = true")
+            raise ValueError("`rotation_limits` is used only with cloud = true")
         if self.histories and (self.levels is not None or self.durations is not None):
             raise ValueError("the key `histories` shows the unscaled motions: remove the keys `levels` and `durations`")
         if self.hazard is not None and (self.intensity == "scale" or not (self.cloud or self.levels)):
@@ -214,7 +229,7 @@ class Resonance(RockingTable):
     kind: Literal["resonance"]
     considers: ClassVar = ()
     cap: Acceleration | None = key(
-        None, "cap of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
+        None, "limit of the ground acceleration; default: 0.6 times the uplift acceleration", gt=0, source="thesis Eq. 6.5"
     )
     half_cycles: int = key(40, "at most so many", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
@@ -240,7 +255,7 @@ class RockingSpectrum(RockingTable):
     @model_validator(mode="after")
     def _angles(self) -> "RockingSpectrum":
         if not all(0.0 < a < 45.0 for a in self.slenderness):
-            raise ValueError("slenderness is alpha in degrees, expected above 0 and below 45")
+            raise ValueError("`slenderness` is alpha in degrees, expected above 0 and below 45")
         return self
 
     def reckons_with(self, building: "Building") -> set[str]:
@@ -260,8 +275,8 @@ class HarmonicMap(RockingTable):
     starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(
         None,
-        "frequencies in Hz; default: 40 values of omega/p from 1 to 12 (p: frequency parameter of rocking, omega: 2 pi "
-        "times the frequency)",
+        "frequencies of the motion in Hz; default: 40 values of omega/p from 1 to 12 (p: frequency "
+        "parameter of rocking, omega: 2 pi times the frequency)",
         min_length=1,
         max_length=1000,
     )

@@ -71,8 +71,8 @@ def assess_all(work: Sizing, sized: list[Sized]) -> None:
             worse = was.outcome == "stands" and row.outcome in ("collapses", "cannot-stand")
             if worse or (low is not None and high is not None and high < low * (1.0 - NAMED)):
                 adverse.append(
-                    f"By {row.label} the critical scale factor decreases from {_number(low)} to {_number(high)} (verdict "
-                    f"{was.outcome}, then {row.outcome})."
+                    f"By {row.label}, the critical scale factor of the hazard decreases from {_number(low)} to {_number(high)} "
+                    f"(verdict {was.outcome}, then {row.outcome})."
                 )
             elif row.outcome in ("collapses", "cannot-stand"):
                 adverse.append(f"By {row.label} the strengthened building still collapses (critical scale factor {_number(high)}).")

@@ -133,9 +133,9 @@ class Statics:
         except (NoEquilibrium, NoAnswer) as error:
             carried = f"no load: {error}"
         return (
-            f"The target refers only to a load towards {_word(int(self.senses[0]))}. Towards {_word(sense)} the existing "
-            f'building carries {carried}. An earthquake acts in both senses: give direction = "both", unless that side is '
-            "restrained."
+            f"The target refers only to a load towards {_word(int(self.senses[0]))}. Towards {_word(sense)}, "
+            f"the existing building carries {carried}. An earthquake acts in both directions: give direction "
+            f'= "both", unless the building is restrained towards {_word(sense)}.'
         )
 
     def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool) -> tuple[float, Bound, str]:
@@ -299,7 +299,9 @@ class Runs:
             return Worth(1.0 if self.by_probability else 0.0, "collapse under self-weight")
         if self.by_probability:
             if not isinstance(result.results, Ensemble):
-                raise Refused("levels of the options: use the key `levels` of this table instead", ("analysis", "options"))
+                raise Refused(
+                    "`levels` of the options is not used here: use the key `levels` of this table instead", ("analysis", "options")
+                )
             share = result.results.collapse_probability
             return Worth(share, "rocking until it overturns", reason="" if share is not None else "no motion could be run")
         verdict = result.results.judged(MotionDemand(context))
@@ -307,7 +309,7 @@ class Runs:
             told = "" if verdict is None else f": {verdict.statement}"
             return Worth(None, reason=f"{self.options.by} gives no safety factor{told}")
         if verdict.outcome == "open" and self.options.by in DYNAMIC:  # one run as a sample, or a run that still moves
-            return Worth(None, reason=f"the outcome of {self.options.by} is open: {verdict.statement.rstrip('.')}")
+            return Worth(None, reason=f"the outcome of `{self.options.by}` is open: {verdict.statement.rstrip('.')}")
         return Worth(verdict.ratio, verdict.statement.rstrip("."))
 
 
@@ -337,8 +339,8 @@ def unmet_reason(measure: Measure, worth: Worth) -> str:
         return worth.unfound
     if worth.beside is not None and worth.beside <= (1.0 - SLACK) * measure.target:
         return (
-            "only the upper bound of limit analysis (dilatant friction) meets the target. The lowest collapse acceleration found without "
-            f"dilatancy is {worth.beside:.3g} g"
+            "only the upper bound of limit analysis (dilatant friction) meets the target. The lowest "
+            f"collapse acceleration found without dilatancy is {worth.beside:.3g} g, which does not"
         )
     return ""
 

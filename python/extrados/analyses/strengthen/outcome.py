@@ -29,7 +29,7 @@ def arrays_of(context: Context, before: Worth, sized: list[Sized]) -> dict[str, 
             rest[f"{name}/{i}"] = outline
             moved[f"{name}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
     found = {
-        **_pack("curve", curves, 3, "size, value and cost along the curve of each alternative intervention"),
+        **_pack("curve", curves, 3, "along the curve of each alternative intervention: size, value of the target quantity, and cost"),
         **_pack(
             "range",
             places,
@@ -37,8 +37,13 @@ def arrays_of(context: Context, before: Worth, sized: list[Sized]) -> dict[str, 
             "x, y of the middle of each tie at each possible place [m], and required force [N]; infinite: no force is "
             "sufficient at this place",
         ),
-        **packed("stones", rest, "m", "blocks of the existing building (0/block) and of each alternative (number/block)"),
-        **packed("stones_moved", moved, "m", "the same blocks, moved by the governing mechanism"),
+        **packed(
+            "stones",
+            rest,
+            "m",
+            "blocks of the existing building (number 0/block) and with each alternative (number of the alternative/block)",
+        ),
+        **packed("stones_moved", moved, "m", "the same blocks, displaced by the governing mechanism"),
     }
     for name, worth in drawn:
         if worth is not None and worth.in_space is not None:
@@ -111,5 +116,5 @@ def words(r: out.Strengthen) -> str:
     if r.combination:
         told = ", ".join(f"{row.force_N / 1e3:.3g} kN of {row.name}" for row in r.combination)
         shown = "" if r.combination_meets_target else ", which may not meet the target (see the warnings)"
-        said.append(f"- Combination of ties of least total force{shown}: {told}; relative cost {r.combination_cost:.3g}.")
+        said.append(f"- Combination of ties with the least total force{shown}: {told}; relative cost {r.combination_cost:.3g}.")
     return "\n".join(said)

@@ -48,7 +48,7 @@ def set_keys(desk: Desk, message: Message) -> Iterator[Reply]:
     for a pulse that is dragged."""
     changes = message.get("changes")
     if not isinstance(changes, dict) or not 0 < len(changes) <= 50:
-        raise BadMessage("a message may change 1 to 50 keys of the deck")
+        raise BadMessage("a single message may change 1 to 50 keys of the deck")
     if not all(KEY.fullmatch(key) for key in changes):
         raise BadMessage("the name of a changed key is not valid in a deck")
     reply = _change(desk, changes)

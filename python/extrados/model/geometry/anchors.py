@@ -68,7 +68,7 @@ def only_stone(
     """The one block of those `found` at a point (2 or 3) [m]; BadGeometry, see `stone_at`, of none, with the nearest of the
     centroids (blocks, 2 or 3) [m], or of several. cures: advice for none and for several; without it that of an anchored end."""
     outside, between = cures or (
-        f"If this end is anchored outside its block, give the name of the block by {end}_stone",
+        f"If this end is anchored outside its block, give the name of the block as {end}_stone",
         "give the name of the block in which this end is anchored",
     )
     place = ", ".join(f"{axis} = {value:.4g}" for axis, value in zip("xyz", point, strict=False)) + " m"

@@ -121,8 +121,8 @@ def springing_path(
     slack = 1e-9 * outer
     if not low - slack <= reach <= high + slack:
         raise BadGeometry(
-            f"{part}: the face is {reach:.4g} m from the centre line of the arch. This distance must lie between the intrados "
-            f"springing ({low:.4g} m) and the intrados radius ({high:.4g} m)"
+            f"{part}: the distance from the face to the centre line of the arch is {reach:.4g} m. Give a distance "
+            f"between {low:.4g} m (intrados at the springing) and {high:.4g} m (radius of the intrados)"
         )
     if outer * sin(half) < reach - slack:
         raise BadGeometry(f"{part}: the extrados of the springing lies outside the pier")

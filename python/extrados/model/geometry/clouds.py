@@ -19,8 +19,10 @@ HEADER = 50  # lines of an XYZ file in which its first point is looked for
 MOST_POINTS, FEWEST_POINTS = 20_000_000, 100
 CONSIDERED = 200_000  # points of a fit: of more, so many at even spacing in the file
 TRIES = 3_000  # points by which the direction of a barrel is sought
-#: Points farther from a face than so many standard deviations (by the median), and than this [m], do not belong to it
+#: Points farther from a face than so many standard deviations (by the median), and than this [m], do not shape it
 OUTLIER, LEAST_NOISE = 3.0, 1e-4
+#: Such a point is stray if at most so many of its nearest neighbours along the face are such points: a bulge is no stray point
+NEIGHBOURS, ALIKE = 16, 8
 ENDS = 0.1  # percent of the points of a face beyond either of its ends
 #: Misfits (95 %) above these shares of the thickness: the capacity is uncertain; the points have another shape
 ROUGH, OTHER = 0.1, 0.25
@@ -29,7 +31,8 @@ UPRIGHT = 0.3  # vertical part of the normal of a wall, at most
 
 @dataclass(frozen=True)
 class Fit:
-    """How points lie on a face: used and not used, root mean square and 95th percentile of their distances [m] from it."""
+    """How points lie on a face: points of the face and stray points, root mean square and 95th percentile of the distances [m] of
+    the points of the face, bulges included."""
 
     name: str
     used: int
@@ -40,8 +43,8 @@ class Fit:
     def told(self) -> str:
         """The misfit in words."""
         return (
-            f"{self.name}: {self.used} points within {1e3 * self.most:.3g} mm (95 %; root mean square {1e3 * self.rms:.3g} mm), "
-            f"{self.dropped} points not used"
+            f"{self.name}: {self.used} points within {1e3 * self.most:.3g} mm of the fitted surface (95 %; "
+            f"root mean square {1e3 * self.rms:.3g} mm), {self.dropped} stray points not used"
         )
 
 
@@ -85,7 +88,7 @@ def read_cloud(file: File, scale: float) -> np.ndarray:
         raise BadGeometry(f"{name}: {error}", ("structure", "file")) from None
     points = scale * np.asarray(found["points"])
     if len(points) < FEWEST_POINTS:
-        raise BadGeometry(f"{name}: {len(points)} points, at least {FEWEST_POINTS} are required", ("structure", "file"))
+        raise BadGeometry(f"{name}: the file has {len(points)} points, but at least {FEWEST_POINTS} are required", ("structure", "file"))
     return points[:: -(-len(points) // CONSIDERED)]
 
 
@@ -107,7 +110,7 @@ def parse_cloud(content: bytes, sort: str) -> dict[str, np.ndarray]:
     except ImportError:
         raise Unreadable("reading point clouds requires trimesh and laspy. Install them by pip install 'extrados[scan]'") from None
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
-        raise Unreadable("the file has no points of three finite coordinates")
+        raise Unreadable("the file has no points with three finite coordinates")
     if len(points) > MOST_POINTS:
         raise Unreadable(f"the file has more than {MOST_POINTS} points")
     return {"points": points}
@@ -138,12 +141,13 @@ def _starts_with_numbers(line: str) -> bool:
 def fit_wall(points: np.ndarray, thickness: float | None = None) -> WallFit:
     """The wall of points (n, 3) [m] on both of its faces, or on one of them if its thickness [m] is given.
 
-    Each face is the plane of least squares of its points, without those farther from it than three standard deviations.
+    Each face is the plane of least squares of its points, without those farther from it than three standard deviations. The misfit
+    and the ends of the wall count these points too, except stray ones. BadGeometry where the points have another shape.
     """
     origin = np.median(points, axis=0)
     normal = np.linalg.svd((points - origin)[:: -(-len(points) // 20_000)], full_matrices=False)[2][2]
     if abs(normal[2]) > UPRIGHT:
-        raise BadGeometry("the points do not form a vertical wall; give one wall a file", ("structure", "scan"))
+        raise BadGeometry("the points do not form a vertical wall: give a separate file for each wall", ("structure", "scan"))
     across = np.array([normal[0], normal[1], 0.0]) / np.hypot(normal[0], normal[1])
     along = np.array([across[1], -across[0], 0.0])
     s, n, z = _local(points - origin, along, across)
@@ -162,15 +166,16 @@ def fit_wall(points: np.ndarray, thickness: float | None = None) -> WallFit:
         sides = sides[::-1]
     faces, fits, used = [], [], []
     for name, side in zip(("back face", "front face"), sides, strict=False):
-        face, kept, fit = _robust(name, side, plane, off)
+        face, own, fit = _robust(name, side, ones[:, 1:], plane, off)
         faces.append(face)
         fits.append(fit)
-        used.append(kept)
-    kept = np.concatenate(used)
+        used.append(own)
     back = faces[0]
     front = faces[1] if thickness is None else back + np.array([thickness, 0.0, 0.0])
-    middle = np.array([1.0, float(np.median(s[kept])), float(np.median(z[kept]))])
-    _refuse_other_shapes(fits, float((front - back) @ middle), thickness, "a wall between two planes")
+    own = np.concatenate(used)
+    between = float((front - back) @ np.array([1.0, float(np.median(s[own])), float(np.median(z[own]))]))
+    _refuse_other_shapes(fits, between, thickness, "a wall between two planes")
+    kept = np.concatenate([own[np.abs(off(face, own)) <= OTHER * between] for face, own in zip(faces, used, strict=True)])
     return WallFit(origin, along, across, back, front, _ends(s[kept]), _ends(z[kept]), tuple(fits))
 
 
@@ -178,7 +183,8 @@ def fit_barrel(points: np.ndarray, thickness: float | None = None, axis: float |
     """The barrel of points (n, 3) [m] on intrados and extrados, or on the intrados if its thickness [m] is given.
 
     axis [rad]: direction of its horizontal axis in plan from x; the direction of least misfit where None. Circles are of least squares
-    of the distances, without points farther than three standard deviations.
+    of the distances, without points farther than three standard deviations; the misfit and the ends count these points too, except stray
+    ones. BadGeometry where the points have another shape.
     """
     origin = np.median(points, axis=0)
     local = points - origin
@@ -198,17 +204,18 @@ def fit_barrel(points: np.ndarray, thickness: float | None = None, axis: float |
 
     whole = circle(np.arange(len(flat)))
     sides = _sides(off(whole, np.arange(len(flat)))) if thickness is None else [np.arange(len(flat))]
-    found = [_robust(name, side, circle, off) for name, side in zip(("intrados", "extrados"), sides, strict=False)]
+    places = np.column_stack([whole[2] * np.arctan2(*(flat - whole[:2]).T), t])
+    found = [_robust(name, side, places, circle, off) for name, side in zip(("intrados", "extrados"), sides, strict=False)]
     inner = found[0][0]
     outer = found[1][0] if thickness is None else inner + np.array([0.0, 0.0, thickness])
     fits = tuple(fit for _, _, fit in found)
-    _refuse_other_shapes(fits, float(outer[2] - inner[2]), thickness, "a circular barrel with a horizontal axis")
-    kept = np.concatenate([one for _, one, _ in found])
-    below = found[0][1]
-    x, up = (flat[below] - inner[:2]).T
+    between = float(outer[2] - inner[2])
+    _refuse_other_shapes(fits, between, thickness, "a circular barrel with a horizontal axis")
+    kept = [own[np.abs(off(face, own)) <= OTHER * between] for face, own, _ in found]
+    x, up = (flat[kept[0]] - inner[:2]).T
     low, high = _ends(np.arctan2(x, up))  # from the crown
     angle = (0.5 * np.pi - high, 0.5 * np.pi - low)
-    return BarrelFit(origin, along, way, inner, outer, angle, _ends(t[kept]), fits)
+    return BarrelFit(origin, along, way, inner, outer, angle, _ends(t[np.concatenate(kept)]), fits)
 
 
 def uncertain(fits: Sequence[Fit], thickness: float) -> tuple[str, ...]:
@@ -217,9 +224,11 @@ def uncertain(fits: Sequence[Fit], thickness: float) -> tuple[str, ...]:
     if worst.most <= ROUGH * thickness:
         return ()
     return (
-        f"The points lie up to {1e3 * worst.most:.3g} mm (95 %) off the {worst.name}, which is more than a tenth of the thickness of "
-        f"{1e3 * thickness:.3g} mm. The capacity of the fitted body is uncertain. Divide the points into parts of the fitted shape, or give the "
-        "blocks as solids",
+        (
+            f"The points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}. This is more than a "
+            f"tenth of the thickness of {1000.0 * thickness:.3g} mm, so the capacity of the fitted body is uncertain. Divide the points "
+            "into parts of the fitted shape, or give the blocks as solids"
+        ),
     )
 
 
@@ -228,10 +237,11 @@ def _refuse_other_shapes(fits: Sequence[Fit], thickness: float, given: float | N
     worst = max(fits, key=lambda fit: fit.most)
     if worst.most <= OTHER * thickness:
         return
-    cure = "If they show one face only, give `thickness`" if given is None else "If they show both faces, remove `thickness`"
+    cure = "If the points show one face only, give `thickness`" if given is None else "If the points show both faces, remove `thickness`"
     raise BadGeometry(
-        f"the points lie up to {1e3 * worst.most:.3g} mm (95 %) off the {worst.name}, which is more than a quarter of the thickness of "
-        f"{1e3 * thickness:.3g} mm. {cure}; otherwise they do not form {shape}: divide the points, or give the blocks as solids",
+        f"the points lie up to {1000.0 * worst.most:.3g} mm (95th percentile) from the fitted {worst.name}, "
+        f"which is more than a quarter of the thickness of {1000.0 * thickness:.3g} mm. {cure}; otherwise "
+        f"the points do not form {shape}: divide them, or give the blocks as solids",
         ("structure", "scan", "thickness"),
     )
 
@@ -242,7 +252,7 @@ def _local(arm: np.ndarray, first: np.ndarray, second: np.ndarray) -> tuple[np.n
 
 
 def _sides(distance: np.ndarray) -> list[np.ndarray]:
-    """Numbers of the points of both faces, by two means of their distances (n)."""
+    """Numbers of the points of the nearer and the farther face, by their distances (n) [m]: parted halfway between both medians."""
     edge = float(np.mean(distance))
     for _ in range(50):
         low, high = distance[distance <= edge], distance[distance > edge]
@@ -253,22 +263,42 @@ def _sides(distance: np.ndarray) -> list[np.ndarray]:
 
 
 def _robust(
-    name: str, side: np.ndarray, fit: Callable[[np.ndarray], np.ndarray], off: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    name: str,
+    side: np.ndarray,
+    places: np.ndarray,
+    fit: Callable[[np.ndarray], np.ndarray],
+    off: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, np.ndarray, Fit]:
-    """A face of some points, the points that belong to it, and the misfit."""
+    """A face of some points (numbers of side), its points without stray ones (numbers), and their misfit; BadGeometry below 50 points.
+
+    places (n, 2) [m]: of all points along the face. fit: a face of numbered points; off: their distances [m] from a face.
+    """
     if len(side) < FEWEST_POINTS // 2:
-        raise BadGeometry(f"{name}: {len(side)} points are too few", ("structure", "scan"))
+        raise BadGeometry(f"{name}: {len(side)} points are too few to fit a surface", ("structure", "scan"))
     kept = side
     for _ in range(20):
         face = fit(kept)
         rest = np.abs(off(face, side))
-        limit = max(OUTLIER * 1.4826 * float(np.median(rest)), LEAST_NOISE)
-        again = side[rest <= limit]
+        near = rest <= max(OUTLIER * 1.4826 * float(np.median(rest)), LEAST_NOISE)
+        again = side[near]
         if len(again) == len(kept) and (again == kept).all():
             break
         kept = again
-    rest = off(fit(kept), kept)
-    return face, kept, Fit(name, len(kept), len(side) - len(kept), float(np.sqrt(np.mean(rest**2))), float(np.percentile(np.abs(rest), 95)))
+    belongs = near | ~_strays(places[side], ~near)
+    own = rest[belongs]
+    fitted = Fit(name, len(own), len(side) - len(own), float(np.sqrt(np.mean(own**2))), float(np.percentile(own, 95)))
+    return face, side[belongs], fitted
+
+
+def _strays(places: np.ndarray, far: np.ndarray) -> np.ndarray:
+    """Whether each point (n) at places (n, 2) along a face is far from it (n) alone: at most half of its neighbours are far from it."""
+    from scipy.spatial import KDTree  # takes a third of a second to load
+
+    found = far.copy()
+    if far.any():
+        around = KDTree(places).query(places[far], NEIGHBOURS + 1)[1]  # the point itself included
+        found[far] = far[around].sum(axis=1) <= ALIKE + 1
+    return found
 
 
 def _circle(points: np.ndarray) -> np.ndarray:
@@ -288,7 +318,7 @@ def _circle(points: np.ndarray) -> np.ndarray:
 
 
 def _misfit(points: np.ndarray, axis: float, two: bool) -> float:
-    """Median distance [m] of points (n, 3) from one or two circles across an axis [rad]."""
+    """Mean distance [m] of points (n, 3) from one circle, or of either face from its median distance, across an axis [rad]."""
     flat = np.column_stack([points @ np.array([np.sin(axis), -np.cos(axis), 0.0]), points[:, 2]])
     whole = _circle(flat)
     rest = np.hypot(*(flat - whole[:2]).T) - whole[2]

@@ -186,8 +186,8 @@ class _Near:
         self._compared += int(count.sum())
         if self._compared > MOST_COMPARED:
             raise BadGeometry(
-                f"too many edges are near each other: the {len(self.size)} outlines have more than {MOST_COMPARED:,} such pairs, "
-                "the greatest number considered. Give the outlines fewer points, and the ground fewer segments"
+                f"the drawing is too dense: its {len(self.size)} outlines have more than {MOST_COMPARED:,} pairs of edges that are near "
+                "each other, the limit of this program. Give the outlines fewer points, and the ground fewer segments"
             )
         return _spread(numbers, count)
 
@@ -198,7 +198,8 @@ class _Near:
         pairs.append(np.stack([one, two]))
         if sum(len(p[0]) for p in pairs) > max(MOST_KEPT, 10 * len(self.first)):
             raise BadGeometry(
-                f"more than {MOST_KEPT:,} pairs of edges of outlines or ground are parallel and adjacent: much of the drawing is doubled"
+                f"more than {MOST_KEPT:,} pairs of edges of outlines or ground are parallel and adjacent: much of "
+                "the drawing is doubled. Remove the duplicates"
             )
 
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
@@ -260,8 +261,8 @@ def box_pairs(low: np.ndarray, high: np.ndarray, most: int) -> tuple[np.ndarray,
         total += int(meet.sum())
         if total > most:
             raise BadGeometry(
-                f"the boxes around {len(order)} outlines or lines intersect in more than {most:,} pairs, the greatest number "
-                "considered: much of the drawing is doubled"
+                f"the boxes around {len(order)} outlines or lines intersect in more than {most:,} pairs, the limit "
+                "of this program: much of the drawing is doubled. Remove the duplicates"
             )
     return tuple(np.concatenate(found, axis=1))
 

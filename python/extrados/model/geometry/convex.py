@@ -128,7 +128,10 @@ def rounded(polygon: np.ndarray, radius: float, steps: int = 3) -> np.ndarray:
     half = 0.5 * np.arccos(np.clip((u * v).sum(axis=1), -1.0, 1.0))
     cut = radius / np.tan(half)
     if (cut + np.roll(cut, -1) >= length).any():
-        raise ValueError(f"nothing remains of an edge of {length.min():.4g} m if its corners are worn to {radius:g} m")
+        raise ValueError(
+            f"an edge has a length of {length.min():.4g} m, so nothing remains of it if corners are worn to a "
+            f"radius of {radius:g} m: give a smaller radius"
+        )
     out = []
     for point, a, b, angle, c in zip(polygon, u, v, half, cut, strict=True):
         if np.pi - 2.0 * angle < 0.2:  # a corner of a drawn arc, not of a block

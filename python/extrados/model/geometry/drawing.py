@@ -103,5 +103,5 @@ def numbers(value: object, width: int, where: str) -> np.ndarray:
     except (TypeError, ValueError, OverflowError):  # a whole number may have hundreds of digits
         array = np.empty(0)
     if array.ndim != 2 or array.shape[1] != width or not np.isfinite(array).all():
-        raise BadGeometry(f"{where}: expected a list of lists of {width} numbers")
+        raise BadGeometry(f"{where}: expected a list of rows of {width} numbers each")
     return array

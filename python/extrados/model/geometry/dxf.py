@@ -170,8 +170,10 @@ def _project(found: _Read, plane: Plane | None) -> list[str]:
     (across,) = {0, 1, 2} - set(axes)
     if not flat[across]:
         return [
-            f"lines are projected to the plane {used}; along {'xyz'[across]} they extend over {extent[across]:.4g} units of the drawing. "
-            "Key: section"
+            (
+                f"the lines are projected to the plane {used}, although along {'xyz'[across]} they extend over {extent[across]:.4g} "
+                "units of the drawing. The key `section` chooses another plane"
+            )
         ]
     return [] if used == "xy" else [f"the section lies in the plane {used}: {used[0]} is horizontal, z is vertical"]
 
@@ -350,9 +352,7 @@ def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
 
 
 def _many(sagitta: float) -> str:
-    return (
-        f"this curve requires more than {MOST_LINES:,} chords with a sagitta of {sagitta:.2g} drawing units: check the scale of the drawing"
-    )
+    return f"a curve requires more than {MOST_LINES:,} chords with a sagitta of {sagitta:.2g} drawing units: check the scale of the drawing"
 
 
 def _refuse_wide(entity: Any, kind: str, sagitta: float) -> None:
@@ -455,24 +455,24 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
             outlines.append((layer, "", face))
         loose = [(end.place, end.gap) for end in net.loose]
         notes.append(
-            f"{len(outlines) - len(closed)} blocks were joined from {len(lines)} loose lines and arcs whose ends are within "
-            f"{1e3 * tolerance:g} mm (join_tolerance)"
+            f"{len(outlines) - len(closed)} blocks were joined from {len(lines)} loose lines and arcs whose "
+            f"ends are within {1000.0 * tolerance:g} mm (`join_tolerance`)"
         )
     if found.hidden:
         told = ", ".join(f"{n} of layer '{layer}' ({why})" for (layer, why), n in sorted(found.hidden.items()))
-        notes.append(f"not read, because the drawing does not display it: {told}")
+        notes.append(f"entities that the drawing does not display are not read: {told}")
     if not outlines and stones:
         near = [gap for _, gap in loose if gap is not None]
-        hint = f"; ends of lines are at least {1e3 * min(near):.3g} mm apart (see join_tolerance)" if near else ""
+        hint = f"; ends of lines are at least {1000.0 * min(near):.3g} mm apart (see `join_tolerance`)" if near else ""
         hint += f"; {notes[-1]}" if found.hidden else ""
         raise BadGeometry(f"{name}: the layers read contain no closed polyline, and no lines that form a closed outline{hint}")
     if len(outlines) > MOST_BLOCKS:
         raise BadGeometry(f"{name}: more than {MOST_BLOCKS} blocks")
     if found.left_out:
         told = ", ".join(f"{n} of {what}" for what, n in sorted(found.left_out.items()))
-        notes.append(f"ignored, because these entities are not lines: {told}")
+        notes.append(f"entities that are not lines are ignored: {told}")
     if found.other_layers:
-        notes.append(f"ignored layers: {', '.join(f'{layer} ({n})' for layer, n in sorted(found.other_layers.items()))}")
+        notes.append(f"layers that are not read: {', '.join((f'{layer} ({n})' for layer, n in sorted(found.other_layers.items())))}")
     polygons, numbers = [], itertools.count(1)
     taken: Counter[str] = Counter()
     for layer, handle, points in outlines:

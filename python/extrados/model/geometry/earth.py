@@ -116,7 +116,12 @@ def passive_left_out(earth: Earth | None) -> list[str]:
     """The warning of strategies that know the weight of fill, but not what it resists."""
     if earth is None or earth.passive <= 0.0:
         return []
-    return [("the fill acts by its weight and moves with the blocks; its passive pressure, which limit analysis includes, is neglected")]
+    return [
+        (
+            "the fill acts only by its weight and moves with the blocks; this analysis neglects its passive "
+            "pressure, which limit analysis includes"
+        )
+    ]
 
 
 def _columns(block: np.ndarray, count: int, x0: np.ndarray, x1: np.ndarray, y0: np.ndarray, y1: np.ndarray, top: np.ndarray) -> np.ndarray:

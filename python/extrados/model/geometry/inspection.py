@@ -66,8 +66,7 @@ class Inspection:
         shown = "; ".join(
             (
                 f"blocks {self.between(flaw)} {'are' if flaw.kind == 'gap' else 'overlap by'} "
-                f"{length(flaw.depth)}{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = "
-                f"{flaw.place[1]:.4g} m"
+                f"{length(flaw.depth)}{' apart' if flaw.kind == 'gap' else ''} near x = {flaw.place[0]:.4g} m, y = {flaw.place[1]:.4g} m"
             )
             for flaw in flaws[:SHOWN]
         )
@@ -79,10 +78,10 @@ class Inspection:
         if len(known) < len(mends):
             worst = next(flaw for flaw, m in zip(flaws, mends, strict=True) if m is None)
             what = "overlap by" if worst.kind == "overlap" else "are apart by"
-            return f"blocks {self.between(worst)} {what} too much for a tolerance: draw them again"
+            return f"blocks {self.between(worst)} {what} more than a tolerance can close: draw them again"
         cure = f'contact_tolerance = "{1e3 * max(known):.3g} mm" would close {"this gap or overlap" if len(flaws) == 1 else "all of them"}'
         wide = max(known) > JOINT and all(flaw.kind == "gap" for flaw in flaws)
-        return f'{cure}; for joints of mortar, give mortar_gap = "{1e3 * max(known):.3g} mm"' if wide else cure
+        return f'{cure}; if the joints contain mortar, give mortar_gap = "{1000.0 * max(known):.3g} mm"' if wide else cure
 
     def complaints(self) -> list[str]:
         """Why it cannot be computed: overlaps, no ground, blocks that nothing holds; empty where it can."""
@@ -92,7 +91,7 @@ class Inspection:
         if not (self.contacts.b < 0).any():
             hint = next((f for f in self.flaws if f.second < 0), None)
             near = f"; the nearest blocks, {self.between(hint)}, are {length(hint.depth)} apart" if hint else ""
-            found.append(f"no block touches the ground: give `ground` segments at the supports{near}")
+            found.append(f"no block touches the ground: give segments of `ground` at the supports{near}")
         elif self.loose:
             names = ", ".join(f"'{self.names[i]}'" for i in self.loose[:5])
             more = f" and {len(self.loose) - 5} more" if len(self.loose) > 5 else ""
@@ -112,13 +111,12 @@ class Inspection:
         gaps = [f for f in self.of("open") if self.mends(f) is not None]
         if gaps:
             found.append(
-                f"{_count(gaps, 'gap')} wider than contact_tolerance ({1e3 * self.tolerance:g} mm) "
-                f"{'is' if len(gaps) == 1 else 'are'} modelled as open, which changes the forces on the blocks: "
-                f"{self._told(gaps)}; {self._cure(gaps)}"
+                f"{_count(gaps, 'gap')} wider than `contact_tolerance` ({1000.0 * self.tolerance:g} mm) {('is' if len(gaps) == 1 else 'are')} "
+                f"modelled as open, which changes the forces on the blocks: {self._told(gaps)}; {self._cure(gaps)}"
             )
         if self.drawing.loose:
             (x, y), gap = min(self.drawing.loose, key=lambda end: np.inf if end[1] is None else end[1])
-            near = "" if gap is None else f", {length(gap)} from the next line (see join_tolerance)"
+            near = "" if gap is None else f", {length(gap)} from the next line (see `join_tolerance`)"
             many = len(self.drawing.loose)
             found.append(
                 f"{many} end{'s' if many > 1 else ''} of loose lines {'meet' if many > 1 else 'meets'} no other line, so these "
@@ -128,8 +126,8 @@ class Inspection:
             heights = sorted({round(y, 4) for _, y in self.levels})
             named = ", ".join(f"'{self.names[i]}'" for i, _ in self.levels[:SHOWN])
             found.append(
-                f"there is no support below the horizontal soles of {named}{' and others' if len(self.levels) > SHOWN else ''} at "
-                f"y = {', '.join(f'{y:.4g}' for y in heights)} m. To make supports of them, give foundation_levels"
+                f"no support is below the horizontal soles of {named}{(' and others' if len(self.levels) > SHOWN else '')} at y = "
+                f"{', '.join(f'{y:.4g}' for y in heights)} m. To make supports of these soles, give `foundation_levels`"
             )
         return found
 
@@ -140,8 +138,8 @@ class Inspection:
         if closed:
             worst = closed[0]
             found.append(
-                f"{_count(closed, 'gap or overlap', 'gaps and overlaps')} of up to {length(worst.depth)} were closed within "
-                f"contact_tolerance ({1e3 * self.tolerance:g} mm). The widest is between {self.between(worst)}."
+                f"{_count(closed, 'gap or overlap', 'gaps and overlaps')} of up to {length(worst.depth)} were "
+                f"closed within `contact_tolerance` ({1000.0 * self.tolerance:g} mm). The widest is between {self.between(worst)}."
             )
         return found
 
@@ -205,7 +203,7 @@ def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarra
     if not (np.abs(points) <= FARTHEST).all():  # NaN too
         far = np.abs(points).max()
         near = np.floor((points + shift).min(axis=0)) if far <= 1e12 else None  # what is farther is no place on Earth
-        hint = "" if near is None else f"; origin = [{near[0]:.0f}, {near[1]:.0f}] would move it near the origin"
+        hint = "" if near is None else f"; origin = [{near[0]:.0f}, {near[1]:.0f}] would move the drawing near the origin"
         raise BadGeometry(f"block '{polygon.name}': a vertex is farther than {FARTHEST:g} m from the origin{hint}")
     # Vertices this near are one; a survey's tolerance is no reason to lose the corners of its stones.
     least = min(tolerance, 1e-4)
@@ -219,7 +217,7 @@ def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarra
         raise BadGeometry(f"block '{polygon.name}': the outline crosses itself")
     area = signed_area(points)
     if abs(area) < tolerance * float(np.ptp(points, axis=0).max()):
-        raise BadGeometry(f"block '{polygon.name}': the area is practically zero ({abs(area):.3g} m^2)")
+        raise BadGeometry(f"block '{polygon.name}' has practically no area ({abs(area):.3g} m^2)")
     return points if area > 0.0 else points[::-1]
 
 

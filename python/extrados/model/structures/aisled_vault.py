@@ -175,7 +175,7 @@ def _aisle(
 ) -> tuple[dict[str, list[int]], np.ndarray, int]:
     """Aisle vault, buttress and flyer: their chains, the outer face of the pier, and the buttress."""
     if aisle.span <= 0.0:
-        raise BadGeometry(f"{word} aisle: no width remains for the aisle (span {aisle.span:.4g} m)")
+        raise BadGeometry(f"{word} aisle: no width remains for the aisle (its span would be {aisle.span:.4g} m)")
     inner = 0.5 * aisle.span
     outer, half = inner + aisle.thickness, 0.5 * np.radians(aisle.embrace)
     centre = np.array([back + side * inner, aisle.springing])
@@ -221,7 +221,7 @@ def _flyer(
     chord = foot - head
     length = float(np.hypot(*chord))
     if flyer.radius < 0.5 * length:
-        raise BadGeometry(f"{word}: the radius {flyer.radius:g} m is less than half of the chord ({length:.4g} m)")
+        raise BadGeometry(f"{word}: the radius of {flyer.radius:g} m is less than half of the chord ({length:.4g} m)")
     sag = np.sqrt(flyer.radius**2 - 0.25 * length**2)
     down = np.array([chord[1], -chord[0]]) / length  # to the lower side of the chord
     centre = 0.5 * (head + foot) + sag * down
@@ -246,7 +246,7 @@ def _flyer(
     ]
     if np.any(np.diff([point[0] for point in q]) <= 0.0):
         raise BadGeometry(
-            f"{word}: {flyer.voussoirs} voussoirs do not fit between the vertical end joints; give a larger radius or fewer voussoirs"
+            f"{word}: {flyer.voussoirs} voussoirs do not fit between the vertical end joints: give a larger radius or fewer voussoirs"
         )
 
     def place(points: np.ndarray) -> np.ndarray:
@@ -271,20 +271,20 @@ def _flyer(
 class FlyerTable(Table):
     """A flying buttress: an arc of voussoirs from the pier down to the outer buttress, end joints vertical."""
 
-    head: Length = key(about="height of the intrados at the pier", gt=0)
-    foot: Length = key(about="height of the intrados at the buttress", gt=0)
+    head: Length = key(about="height of the intrados of the flyer at the pier", gt=0)
+    foot: Length = key(about="height of the intrados of the flyer at the buttress", gt=0)
     thickness: Length = key(about="thickness of the flyer", gt=0)
     radius: Length = key(about="radius of its intrados", gt=0)
-    voussoirs: int = key(6, "number of voussoirs of the flyer", ge=2, le=500)
+    voussoirs: int = key(6, "number of voussoirs of the flyer (flying buttress)", ge=2, le=500)
 
 
 class AddedTable(Table):
     """A buttress added outside later, that props the outer one by a flyer (thesis Fig. 3-8)."""
 
-    gap: Length = key(about="clear distance of the added buttress from the outer face of the outer buttress", gt=0)
+    gap: Length = key(about="clear distance between the outer buttress and the added buttress", gt=0)
     width: Length = key(about="its width", gt=0)
     top: Length = key(about="its height", gt=0)
-    flyer: FlyerTable = key(about="flyer between the two buttresses; its upper end is on the outer buttress")
+    flyer: FlyerTable = key(about="flyer between the outer buttress (upper end) and the added buttress")
 
 
 class RightSide(Table):
@@ -293,7 +293,7 @@ class RightSide(Table):
     aisle: bool | None = key(None, "whether there is an aisle on this side")
     aisle_span: Length | None = key(None, "clear span of the aisle", gt=0)
     aisle_thickness: Length | None = key(None, "thickness of the aisle vault", gt=0)
-    aisle_springing: Length | None = key(None, "height of the aisle vault's centre above the ground", gt=0)
+    aisle_springing: Length | None = key(None, "height above the ground of the centre of the aisle vault", gt=0)
     buttress_width: Length | None = key(None, "width of the outer buttress", gt=0)
     buttress_top: Length | None = key(None, "height of the outer buttress", gt=0)
     flyer: FlyerTable | None = key(None, "flying buttress over the aisle")
@@ -318,7 +318,7 @@ class AisledVault(PresetStructure):
     word: ClassVar = "church section"
     kind: Literal["aisled-vault"]
     preset: Literal["vezelay-like", "colombier-like", "colombier-tall"] | None = key(
-        None, "estimated dimensions of a church in the manner of thesis 3.5; other keys overrule them"
+        None, "estimated dimensions of a church in the manner of thesis 3.5; keys that are given replace its values"
     )
     radius: Length = key(about="radius of the centre line of the nave vault", gt=0)
     thickness: Length = key(about="thickness of the nave vault", gt=0)
@@ -332,9 +332,9 @@ class AisledVault(PresetStructure):
     aisle_embrace: Angle = key(150.0, "angle of embrace of the aisle vaults", ge=20, le=180)
     aisle_voussoirs: int = key(14, "number of voussoirs of each aisle vault", ge=4, le=5000)
     aisle_springing: Length | None = key(None, "height of the centres of the aisle vaults above the ground", gt=0)
-    aisle_span: Length | None = key(None, "clear span of the aisles; alternatively give half_width", gt=0)
+    aisle_span: Length | None = key(None, "clear span of the aisles; alternatively give `half_width`", gt=0)
     half_width: Length | None = key(
-        None, "distance from the axis to the outer face of the buttresses; the aisles take the remaining width", gt=0
+        None, "distance from the axis of the nave to the outer face of the buttresses; the aisles take the remaining width", gt=0
     )
     buttress_width: Length | None = key(None, "width of the outer buttresses", gt=0)
     buttress_top: Length | None = key(
@@ -342,7 +342,7 @@ class AisledVault(PresetStructure):
     )
     flyer: FlyerTable | None = key(None, "flying buttresses over the aisles")
     added: AddedTable | None = key(None, "buttresses added on both sides", source="thesis Fig. 3-8")
-    right: RightSide | None = key(None, "values that are different on the right-hand side")
+    right: RightSide | None = key(None, "values for the right-hand side that differ from the left-hand side")
     fill_level: Length | None = key(None, "height of the top of the fill over the nave vault, above the ground", gt=0)
     aisle_fill_level: Length | None = key(None, "height of the top of the fill over the aisle vaults, above the ground", gt=0)
     fill_density: Density = key(1600.0, "density of the fill", gt=0, le=30000)

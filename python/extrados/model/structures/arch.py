@@ -92,17 +92,19 @@ class Arch(Structure):
     thickness: Length = key(about="thickness of the ring, t_A", gt=0, le=1e4)
     embrace: Angle = key(about="angle of embrace, beta_A, from springing to springing", ge=20, le=270)
     voussoirs: int = key(about="number of voussoirs, n_A; it determines the joints at which hinges can form", ge=4, le=5000)
-    thickness_factor: float = key(1.0, "ratio of effective to real thickness; 0.8 for worn corners", source="thesis 5.3.3", gt=0, le=1)
+    thickness_factor: float = key(
+        1.0, "effective thickness, divided by the real thickness; 0.8 for worn corners", source="thesis 5.3.3", gt=0, le=1
+    )
     depth: Length = key(1.0, "depth out of plane", gt=0)
     skew: Angle = key(
         0.0,
-        "for an arch in space: skew angle in plan between its faces and the square section; the coursing joints remain "
-        "parallel to the springings",
+        "for an arch in space: skew angle in plan between its faces and a square section; coursing "
+        "joints remain parallel to the springings",
         gt=-75,
         lt=75,
     )
     stones_across: int = key(
-        1, "for an arch in space: number of blocks in a course across the depth, offset by half a block in every other course", ge=1, le=200
+        1, "for an arch in space: number of blocks in a course across the depth; every other course is offset by half a block", ge=1, le=200
     )
 
     @model_validator(mode="after")

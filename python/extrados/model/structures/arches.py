@@ -44,7 +44,7 @@ def make_pointed_arch(
     if voussoirs % 2 or voussoirs < 4:
         raise BadGeometry(f"pointed arch: {voussoirs} voussoirs were given; expected an even number of at least 4")
     if radius < 0.5 * span:
-        raise BadGeometry(f"pointed arch: the radius {radius:g} m is below half of the span {span:g} m")
+        raise BadGeometry(f"pointed arch: the radius of {radius:g} m is below half of the span of {span:g} m")
     away = radius - 0.5 * span  # the centre of an arc lies this far beyond the axis
     crown_in, crown_out = np.arccos(away / radius), np.arccos(away / (radius + thickness))
     half = voussoirs // 2
@@ -92,7 +92,7 @@ class PointedArch(Structure):
     word: ClassVar = "pointed arch"
     kind: Literal["pointed-arch"]
     span: Length = key(about="clear span", gt=0)
-    radius: Length = key(about="radius of the intrados: half of the span gives a round arch, the span an equilateral arch", gt=0)
+    radius: Length = key(about="radius of the intrados: half of the span gives a round arch, the whole span an equilateral arch", gt=0)
     thickness: Length = key(about="thickness of the ring", gt=0)
     voussoirs: int = key(about="number of voussoirs, even", ge=4, le=5000)
     depth: Length = key(1.0, "depth out of plane", gt=0)

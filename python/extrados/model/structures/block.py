@@ -101,7 +101,7 @@ def make_block(
         mass += head_mass
     toe_left = toe_right if toe_left is None else toe_left
     if mass is None or inertia is None or centre_height is None or toe_right is None or toe_left is None:
-        raise ValueError("a block requires either width and height, or mass, inertia, centre_height and toe_right")
+        raise ValueError("a block requires either `width` and `height`, or `mass`, `inertia`, `centre_height` and `toe_right`")
     if not min(mass, inertia, centre_height, toe_right, toe_left) > 0.0:
         raise ValueError("mass, inertia, height of the centre of mass and toes of a block must be above zero")
     top = 2.0 * centre_height if top is None else top
@@ -147,9 +147,7 @@ class Block(Structure):
     centre_height: Length | None = key(None, "height of the centre of mass of the body above its toes", gt=0)
     toe_right: Length | None = key(None, "horizontal distance of the right toe from the centre of mass", gt=0)
     toe_left: Length | None = key(None, "horizontal distance of the left toe from the centre of mass; default: that of the right toe", gt=0)
-    head_mass: Mass = key(
-        0.0, "for a rectangular pier with a free head: mass that moves with the middle of the head and rotates freely on it", ge=0
-    )
+    head_mass: Mass = key(0.0, "for a rectangular pier whose head rotates freely: mass that moves with the middle of the head", ge=0)
     base_slope: Angle = key(0.0, "slope of the ground below the block; positive if it rises to the right", gt=-60, lt=60)
 
     @model_validator(mode="after")
@@ -158,14 +156,14 @@ class Block(Structure):
         if self.width is not None or self.height is not None:
             if body:
                 raise ValueError(
-                    f"width and height describe a rectangle, but {', '.join(body)} describe another body: give only one of the two"
+                    f"`width` and `height` describe a rectangle, but {', '.join(body)} describe another body: give only one of the two"
                 )
             if self.width is None or self.height is None:
-                raise ValueError("a rectangle requires width and height")
+                raise ValueError("a rectangle requires `width` and `height`")
         elif missing := [name for name in _BODY[:-1] if getattr(self, name) is None]:
-            raise ValueError(f"give either width and height, or {', '.join(_BODY[:-1])} ({', '.join(missing)} missing)")
+            raise ValueError(f"give either `width` and `height`, or {', '.join(_BODY[:-1])} ({', '.join(missing)} missing)")
         if self.head_mass and self.width is None:
-            raise ValueError("head_mass is only for a rectangle with width and height; for another body, include this mass in the key mass")
+            raise ValueError("`head_mass` is only for a rectangle with `width` and `height`; for another body, include this mass in `mass`")
         return self
 
     def assembly(self, density: float, folder: Path) -> BlockAssembly:

@@ -89,7 +89,9 @@ def _groups(inspection: Inspection) -> dict[str, list[int]]:
     for layer, lines in inspection.drawing.marks.items():
         marked = _marked(middle, lines, reach)
         if not marked:
-            raise BadGeometry(f"the lines of layer '{layer}' mark no joint, because none passes within 10 mm of the middle of a joint")
+            raise BadGeometry(
+                f"the lines of layer '{layer}' name no joint, because none of them passes within 10 mm of the middle of a joint"
+            )
         found[layer] = marked
     return found
 
@@ -121,10 +123,10 @@ class LayerTable(Table):
     name: str = key(about="name of the layer, in upper or lower case", max_length=255)
     role: Literal["stones", "ground", "joints", "left-out"] = key(
         "stones",
-        "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines "
-        "along joints, which [[joints.types]] can then name by this layer; left-out: this layer is not read",
+        "meaning of the layer. stones: blocks; ground: lines of the ground, like the layer GROUND; joints: lines along joints, so that "
+        "[[joints.types]] can name these joints by the layer; left-out: the layer is not read",
     )
-    material: str | None = key(None, "name in [materials] of the material of the blocks on this layer")
+    material: str | None = key(None, "material of the blocks on this layer: a name in [materials]")
 
     @model_validator(mode="after")
     def _stones(self) -> "LayerTable":
@@ -141,28 +143,31 @@ class Blocks(Structure):
     kind: Literal["blocks"]
     file: str | None = key(
         None,
-        "file with the blocks, in the folder of the deck: JSON, COMPAS JSON or DXF; solids as OBJ, STL, glTF (GLB), IFC or COMPAS JSON; or, with "
-        "[structure.scan], a point cloud as PLY, XYZ, LAS or LAZ",
+        "file with the blocks, in the folder of the deck. Sections: JSON, COMPAS JSON or DXF; solids: OBJ, STL, glTF (GLB), IFC or "
+        "COMPAS JSON; with [structure.scan], a point cloud: PLY, XYZ, LAS or LAZ",
         max_length=500,
     )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
-        None, "unit of a file that gives none (DXF without $INSUNITS, COMPAS, OBJ, STL, point clouds)"
+        None, "unit of the file, if the file gives none (DXF without $INSUNITS, COMPAS, OBJ, STL, point clouds)"
     )
     up: Literal["y", "z"] | None = key(
         None,
-        "axis that points up in a file of solids; default z, for glTF y. With y, the x axis remains and the z axis of the file becomes -y",
+        "axis of a file of solids that points upward; default z, for glTF y. With y, the x axis remains, "
+        "and the z axis of the file becomes -y",
     )
     section: Plane | None = key(
         None,
-        "plane of a file in space that is the section: its second letter is the vertical axis. Default: for DXF, and for OBJ and STL "
-        "without volume, the plane in which everything lies. With this key, solids of OBJ and STL that are prisms across the plane are "
-        "read as a section",
+        "plane of a file in space that is the section; the second letter is the vertical axis. Default: "
+        "for DXF, and for OBJ and STL without volume, the plane that contains everything. With this "
+        "key, solids of OBJ and STL that are prisms perpendicular to the plane are read as a section",
     )
     layers: list[str] | None = key(None, "layers of the drawing that are read as blocks; default: all layers", max_length=200)
     layer: list[LayerTable] = key([], "layers of the drawing with a material or another meaning, [[structure.layer]]", max_length=200)
-    join_tolerance: Length = key(1e-3, "distance below which ends of loose lines and arcs of a drawing count as one point", gt=0, le=0.1)
+    join_tolerance: Length = key(
+        1e-3, "ends of loose lines and arcs of a drawing that are closer than this distance are joined", gt=0, le=0.1
+    )
     origin: Annotated[list[Length], Field(min_length=2, max_length=2)] | Literal["lower-left"] | None = key(
-        None, '[x, y] of the file that becomes 0, 0, or "lower-left" of all blocks; for georeferenced surveys'
+        None, 'point [x, y] of the file that becomes the origin, or "lower-left" of all blocks; for georeferenced surveys'
     )
     block: list[BlockTable] | None = key(None, "blocks of the structure, if no file is given", max_length=20000)
     ground: list[list[Length]] | None = key(
@@ -180,25 +185,24 @@ class Blocks(Structure):
     )
     contact_tolerance: Length = key(
         1e-4,
-        "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value "
-        "are ignored; contacts of solids that are narrower than this value carry no force. `check` reports the "
-        "tolerance that would close each gap. The default for solids is at most 1/10000 of "
-        "their size",
+        "tolerance of contacts: faces that are closer than this value touch each other; overlaps below this value are ignored; contacts "
+        "of solids that are narrower carry no force. `check` reports the tolerance that would close each gap. The default for solids is "
+        "at most 1/10000 of their size",
         gt=0,
         le=0.1,
     )
     mortar_gap: Length | None = key(
         None,
         "greatest thickness of joints that are drawn as gaps. The faces on both sides of such a joint are moved to the middle of the "
-        "gap, so that the blocks touch. Default: gaps beyond contact_tolerance are open",
+        "gap, so that the blocks touch. Default: gaps wider than `contact_tolerance` stay open",
         gt=0,
         le=0.1,
     )
     depth: Length | None = key(None, "depth out of plane; default: that of the file, otherwise 1 m", gt=0)
-    scan: Scan | None = key(None, "courses of a point cloud, by which the scanned wall or barrel is cut into blocks")
+    scan: Scan | None = key(None, "courses into which a scanned wall or barrel (a point cloud) is divided, and their blocks")
     fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level above the highest block")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
-    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, considered by their weight")
+    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, of which only the weight acts")
 
     @model_validator(mode="after")
     def _source(self) -> "Blocks":
@@ -214,13 +218,13 @@ class Blocks(Structure):
             raise ValueError(f"scan: the table [structure.scan] belongs to a file with a point cloud ({', '.join(CLOUDS)})")
         if self.unit is not None and self.file is not None and self.file.lower().endswith(tuple(MODELS)):
             raise ValueError(
-                f"unit: {self.file} gives its own unit (IFC), or is in metres by its standard (glTF). Remove `unit`; a file with the wrong size "
-                "must be scaled in the program that wrote it"
+                f"unit: {self.file} gives its own unit (IFC), or is in metres by its standard (glTF). Remove "
+                "`unit`. If the size is wrong, scale the file in the program that wrote it"
             )
         refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         names = [layer.name.upper() for layer in self.layer]
         if len(set(names)) < len(names):
-            raise ValueError("layer: two tables were given for one layer")
+            raise ValueError("layer: two tables [[structure.layer]] were given for one layer")
         return self
 
     def _drawing(self, folder: Path) -> tuple[Drawing, float | None]:

@@ -104,7 +104,7 @@ def lintels_of(bond: Bond, length: float, height: float, holes: list[Box]) -> di
             continue
         over = [o for k, o in enumerate(holes) if k != i and o[0] < right and o[1] > left]
         if any(o[2] <= head < o[3] for o in over):
-            raise BadGeometry(f"opening {i + 1} overlaps another opening, so a lintel has no place: give lintels = false")
+            raise BadGeometry(f"opening {i + 1} overlaps another opening, so there is no place for a lintel: give lintels = false")
         top = min([head + tall, height, *(o[2] for o in over if o[2] > head)])
         low, high = max(0.0, left - bearing), min(length, right + bearing)
         for k, (a, b, c, d) in enumerate(holes):
@@ -189,12 +189,14 @@ def _joints(wall: _Units, size: float) -> list[tuple[str, np.ndarray, np.ndarray
 class Bonded(Table):
     """Keys of walls in running bond, in a plane or around corners."""
 
-    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course; courses then alternate")
-    lintels: bool = key(True, "true: one block as lintel over each opening; false: the units above rest on the units beside the opening")
+    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course (whole or half); the courses above alternate")
+    lintels: bool = key(
+        True, "true: a single block is the lintel over each opening; false: the units above rest on the units beside the opening"
+    )
     lintel_height: Length | None = key(None, "height of the lintels; default: one course", gt=0)
     lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default: half a unit", gt=0)
     least_unit: float = key(
-        0.25, "share of the length and height of a unit below which a cut piece is joined to its neighbour", ge=0, le=0.5
+        0.25, "a cut piece that is smaller than this share of the length or height of a unit is joined to its neighbour", ge=0, le=0.5
     )
 
     def bond(self, unit_length: float, unit_height: float) -> Bond:

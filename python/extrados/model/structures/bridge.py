@@ -33,8 +33,8 @@ class Span(Table):
     )
     intrados: list[list[Length]] | None = key(
         None,
-        'measured points [x, y] of the intrados from springing to springing (both at y = 0), for shape = "surveyed"; the '
-        "points then give span and rise",
+        'for shape = "surveyed": measured points [x, y] of the intrados from springing to springing '
+        "(both at y = 0); the points give span and rise",
         min_length=4,
         max_length=2000,
     )
@@ -42,12 +42,12 @@ class Span(Table):
     rise: Length = key(about="rise of the intrados", gt=0)
     thickness: Length = key(about="thickness of the arch at the crown, including all rings", gt=0)
     springing_thickness: Length | None = key(
-        None, "thickness at the springings, with linear variation along the intrados; default: as at the crown", gt=0
+        None, "thickness of the arch at the springings, with linear variation along the intrados; default: as at the crown", gt=0
     )
     haunch_radius: Length | None = key(
-        None, "radius of the side arcs of a three-centred arch; default: the radius with which they subtend 60 degrees", gt=0
+        None, "radius of the side arcs of a three-centred arch; default: the radius for which each side arc subtends 60 degrees", gt=0
     )
-    rings: int = key(1, "number of rings of equal thickness, which can slide on each other and separate", ge=1, le=10)
+    rings: int = key(1, "number of rings of equal thickness; rings can slide on each other and separate", ge=1, le=10)
     voussoirs: int = key(40, "number of voussoirs of each ring; even for a pointed arch", ge=4, le=2000)
 
     @model_validator(mode="before")
@@ -57,7 +57,7 @@ class Span(Table):
         if not isinstance(given, dict) or given.get("shape") != "surveyed" or not isinstance(given.get("intrados"), list):
             return given
         if twice := [name for name in ("span", "rise") if name in given]:
-            raise ValueError(f"{twice[0]}: the points of intrados determine this value: remove this key")
+            raise ValueError(f"{twice[0]}: the points of `intrados` determine this value: remove this key")
         points = [point for point in given["intrados"] if isinstance(point, list) and len(point) == 2]
         if len(points) < len(given["intrados"]) or not all(isinstance(v, int | float) for point in points for v in point):
             raise ValueError("intrados: expected points [x, y] in metres")
@@ -87,7 +87,7 @@ class Span(Table):
         if self.shape == "pointed" and self.voussoirs % 2:
             raise ValueError("voussoirs: a pointed arch requires an even number")
         if self.haunch_radius is not None and self.shape != "three-centred":
-            raise ValueError("haunch_radius is only for a three-centred arch: remove haunch_radius")
+            raise ValueError("`haunch_radius` is only for a three-centred arch: remove `haunch_radius`")
         return self
 
 
@@ -97,7 +97,7 @@ class Pier(Table):
     width: Length = key(about="width at the springings", gt=0)
     height: Length = key(about="height of the springings of the pier above its base", gt=0)
     base_width: Length | None = key(None, "width at the base; default: as at the springings", gt=0)
-    courses: int = key(1, "number of blocks into which level joints divide the pier", ge=1, le=200)
+    courses: int = key(1, "number of blocks of the pier; they are divided by level joints", ge=1, le=200)
 
 
 class Abutment(Table):
@@ -188,7 +188,7 @@ def _three_centred(a: float, b: float, side: float | None, share: np.ndarray) ->
         normal = np.column_stack([np.sin(turn), np.cos(turn)])
         return a * normal, normal
     if b - side < 1e-9 * b:
-        raise BadGeometry("three-centred arch: haunch_radius must be less than the rise")
+        raise BadGeometry("three-centred arch: `haunch_radius` must be less than the rise")
     radius = ((a - side) ** 2 + b * b - side * side) / (2.0 * (b - side))
     angle = float(np.arctan2(radius - b, a - side))  # that the side arcs subtend
     length = side * angle
@@ -289,7 +289,9 @@ class _Bridge:
         """Shaft and skewbacks between the last joint line of one span and the first of the next."""
         if left[-1, 0] > right[-1, 0] + 1e-9:
             need = pier.width + left[-1, 0] - right[-1, 0]
-            raise BadGeometry(f"{name}: the arches overlap in this pier; its width at the springings must be at least {need:.4g} m")
+            raise BadGeometry(
+                f"{name}: the arches on both sides overlap in this pier: give a width of at least {need:.4g} m at the springings"
+            )
         base = pier.width if pier.base_width is None else pier.base_width
         middle = 0.5 * (left[0, 0] + right[0, 0])
         levels = np.linspace(-pier.height, 0.0, pier.courses + 1)
@@ -414,13 +416,13 @@ class Bridge(Structure):
     crossed: ClassVar[Crossed] = "top"
     starter_analysis: ClassVar = "moving-load"
     spans: list[Span] = key(about="arches from left to right", min_length=1, max_length=50)
-    piers: list[Pier] = key([], "piers from left to right; a single pier applies to all", max_length=49)
-    abutments: Abutment | None = key(None, "abutments as bodies on the ground; default: springings that do not move")
+    piers: list[Pier] = key([], "piers between the spans, from left to right; a single pier is used for all", max_length=49)
+    abutments: Abutment | None = key(None, "abutments, modelled as bodies on the ground; default: fixed springings")
     backing: Backing | None = key(None, "masonry over the haunches")
     fill: Fill | None = key(None, "soil over the arches")
     surfacing: Surfacing | None = key(None, "road surface or ballast on the fill")
-    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, considered by their weight")
-    depth: Length = key(1.0, "width across the bridge that acts together, for instance between the spandrel walls", gt=0)
+    spandrels: Spandrels | None = key(None, "spandrel walls at the edges of the arches, of which only the weight acts")
+    depth: Length = key(1.0, "width across the bridge that acts as one, for instance between the spandrel walls", gt=0)
 
     @model_validator(mode="after")
     def _piers(self) -> "Bridge":

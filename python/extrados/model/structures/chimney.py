@@ -58,11 +58,12 @@ class Chimney(Spatial):
     rings: int = key(about="number of rings from the ground to the top", ge=1, le=400)
     blocks: int = key(
         1,
-        "number of blocks in a ring; every other ring is offset by half a block. 1: each ring is one body, for instance if bands tie it",
+        "number of blocks in a ring; every other ring is offset by half a block. 1: each ring is a "
+        "single body, for instance if steel bands tie it",
         ge=1,
         le=100,
     )
-    facets: int = key(16, "number of flat facets of the circumference, a multiple of twice the number of blocks", ge=3, le=200)
+    facets: int = key(16, "number of flat facets around the circumference: a multiple of twice the number of blocks", ge=3, le=200)
 
     @property
     def widths(self) -> tuple[float, float]:

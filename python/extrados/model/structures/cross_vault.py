@@ -106,15 +106,23 @@ class CrossVault(Spatial):
     voussoirs: int = key(about="number of courses of a barrel from springing to springing; an even number", ge=4, le=400)
     edge: Length | None = key(
         None,
-        "horizontal distance by which the webs extend over the support, beyond the corner of the extrados at the springing; default: the thickness",
+        "horizontal distance by which the webs extend over the support, beyond the point of the extrados "
+        "at the springing; default: the thickness",
         ge=0,
     )
-    stone_length: Length | None = key(None, "length of a block along the barrel; default: whole courses, mitred along the groins", gt=0)
-    springers: int = key(
-        1, "number of courses from the springing that form one block in each corner; with 0, each web has its own support", ge=0, le=100
+    stone_length: Length | None = key(
+        None, "length of a block along the barrel; default: each course is one block, mitred along the groins", gt=0
     )
-    oblong: float = key(1.0, "ratio of length to width of the bay; if it is not 1, the barrel across it is an ellipse", gt=0.2, lt=5)
-    thickness_factor: float = key(1.0, "ratio of effective to real thickness; 0.8 for worn corners", gt=0, le=1)
+    springers: int = key(
+        1,
+        "number of courses above the springing that form a single block in each corner; with 0, each web has its own support",
+        ge=0,
+        le=100,
+    )
+    oblong: float = key(
+        1.0, "length of the bay, divided by its width; if it is not 1, the barrel across the bay is an ellipse", gt=0.2, lt=5
+    )
+    thickness_factor: float = key(1.0, "effective thickness, divided by the real thickness; 0.8 for worn corners", gt=0, le=1)
 
     @model_validator(mode="after")
     def _plausible(self) -> "CrossVault":

@@ -75,17 +75,19 @@ class Dome(Spatial):
     lunes: int = key(about="stones in a ring", ge=4, le=400)
     bond: Literal["lunes", "running"] = key(
         "lunes",
-        "position of the head joints. lunes: above each other, as between the lunes of a cracked dome; running: "
-        "offset by half a block in every other ring",
+        "position of the head joints. lunes: above each other, as in a dome that is cracked into lunes; "
+        "running: every other ring is offset by half a block",
     )
-    thickness_factor: float = key(1.0, "ratio of effective to real thickness; 0.8 for worn corners", gt=0, le=1)
+    thickness_factor: float = key(1.0, "effective thickness, divided by the real thickness; 0.8 for worn corners", gt=0, le=1)
 
     @model_validator(mode="after")
     def _plausible(self) -> "Dome":
         if self.thickness >= self.radius:
             raise ValueError(f"thickness {self.thickness:g} m is not below the radius {self.radius:g} m")
         if self.oculus >= self.embrace - 1.0:
-            raise ValueError(f"oculus {self.oculus:g} deg leaves nothing of an embrace of {self.embrace:g} deg: give a smaller oculus")
+            raise ValueError(
+                f"an `oculus` of {self.oculus:g} deg leaves nothing of an `embrace` of {self.embrace:g} deg: give a smaller oculus"
+            )
         if self.rings * self.lunes > MOST_SOLIDS:
             raise ValueError(f"rings: the dome would have {self.rings * self.lunes} blocks; at most {MOST_SOLIDS} are allowed")
         return self

@@ -14,21 +14,24 @@ from extrados.schema.table import Table, key
 class Fill(Table):
     """Soil over the arches up to a level formation: weight, dispersal of loads, passive pressure."""
 
-    cover: Length = key(about="depth of the fill over the highest extrados", ge=0)
+    cover: Length = key(about="depth of the fill over the highest point of the extrados", ge=0)
     density: Density = key(2000.0, "density of the soil", gt=0, le=30000)
     friction_angle: Angle = key(30.0, "angle of friction of the soil", ge=0, le=60)
     cohesion: Stress = key(0.0, "cohesion of the soil, which increases the passive pressure", ge=0)
     passive: float = key(
         0.0,
-        "share of the passive pressure by Rankine that acts on blocks moving into the fill; programs for arch bridges use 0.5",
+        "share of the passive pressure by Rankine that acts on blocks which move into the fill; programs for arch bridges use 0.5",
         source="Gilbert and Melbourne 1994",
         ge=0,
         le=1,
     )
     dispersal: Literal["boussinesq", "even"] = key(
-        "boussinesq", "spreading of a load to the blocks within dispersal_angle. boussinesq: by the stresses of Boussinesq; even: uniform"
+        "boussinesq",
+        "how a load spreads to the blocks within `dispersal_angle`. boussinesq: by the stresses of Boussinesq; even: uniformly",
     )
-    dispersal_angle: Angle = key(30.0, "angle to the vertical up to which a load spreads; 26.6 is 1 in 2", ge=0, le=70)
+    dispersal_angle: Angle = key(
+        30.0, "angle from the vertical within which a load spreads; 26.6 degrees is a slope of 1 in 2", ge=0, le=70
+    )
 
 
 class Surfacing(Table):

@@ -87,10 +87,10 @@ class Frame(Structure):
     columns: int = key(2, "number of columns", ge=2, le=100)
     width: Length = key(about="width of a column", gt=0)
     height: Length = key(about="height of a column", gt=0)
-    spacing: Length = key(about="distance from the middle of a column to that of the next column", gt=0)
+    spacing: Length = key(about="distance between the middles of neighbouring columns", gt=0)
     lintel_height: Length = key(about="height of the lintel", gt=0)
-    overhang: Length = key(0.0, "length of the lintel beyond the outer columns", ge=0)
-    lintel_mass: Mass | None = key(None, "mass of the lintel with its loads; default: from its size and density", gt=0)
+    overhang: Length = key(0.0, "length by which the lintel extends beyond the outer columns", ge=0)
+    lintel_mass: Mass | None = key(None, "mass of the lintel with its loads; default: calculated from size and density", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
 
     @model_validator(mode="after")

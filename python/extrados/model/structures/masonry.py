@@ -65,42 +65,44 @@ class Column(Structure):
     halved: ClassVar = {"drums": 2}
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"height": "4.0"}
-    width: Length = key(about="width at the base; for round drums the diameter, over the corners or arrises", gt=0)
-    height: Length | None = key(None, "total height, divided equally among the drums", gt=0)
+    width: Length = key(
+        about="width at the base; for round drums, the diameter over the corners of the facets (or arrises of the flutes)", gt=0
+    )
+    height: Length | None = key(None, "total height, which is divided equally among the drums", gt=0)
     drums: int = key(1, "number of equal drums", ge=1, le=2000)
-    heights: list[Length] = key([], "heights of the drums from below; replaces height and drums", max_length=2000)
+    heights: list[Length] = key([], "heights of the drums, from the lowest upwards; replaces `height` and `drums`", max_length=2000)
     top_width: Length | None = key(None, "width at the top; default: as at the base", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
     section: Literal["rectangle", "round"] = key("rectangle", "cross-section of the drums: rectangle of width and depth, or round")
-    sides: int = key(24, "for round drums: number of flat facets, or of flutes, in the circumference", ge=3, le=96)
-    flute_depth: Length = key(0.0, "for round drums: depth of the flutes at the base, each cut by two flat facets", ge=0)
+    sides: int = key(24, "for round drums: number of flat facets, or of flutes, around the circumference", ge=3, le=96)
+    flute_depth: Length = key(0.0, "for round drums: depth of the flutes at the base; two flat facets form each flute", ge=0)
     dowels: Annotated[Force, Field(gt=0)] | Literal["unbroken"] | None = key(
-        None, 'shear strength of each dowel in the axis between the drums, or "unbroken"'
+        None, 'shear strength of each dowel (on the axis, between two drums), or "unbroken"'
     )
     dowel_reach: Length | None = key(
         None,
-        "for `dem`: length of each dowel in the drum above. A dowel is lost if the drums separate by more than this "
-        "length; default: never lost",
+        "for `dem`: length of each dowel in the drum above it. A dowel comes out if the drums separate "
+        "by more than this length; default: never",
         gt=0,
     )
 
     @model_validator(mode="after")
     def _one_height(self) -> "Column":
         if (self.height is None) == (not self.heights):
-            raise ValueError("give either the key `height` (and drums), or the key `heights`")
+            raise ValueError("give either the key `height` (with `drums`), or the key `heights`")
         if self.heights and self.drums != 1:
             raise ValueError("the key `heights` already determines the number of drums: remove the key `drums`")
         if any(h <= 0.0 for h in self.heights):
             raise ValueError("heights: each height must be above zero")
         given = self.model_fields_set
         if self.section == "rectangle" and (wrong := given & {"sides", "flute_depth"}):
-            raise ValueError(f'{min(wrong)} is only for round drums: give section = "round", or remove this key')
+            raise ValueError(f'`{min(wrong)}` is only for round drums: give section = "round", or remove this key')
         if self.section == "round" and "depth" in given:
             raise ValueError("the key `depth` is only for rectangular drums; the diameter of round drums is the key `width`")
         if self.dowel_reach is not None and self.dowels is None:
-            raise ValueError("dowel_reach requires dowels: give the shear strength of the dowels")
+            raise ValueError("`dowel_reach` requires dowels: give the shear strength of the dowels")
         if self.flute_depth >= 0.25 * self.width:
-            raise ValueError(f"flute_depth {self.flute_depth:g} m is not below 1/4 of the width {self.width:g} m")
+            raise ValueError(f"`flute_depth` {self.flute_depth:g} m is not below 1/4 of the width {self.width:g} m")
         return self
 
     @property
@@ -112,5 +114,5 @@ class Column(Structure):
         if self.section == "round":
             raise NoView(f"a column of round drums has no plane section; {IN_SPACE}", ("structure", "section"))
         if self.dowels is not None:
-            raise NoView("dowels exist only in space: give `tilt` a direction, or remove the dowels", ("structure", "dowels"))
+            raise NoView("dowels exist only in space: give the key `direction` of `tilt`, or remove the dowels", ("structure", "dowels"))
         return make_column(self.width, self.drum_heights, self.top_width, density, self.depth)

@@ -36,7 +36,7 @@ class Lintel(Table):
 
     depth: Length = key(about="height of the beam", gt=0)
     bearing: Length = key(0.0, "bearing length of the lintel on the wall at each side", ge=0)
-    material: str | None = key(None, "name in [materials] of the material of the lintel; default: [material] without cracking")
+    material: str | None = key(None, "material of the lintel: a name in [materials]; default: [material] without cracking")
 
 
 class WallOpening(Table):
@@ -47,7 +47,7 @@ class WallOpening(Table):
     z: Range = key(about="[from, to] above the floor of the storey")
     lintel: Lintel | None = key(None, "beam over it")
     through: bool = key(
-        False, "whether the opening passes through the floors above; z is then measured from the floor of `storey` to its head"
+        False, "whether the opening extends through the floors above; `z` is then measured from the floor of `storey` up to its head"
     )
 
     @model_validator(mode="after")
@@ -73,12 +73,12 @@ class PlanWall(Table):
     start: PlanPoint = key(about="[x, y] in plan of the start of the middle plane of the wall")
     end: PlanPoint = key(about="[x, y] of its end")
     thickness: Length | None = key(None, "thickness; or give thicknesses", gt=0)
-    thicknesses: list[Length] = key([], "thickness of the wall in each of its storeys, from the lowest", max_length=50)
+    thicknesses: list[Length] = key([], "thickness of the wall in each of its storeys, from the lowest upwards", max_length=50)
     storeys: list[int] | None = key(None, "[first, last] storey; default all", min_length=2, max_length=2)
     openings: list[WallOpening] = key([], "doors and windows", max_length=200)
-    material: str | None = key(None, "name in [materials] of the material of the wall; default: [material]")
-    materials: list[str] = key([], "names in [materials], one for each storey of the wall, from the lowest", max_length=50)
-    gable: Gable | None = key(None, "triangular top of the wall above its highest storey")
+    material: str | None = key(None, "material of the wall: a name in [materials]; default: [material]")
+    materials: list[str] = key([], "material of each storey of the wall, from the lowest upwards: names in [materials]", max_length=50)
+    gable: Gable | None = key(None, "gable: triangular top of the wall above its highest storey")
 
     @model_validator(mode="after")
     def _long(self) -> "PlanWall":
@@ -89,7 +89,7 @@ class PlanWall(Table):
         if self.material is not None and self.materials:
             raise ValueError("expected either material or materials")
         if not all(t > 0.0 for t in self.thicknesses):
-            raise ValueError("thicknesses: each must be above 0")
+            raise ValueError("thicknesses: each thickness must be above 0")
         if self.gable is not None and self.gable.ridge is not None and self.gable.ridge > self.length + MEETS:
             raise ValueError(f"gable.ridge: {self.gable.ridge:g} m is beyond the end of the wall, whose length is {self.length:g} m")
         if self.gable is not None and self.gable.rise > STEEP * self.length + MEETS:
@@ -120,14 +120,13 @@ class PlanWall(Table):
 class Corner(Table):
     """How two walls that meet hang together."""
 
-    walls: list[str] = key(about="names of the two walls; the wall named second abuts on the wall named first", min_length=2, max_length=2)
+    walls: list[str] = key(about="names of the two walls; the second wall abuts on the first", min_length=2, max_length=2)
     bond: Literal["bonded", "weak", "joint", "open"] = key(
-        about="connection of the two walls. bonded: one masonry; weak: the elements of the wall named second have a "
-        "lower strength beside the other wall; joint: a joint of [joints] between the walls, which opens, slides "
-        "up and down, and crushes; "
-        "open: connected only by floors"
+        about="connection of the two walls. bonded: one masonry; weak: beside the corner, the elements of the "
+        "second wall have a lower strength; joint: a joint of [joints] between the walls, which opens, "
+        "slides up and down, and crushes; open: connected only by floors"
     )
-    strength: float = key(0.5, "for a weak corner: ratio of its tensile strength to that of the wall", gt=0, le=1)
+    strength: float = key(0.5, "for a weak corner: tensile strength of the corner, divided by that of the wall", gt=0, le=1)
 
     @model_validator(mode="after")
     def _two(self) -> "Corner":
@@ -141,14 +140,14 @@ class Bed(Table):
 
     name: str | None = key(None, 'name in the results and in [[joints.types]]; default: "bed 1" and so on', max_length=40)
     storey: int = key(1, "number of the storey of the bed joint, from 1 at the ground", ge=1)
-    z: Length = key(0.0, "height above the floor of the storey; 0 in the first storey is the sole", ge=0)
+    z: Length = key(0.0, "height above the floor of the storey; 0 in the first storey is the base of the wall", ge=0)
     walls: list[str] = key([], "names of the walls through which the joint runs; default: all walls of the storey", max_length=200)
 
 
 class Seat(Table):
     """Where the ends of a floor rest on its walls, without a connection."""
 
-    length: Length = key(about="length of the bearing across the wall", gt=0)
+    length: Length = key(about="length of the seat, perpendicular to the wall", gt=0)
     friction: float = key(about="coefficient of friction between floor and wall", gt=0)
 
 
@@ -158,24 +157,23 @@ class StoreyFloor(Table):
     storey: int = key(about="number of the storey below the floor", ge=1)
     kind: Literal["rigid", "flexible", "joists", "none"] = key(
         "flexible",
-        "kind of floor. flexible: membrane with a stiffness of young times thickness; rigid: as a concrete slab of 30 "
-        "GPa and 0.2 m, practically rigid; joists: bars across the floor in one direction; none: only the load of the "
-        "floor",
+        "kind of floor. flexible: membrane with the stiffness `young` times `thickness`; rigid: practically rigid (concrete slab of 30 "
+        "GPa and 0.2 m); joists: bars across the floor in one direction; none: only the load of the floor acts",
     )
     walls: list[str] | None = key(
-        None, "names of the walls around the floor, in order; default: all walls of the storey, if they form one ring", min_length=3
+        None, "names of the walls around the floor, in order; default: all walls of the storey, if they form a single ring", min_length=3
     )
-    young: Stress | None = key(None, "for a flexible floor: its modulus; for joists: the modulus of their wood", gt=0)
+    young: Stress | None = key(None, "for a flexible floor: its elastic modulus; for joists: the elastic modulus of their wood", gt=0)
     thickness: Length | None = key(None, "of a flexible floor", gt=0)
     poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
     joist_area: Annotated[Area, Field(gt=0)] | None = key(None, "for joists: cross-section of one joist")
     joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
-    load: Stress = key(0.0, "weight per area of the floor and its loads; of a roof, per area of its slopes", ge=0)
+    load: Stress = key(0.0, "weight per area of the floor and its loads; for a roof, per area of its slopes", ge=0)
     pitch: Angle | None = key(None, "slope of a roof from the horizontal", gt=0, le=75)
     roof: Literal["rafters", "trusses", "purlins"] | None = key(
         None,
-        "structure of a roof with a pitch. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and "
-        "push them apart, unless the floor is rigid and ties them; trusses: rafters with ties, without thrust; purlins: beams along the ridge "
+        "structure of a pitched roof. rafters: pairs of rafters that meet in the middle between the two walls of `bears_on` and push "
+        "these walls apart (not if a rigid floor ties them); trusses: rafters with ties, without thrust; purlins: beams along the ridge "
         "between the two walls of `bears_on`, without thrust",
     )
     bears_on: list[str] = key(
@@ -183,8 +181,9 @@ class StoreyFloor(Table):
     )
     seat: Seat | None = key(
         None,
-        "seat of the floor on the walls of `bears_on`: the floor is held by friction under its load alone, and slides off where the wall "
-        "moves away by more than the length; considered by shells. Default: the floor is connected to its walls",
+        "seat of the floor on the walls of `bears_on`: only friction under its load restrains the "
+        "floor, and the floor slides off if the wall moves away by more than the length of the seat. Only shells "
+        "consider this. Default: the floor is connected to its walls",
     )
 
     @model_validator(mode="after")
@@ -196,15 +195,15 @@ class StoreyFloor(Table):
         if self.kind == "joists" and len(set(self.bears_on)) != 2:
             raise ValueError("bears_on: for joists, expected the names of two different walls, between which the joists span")
         if (self.pitch is None) != (self.roof is None):
-            raise ValueError("a roof requires both pitch and roof (rafters, trusses or purlins)")
+            raise ValueError("a roof requires both `pitch` and `roof` (rafters, trusses or purlins)")
         if self.roof is not None and len(set(self.bears_on)) != 2:
             raise ValueError(f"bears_on: for a roof of {self.roof}, expected the names of two different walls")
         if self.roof is not None and not self.load > 0.0:
-            raise ValueError(f"a roof of {self.roof} requires load, the weight per area of its slopes, above 0")
+            raise ValueError(f"a roof of {self.roof} requires `load`, the weight per area of its slopes, above 0")
         if self.roof == "rafters" and self.kind == "joists":
             raise ValueError("joists tie the two walls: give roof = 'trusses', or another kind of floor")
         if self.seat is not None and (self.kind == "none" or self.roof is not None or not self.load > 0.0 or not self.bears_on):
-            raise ValueError("seat: expected a level floor of kind 'joists', 'flexible' or 'rigid' with load above 0 and bears_on")
+            raise ValueError("seat: expected a level floor of kind 'joists', 'flexible' or 'rigid', with `load` above 0 and `bears_on`")
         if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
             raise ValueError(f"walls: wall '{twice[0]}' occurs twice")
         return self
@@ -235,7 +234,7 @@ class Rod(Table):
     end: Place = key(about="[x, y, z] of the other end")
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
     material: str = key(about="a name of [materials]")
-    prestress: Force = key(0.0, "tensile force in the rod before the building moves", ge=0)
+    prestress: Force = key(0.0, "tensile force in the rod before the building deforms", ge=0)
 
 
 class Prop(Table):
@@ -250,9 +249,7 @@ class Prestress(Table):
 
     wall: str = key(about="name of the wall")
     force: Force = key(about="downward, in all, spread evenly", gt=0)
-    x: Range | None = key(
-        None, "[from, to] along the wall from its start, for instance of the bearing of a beam; default: the whole length"
-    )
+    x: Range | None = key(None, "[from, to] along the wall from its start, for instance the bearing of a beam; default: the whole length")
     level: Annotated[int, Field(ge=1)] | None = key(None, "storey on whose top the force acts; default: the highest storey of the wall")
 
 
@@ -261,7 +258,7 @@ class Reinforcement(Table):
 
     area: Annotated[Area, Field(gt=0)] = key(about="cross-section of all bars")
     yield_strength: Stress = key(about="yield strength of the bars", gt=0)
-    cover: Length = key(0.04, "distance of the bars from the upper and lower face of the beam", gt=0)
+    cover: Length = key(0.04, "distance of the bars from the upper and the lower face of the beam", gt=0)
 
     @property
     def tension(self) -> float:
@@ -281,16 +278,14 @@ class Reinforcement(Table):
 class RingBeam(Table):
     """A beam of the wall's thickness along the top of some walls; elastic, or in frames with the strength of its reinforcement."""
 
-    storey: int = key(about="storey on whose top the ring beam is; the upper edge of the beam is level with the floor", ge=1)
+    storey: int = key(about="storey on whose top the ring beam lies; the upper face of the beam is level with the floor", ge=1)
     depth: Length = key(about="height of the beam", gt=0)
     material: str = key(about="a name of [materials]")
     walls: list[str] = key([], "names of the walls; default: all walls of the storey", max_length=200)
     reinforcement: Reinforcement | None = key(
         None,
-        (
-            "bars of the beam, which give the plastic moment of its hinges and its strength as a tie in frames; the material of the beam then "
-            "needs a compressive_strength. Default: the beam remains elastic"
-        ),
+        "bars of the beam. In frames, they give the plastic moment of its hinges and its strength as a tie; the material of the beam "
+        "then requires `compressive_strength`. Default: the beam remains elastic",
     )
 
     @model_validator(mode="after")
@@ -320,14 +315,14 @@ class Plan(Structure):
     }
     storeys: list[Length] = key(about="height of each storey, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
-    corners: list[Corner] = key([], "corners at which walls meet without forming one masonry, [[structure.corners]]", max_length=1000)
+    corners: list[Corner] = key([], "corners where walls meet without being bonded, [[structure.corners]]", max_length=1000)
     beds: list[Bed] = key([], "bed joints that can slide, [[structure.beds]]", max_length=100)
     floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
     prestress: list[Prestress] = key([], "vertical forces on walls, [[structure.prestress]]", max_length=200)
     ring_beams: list[RingBeam] = key([], "[[structure.ring_beams]]", max_length=50)
-    assumed: list[str] = key([], "assumptions of the deck that its sources do not state; every result repeats them", max_length=100)
+    assumed: list[str] = key([], "assumptions of the deck that its sources do not state; each result repeats them", max_length=100)
     foundation_stiffness: Stiffness | None = key(
         None, "vertical stiffness of the ground per area of the soles of the walls; default: rigid", gt=0
     )
@@ -373,7 +368,7 @@ class Plan(Structure):
                 raise ValueError(f"corners[{k}].walls: corner {first + 1} has the same two walls")
         for k, prop in enumerate(self.props):
             if np.abs(self.wall(prop.wall).direction).max() < 1.0 - 1e-9:
-                raise ValueError(f"props[{k}].wall: wall '{prop.wall}' is oblique on the plan; only a wall along x or y can have a prop")
+                raise ValueError(f"props[{k}].wall: wall '{prop.wall}' is oblique in plan, but only a wall along x or y can have a prop")
             self._check_storey(f"props[{k}].storey", prop.wall, prop.storey)
         for k, part in enumerate(self.prestress):
             if part.level is not None:
@@ -585,8 +580,8 @@ class Plan(Structure):
         names = [self.walls[w].name for w, _, _ in around]
         if strange := [name for name in floor.bears_on if name not in names]:
             raise BadGeometry(
-                f"floor on storey {floor.storey}: wall '{strange[0]}' of bears_on is not adjacent to it; the walls around it are "
-                f"{', '.join(names)}"
+                f"floor on storey {floor.storey}: wall '{strange[0]}' of `bears_on` is not adjacent to the floor; "
+                f"the walls around it are {', '.join(names)}"
             )
         return [part for part in around if self.walls[part[0]].name in floor.bears_on] or around
 
@@ -602,7 +597,9 @@ class Plan(Structure):
                     "them nor joins them. Give a separate floor for each area between walls, with the walls around it as `walls`."
                 )
             if floor.roof == "rafters" and floor.kind == "rigid":
-                found.append(f"Floor on storey {floor.storey}: the rigid floor ties the rafters at the eaves, so they have no thrust.")
+                found.append(
+                    f"Floor on storey {floor.storey}: the rigid floor ties the rafters at the eaves, so the rafters have no thrust."
+                )
             around = floor.walls or [wall.name for wall in self.walls]
             for wall in self.walls:
                 if floor.pitch is None or wall.gable is None or wall.name not in around or self.reach(wall)[1] != floor.storey:
@@ -612,9 +609,9 @@ class Plan(Structure):
                 if all(abs(height - rise) > RIDGES * max(height, rise) for height in heights):
                     ridge = min(heights, key=lambda height: abs(height - rise))
                     found.append(
-                        f"Floor on storey {floor.storey}: with a pitch of {floor.pitch:g} degrees the ridge of the {floor.roof} is {ridge:.3g} m "
-                        f"above the eaves, but the gable of wall '{wall.name}' rises {rise:.3g} m. The load and the thrust are those of "
-                        "the pitch, the masonry is that of the gable."
+                        f"Floor on storey {floor.storey}: with a pitch of {floor.pitch:g} degrees, the ridge of the {floor.roof} "
+                        f"is {ridge:.3g} m above the eaves, but the gable of wall '{wall.name}' rises {rise:.3g} m. Load and "
+                        "thrust follow the pitch; the masonry follows the gable."
                     )
         return found
 

@@ -23,17 +23,17 @@ class Scan(Table):
     shape: Literal["wall", "barrel"] = key(
         about="shape of the scanned part: a wall (two plane faces) or a barrel vault or arch (two coaxial cylinders)"
     )
-    courses: int | None = key(None, "number of equal courses: of a wall over its height, of a barrel around its intrados", ge=1, le=2000)
+    courses: int | None = key(None, "number of equal courses: over the height of a wall, or around the intrados of a barrel", ge=1, le=2000)
     beds: list[Length] | None = key(
-        None, "heights of the bed joints of a wall above its foot, in increasing order, instead of `courses`", min_length=1, max_length=2000
+        None, "heights of the bed joints of a wall above its foot, in increasing order; replaces `courses`", min_length=1, max_length=2000
     )
     block_length: Length | None = key(
-        None, "length of a block along the course, in running bond; default: a course is one block. Rounded to equal blocks", gt=0
+        None, "length of a block along the course, in running bond, rounded to equal blocks; default: each course is a single block", gt=0
     )
     thickness: Length | None = key(None, "thickness, if the points show only one face of the wall, or only the intrados", gt=0)
     axis: Angle | None = key(
         None,
-        "direction of the horizontal axis of a barrel in plan, from +x towards +y; default: direction of the least misfit",
+        "direction of the horizontal axis of a barrel in plan, from +x towards +y; default: direction with the least misfit",
         ge=-360,
         le=360,
     )
@@ -45,7 +45,7 @@ class Scan(Table):
         if self.shape == "barrel" and self.beds is not None:
             raise ValueError("beds: a barrel has `courses`")
         if self.shape == "wall" and self.axis is not None:
-            raise ValueError('axis: only shape = "barrel" has an axis')
+            raise ValueError('`axis` is only for shape = "barrel": remove `axis`')
         if self.beds is not None and (np.diff([0.0, *self.beds]) <= 0.0).any():
             raise ValueError("beds: expected increasing heights above 0")
         return self
@@ -79,4 +79,4 @@ def _openings(s: np.ndarray, z: np.ndarray, length: tuple[float, float], height:
     empty = float(np.mean(count == 0.0))
     if empty < EMPTY:
         return ()
-    return (f"{100.0 * empty:.2g} % of the wall have no points. Openings are not modelled: the wall is solid there",)
+    return ((f"no points cover {100.0 * empty:.2g} % of the wall. Openings are not modelled: the wall is solid there"),)

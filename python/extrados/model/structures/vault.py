@@ -59,7 +59,7 @@ def make_vault(
     vault. The flat tops lie at the extrados of the springings. Lengths in m, embrace in degrees.
     """
     if not 0.0 < thickness < 2.0 * radius:
-        raise BadGeometry(f"vault: the thickness {thickness:g} m must lie between 0 and twice the radius {radius:g} m")
+        raise BadGeometry(f"vault: the thickness of {thickness:g} m must be above 0 and below twice the radius of {radius:g} m")
     half = 0.5 * np.radians(embrace)
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
     centre = np.zeros(2)
@@ -94,18 +94,22 @@ class Vault(PresetStructure):
     word: ClassVar = "vault on its buttresses"
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
-        None, "all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; other keys overrule them"
+        None,
+        "all dimensions of one interpretation of the vault of thesis 3.4, inferred from its results; "
+        "keys that are given replace its values",
     )
     radius: Length = key(about="radius of the centre line of the vault", gt=0)
     thickness: Length = key(about="thickness of the vault", gt=0)
     embrace: Angle = key(about="angle of embrace of the vault between its end joints", ge=20, le=180)
     voussoirs: int = key(24, "number of voussoirs of the vault", ge=4, le=5000)
-    face: Length = key(about="distance of the inner faces of the buttresses from the axis", gt=0)
+    face: Length = key(about="distance of the inner faces of the buttresses from the axis of the vault", gt=0)
     buttress_width: Length = key(about="width of the buttresses, measured outward from the line given by `width_from`", gt=0)
-    width_from: Literal["face", "extrados"] = key("face", "start of buttress_width: at the inner face, or at the extrados of the springing")
+    width_from: Literal["face", "extrados"] = key(
+        "face", "line from which `buttress_width` is measured: the inner face, or the extrados at the springing"
+    )
     height: Length = key(about="height of the buttresses from the ground to the level given by `height_to`", gt=0)
     height_to: Literal["extrados", "centre"] = key(
-        "extrados", "end of height: at the extrados of the springing, or at the level of the centre of the vault"
+        "extrados", "level up to which `height` is measured: the extrados at the springing, or the centre of the vault"
     )
     depth: Length = key(1.0, "depth out of plane", gt=0)
 

@@ -23,9 +23,9 @@ LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])
 class Leg(Table):
     """A straight stretch of wall, from corner to corner or to a free end."""
 
-    length: Length = key(about="total length, including the corners at its ends", gt=0, le=1e4)
+    length: Length = key(about="total length of the leg, including the corners at its ends", gt=0, le=1e4)
     turn: Literal["left", "right"] = key(
-        "left", "side of the previous leg to which this leg runs, at a right angle; no effect on the first leg"
+        "left", "side of the previous leg on which this leg begins, at a right angle; no effect on the first leg"
     )
     openings: list[Opening] = key([], "rectangular openings: x along the leg from its start, y upward", max_length=200)
 
@@ -148,8 +148,8 @@ class Wall(Bonded, Spatial):
     legs: list[Leg] = key(
         about="straight parts (legs) of the wall in order, each at a right angle to the previous one", min_length=1, max_length=200
     )
-    closed: bool = key(False, "whether the last leg meets the first, as around a courtyard; all corners are then left-hand corners")
-    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end: whole or half")
+    closed: bool = key(False, "whether the last leg meets the first one, as around a courtyard; all corners are then left-hand corners")
+    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end of the wall: whole or half")
 
     @model_validator(mode="after")
     def _sensible(self) -> "Wall":

@@ -27,7 +27,7 @@ class Region(Placed):
     gauss: list[Annotated[int, Field(ge=1, le=4)]] | None = key(
         None, "number of Gauss points [along, across] of the quadrilaterals", min_length=2, max_length=2
     )
-    crack_normal: Angle | None = key(None, "the only allowed direction of the crack normal, as an angle from x", ge=-180, le=180)
+    crack_normal: Angle | None = key(None, "the only direction that the crack normal can have, as an angle from x", ge=-180, le=180)
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Which of the points (k, 2) [m] lie within it."""
@@ -52,19 +52,19 @@ class Bar(Table):
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
     material: str = key(about="a name of [materials]")
     bonded: bool = key(
-        False, "true: the bar is embedded and moves with every element that it crosses; false: it is attached only at its ends"
+        False, "true: the bar is embedded and moves with each element that it crosses; false: it is attached only at its ends"
     )
     yield_strength: Stress | None = key(
-        None, "yield stress in tension and compression; replaces the strengths of the material of the bar", gt=0
+        None, "yield stress of the bar in tension and compression; replaces the strengths of its material", gt=0
     )
-    ultimate_strain: float = key(0.05, "ultimate strain, at which the bar breaks after it yields", gt=0, le=1)
+    ultimate_strain: float = key(0.05, "strain at which the bar breaks after yielding", gt=0, le=1)
 
 
 class MeshedWall(Structure):
     """What walls share that finite elements see whole."""
 
     thickness: Length = key(about="thickness out of plane", gt=0)
-    regions: list[Region] = key([], "parts with other properties; a later region overrides an earlier one", max_length=1000)
+    regions: list[Region] = key([], "parts of the wall with other properties; if regions overlap, the last one counts", max_length=1000)
     ties: list[TiedNodes] = key([], "nodes that move as one", max_length=100)
     bars: list[Bar] = key([], "bars between two places", max_length=1000)
 
@@ -82,10 +82,10 @@ class Panel(Laid, MeshedWall):
     starter: ClassVar = {"thickness": '"30 cm"', "width": "3.0", "height": "3.0", "openings": "[{ x = [1.05, 1.95], y = [0.9, 2.1] }]"}
     width: Length | None = key(None, "length along x; required if no outline is given", gt=0)
     height: Length | None = key(None, "length along y; required if no outline is given", gt=0)
-    unit_length: Length | None = key(None, "length of a unit of the masonry, for analyses of blocks", gt=0)
-    unit_height: Length | None = key(None, "height of a unit of the masonry", gt=0)
+    unit_length: Length | None = key(None, "length of a unit (brick or block), for analyses of blocks", gt=0)
+    unit_height: Length | None = key(None, "height of a unit (brick or block)", gt=0)
     outline: str | None = key(
-        None, "DXF file of closed polylines: the outline of the wall and the openings; replaces width, height and openings"
+        None, "DXF file of closed polylines: the outline of the wall and of the openings; replaces `width`, `height` and `openings`"
     )
     outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing, if the file gives none")
 
@@ -97,9 +97,9 @@ class Panel(Laid, MeshedWall):
                 raise ValueError(f"an outline replaces {', '.join(sorted(given))}: give only one of them")
             return self
         if self.width is None or self.height is None:
-            raise ValueError("width and height are missing: give both, or an outline")
+            raise ValueError("`width` and `height` are missing: give both, or an `outline`")
         if (self.unit_length is None) != (self.unit_height is None):
-            raise ValueError("a unit has a length and a height: give both unit_length and unit_height, or neither")
+            raise ValueError("give both `unit_length` and `unit_height`, or neither")
         self.check_openings(*self.size)
         return self
 
@@ -113,7 +113,8 @@ class Panel(Laid, MeshedWall):
     def pier_assembly(self, density: float) -> Assembly:
         if self.outline:
             raise NoView(
-                "the piers of a panel are found between rectangular openings, which an outline does not give", ("structure", "outline")
+                "piers of a panel are found between rectangular openings, but the panel has an `outline`: give the openings as rectangles",
+                ("structure", "outline"),
             )
         if any(region.material or region.thickness for region in self.regions):
             raise NoView(
@@ -128,7 +129,7 @@ class Panel(Laid, MeshedWall):
                 "a panel with an outline has no blocks: draw the blocks, and read the drawing with kind `blocks`", ("structure", "outline")
             )
         if self.unit_length is None or self.unit_height is None:
-            raise NoView("the units of the panel are not known: give unit_length and unit_height", ("structure", "unit_length"))
+            raise NoView("the units of the panel are not known: give `unit_length` and `unit_height`", ("structure", "unit_length"))
         bond = self.bond(self.unit_length, self.unit_height)
         return make_brickwork(bond, *self.size, self.holes, density, self.thickness)
 
@@ -161,14 +162,16 @@ class MeshGroup(Table):
 
     name: str = key(about="name of the group in the file, or its number if it has no name", min_length=1, max_length=200)
     thickness: Length | None = key(None, "thickness of its elements", gt=0)
-    material: str | None = key(None, "name in [materials] of the material of its elements")
+    material: str | None = key(None, "material of the elements of the group: a name in [materials]")
     linear: bool = key(False, "its elements do not crack")
-    membrane: bool = key(False, "whether the elements have no bending stiffness, as for a floor")
+    membrane: bool = key(False, "whether the elements have no bending stiffness, as in a floor")
     support: Literal["fixed", "pinned", "vertical"] | None = key(
-        None, "support of the nodes of the group: fixed, fixed without rotations (pinned), or vertical only"
+        None, "support of the nodes of the group: fixed, pinned (rotations free), or vertical only"
     )
-    pressure: Vector | None = key(None, "[x, y, z] force per area on the elements of the group, applied with the weight")
-    force: Force3 | None = key(None, "[x, y, z] total force, distributed evenly over the nodes of the group, applied with the weight")
+    pressure: Vector | None = key(None, "[x, y, z] force per area on the elements of the group, applied together with the weight")
+    force: Force3 | None = key(
+        None, "[x, y, z] total force, applied together with the weight and distributed evenly over the nodes of the group"
+    )
 
 
 class MeshFile(MeshedWall):
@@ -186,7 +189,7 @@ class MeshFile(MeshedWall):
     )
     groups: list[MeshGroup] = key(
         [],
-        "for shells in space: properties of the groups of the file, [[structure.groups]]; a later group overrides an earlier one",
+        "for shells in space: properties of the groups of the file, [[structure.groups]]; if groups overlap, the last one counts",
         max_length=1000,
     )
     scale: float = key(1.0, "length in metres of one unit of the file", gt=0, le=1e6)

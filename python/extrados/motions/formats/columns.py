@@ -53,7 +53,9 @@ def read(text: Lines, columns: Columns | None = None) -> list[Record]:
         step, rounded, notes, data, names = _stated_step(text, said), 0.0, [], values[:, None], []
         for stride in range(1, max(4, width) + 1):
             if _ascends(values[::stride]):
-                what = "the values increase like times" if stride == 1 else f"every value {stride} places further increases like a time"
+                what = (
+                    "the values increase like times" if stride == 1 else f"the values at a distance of {stride} places increase like times"
+                )
                 raise text.error(rows[0][0], f"{what}: give time and acceleration in two columns")
     elif short:
         last = f"the last line has {len(rows[-1][1])} columns, but the lines above have {width}"
@@ -115,7 +117,7 @@ def _quantity(text: Lines, name: str, said: str) -> str:
     """What a column holds, by its name or else by the header; acceleration where neither says so."""
     found = quantities_in(name) or quantities_in(said) or ["acceleration"]
     if len(found) > 1:
-        raise text.error(0, f"the header names {' and '.join(found)}: keep only the quantity of the numbers")
+        raise text.error(0, f"the header names {' and '.join(found)}: keep only the quantity that the numbers give")
     return found[0]
 
 
@@ -124,7 +126,7 @@ def _header_hint(at: int) -> str:
 
 
 def _or_series(timed: bool) -> str:
-    return "" if timed else ', or its rows are one series: columns = "series"'
+    return "" if timed else '; if the rows are one series, row after row, give columns = "series"'
 
 
 def _called_time(names: list[str]) -> bool:
@@ -176,7 +178,7 @@ def _refuse_factor(text: Lines, said: str) -> None:
 
 def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data: np.ndarray) -> None:
     """Numbers of a header that stand before the samples as if they were some: counts, dates, codes."""
-    hint = "put # before the lines of the header, or write the values with decimals if they are samples"
+    hint = "if this line is part of the header, put # before the lines of the header; if it is a sample, write the values with decimals"
     whole = [all(re.fullmatch(r"[+-]?\d+", token) for token in row) for _, row in rows]
     first = whole.index(False) if False in whole else len(whole)
     digits = [any(token.strip("+-0") for token in row) for _, row in rows[:first]]
@@ -306,8 +308,8 @@ def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, roun
     if not SHORTEST_STEP <= step < LONGEST_STEP:
         raise text.error(
             rows[0][0],
-            f"the time step is {step:g} s, which is not plausible for an accelerogram. If the times are in milliseconds, name "
-            "their column time_ms. If the column contains sample numbers, delete the column",
+            f"the time step is {step:g} s, which is not plausible for an accelerogram. If the times are in milliseconds, name their "
+            "column `time_ms`. If the column contains sample numbers, delete the column",
         )
     return float(np.round(step, 9)), uneven
 

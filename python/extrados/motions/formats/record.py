@@ -17,7 +17,7 @@ ALIKE = 20  # numbers of equally many decimals by which a last one with fewer is
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.5  # s: sampling steps that a file of a strong motion may have
 
 #: How the note on rounded times ends; a time_step of the deck replaces this note
-MEAN_STEP = "the program uses their mean step"
+MEAN_STEP = "the program uses their mean time step"
 
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
 ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "mg": 9.80665e-3}

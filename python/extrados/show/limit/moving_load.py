@@ -96,9 +96,9 @@ def _draw_places(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         curve.set_title("Adequacy factor over position" if adequacy else "Load at collapse over position")
         return (
             style.save(fig, folder, f"{name}-places"),
-            f"Load that causes collapse, over the position of the {moving}."
+            f"Load that causes collapse, plotted over the position of the {moving}."
             + (
-                f" At the most dangerous position joints slide, so the capacity is an {DILATANT}."
+                f" At the most dangerous position joints slide, so the collapse load is an {DILATANT}."
                 if run.results_of(name, MovingLoad).dilating_joints
                 else ""
             ),

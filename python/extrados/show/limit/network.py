@@ -35,7 +35,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.set_title(f"{TITLES[aim]}\n{_value(r, aim)}")
             ax.set_xlabel("x [m]")
         axes[0].set_ylabel("y [m]")
-        caption = f"Plans of the networks: a branch is as wide as its thrust, at most {most / 1e3:.3g} kN; triangles are supports."
+        caption = f"Plans of the networks. The width of a branch shows its thrust (at most {most / 1000.0:.3g} kN); triangles are supports."
         found = [(style.save(fig, folder, f"{name}-plan"), caption)]
     found.append(_draw_section(run, name, folder, there))
     return found
@@ -86,6 +86,8 @@ def _draw_section(run: Stored, name: str, folder: Path, there: list[str]) -> tup
         ax.set_aspect("equal")
         ax.set_xlabel(f"distance from the middle of the plan, along {np.degrees(np.arctan2(way[1], way[0])):.0f} deg [m]")
         ax.set_ylabel("z [m]")
-        ax.set_title("Networks in the section through the middle and a support")
+        ax.set_title("Networks in the vertical section through the middle and one support")
         style.legend_below(fig, ax)
-        return style.save(fig, folder, f"{name}-section"), "Heights of the networks between intrados and extrados along one section."
+        return style.save(
+            fig, folder, f"{name}-section"
+        ), "Heights of the networks between intrados and extrados, along one vertical section."

@@ -45,7 +45,10 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_ylabel("force on the support [kN]")
         ax.legend()
         found.append(
-            (style.save(fig, folder, f"{name}-thrust"), "Force of the arch on the moving support. Dotted: a hinge moves to another joint.")
+            (
+                style.save(fig, folder, f"{name}-thrust"),
+                "Force of the arch on the moving support. At dotted lines, a hinge moves to another joint.",
+            )
         )
     return found
 

@@ -70,8 +70,10 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-curve"),
-                "Tilt at collapse. Dotted: changes of mechanism. Crosses: values at which the structure collapses under self-weight. "
-                "Points on the axis: values without a result, or values at which the structure does not collapse at any tilt.",
+                (
+                    "Tilt at collapse. Dotted: values at which another mechanism begins. Crosses: the structure "
+                    "collapses under self-weight. Points on the axis: no result, or no collapse at any tilt."
+                ),
             )
         ]
     if "example" not in run.arrays[name]:  # solids
@@ -149,15 +151,17 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
         given = r.given_collapse_acceleration_g
         ax.axvline(given, color=style.HINGE, linestyle="--", label=f"geometry of the deck: {given:.4f} g")
         ways = "along the direction and opposite" if "solid_vertex" in run.arrays[name] else "to +x and to -x"
-        ax.set_xlabel(f"lesser collapse acceleration of both senses ({ways}) [g]")
+        ax.set_xlabel(f"lower of the two collapse accelerations ({ways}) [g]")
         ax.set_ylabel("share of the random geometries")
         ax.set_ylim(0.0, 1.0)
-        ax.set_title("Capacity within the tolerance of the survey")
+        ax.set_title("Capacity within the deviation of the survey")
         style.legend_below(fig, ax)
         return [
             (
                 style.save(fig, folder, name),
-                "Share of the random geometries of the same blocks with at most this capacity. Corners and joints are displaced within the "
-                "deviation of the survey.",
+                (
+                    "Share of the random geometries whose capacity is at most the value on the axis. All have the "
+                    "same blocks; their corners and joints are displaced within the deviation of the survey."
+                ),
             )
         ]

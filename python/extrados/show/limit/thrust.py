@@ -46,9 +46,9 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             polygons = {which: section.paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours}
             section.polygon(forces, polygons, tuple(colours.values()))
             forces.set_title(f"Force polygons of the {r['chain']}")
-        caption = "Thrust lines of least, greatest and most central thrust, and their force polygons."
+        caption = "Thrust lines of minimum, maximum and most central thrust, and their force polygons."
         if not arched:
-            caption = "The most central state: thrust line through every stone; its width shows the zone in compression."
+            caption = "The most central thrust line through every stone. The width of the band shows the compressed zone."
         found = [(style.save(fig, folder, f"{name}-lines"), caption)]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
@@ -58,5 +58,5 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlabel("joint")
         ax.set_ylabel("required friction")
         ax.legend()
-        found.append((style.save(fig, folder, f"{name}-friction"), "Coefficient of friction required at each joint."))
+        found.append((style.save(fig, folder, f"{name}-friction"), "Coefficient of friction that each joint requires."))
     return found

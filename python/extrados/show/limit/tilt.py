@@ -67,7 +67,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             found.append(
                 (
                     style.save(fig, folder, f"{name}-upright"),
-                    "Thrust lines of least and greatest horizontal thrust under self-weight, and their force polygons.",
+                    ("Thrust lines of minimum and maximum horizontal thrust under self-weight, and their force polygons."),
                 )
             )
     if r.fracture and r.fracture.cracks:
@@ -81,8 +81,12 @@ def _per_metre(r: Tilt, force: float) -> str:
 
 def _caption(r: Tilt) -> str:
     letters = "; ".join(f"{chr(65 + i)} {h.told()}" for i, h in enumerate(r.hinges[: section.MOST_LETTERED]))
-    free = " The mechanism does not fix the line everywhere: elsewhere the most central line is drawn." if len(r.thrusts or {}) > 1 else ""
-    slides = f" Joints slide, so the capacity is an {DILATANT}." if r.dilating_joints else ""
+    free = (
+        (" The mechanism determines the thrust line in its moving parts only; in the other parts the most central line is drawn.")
+        if len(r.thrusts or {}) > 1
+        else ""
+    )
+    slides = f" Joints slide, so the collapse acceleration is an {DILATANT}." if r.dilating_joints else ""
     least = r.collapse_acceleration_non_associated_g if r.dilating_joints else None
     if least is not None:
         slides += f" Without dilatancy, collapse is possible from {least:.4f} g (not drawn)."
@@ -98,7 +102,7 @@ def _title(r: Tilt) -> str:
     least = r.collapse_acceleration_non_associated_g
     design = r.collapse_acceleration_load_path_g
     value = "" if design is None else f"{design:.4f} g (design value),\n"
-    without = "" if least is None else f"\nwithout dilatancy {value}{least:.4f} g (least found)"
+    without = "" if least is None else f"\nwithout dilatancy {value}{least:.4f} g (lowest found)"
     return f"Collapse to +x at or below {r.collapse_acceleration_g:.4f} g\n(dilatant friction: upper bound){without}"
 
 
@@ -120,7 +124,10 @@ def _draw_fracture(run: Stored, name: str, folder: Path, blocks: list[np.ndarray
             style.section_axes(ax)
         return (
             style.save(fig, folder, f"{name}-fracture"),
-            f"Mechanisms with the uncracked and with the cracked buttress. The crack starts {f.crack_height_m:.2f} m above the base. The wedge below the crack does not move.",
+            (
+                f"Mechanisms with the uncracked buttress and with the cracked buttress. The crack begins {f.crack_height_m:.2f} "
+                "m above the base. The wedge below the crack does not move."
+            ),
         )
 
 
@@ -176,7 +183,10 @@ def film_tilt(run: Stored, name: str, folder: Path) -> None:
                 drawn[word].set_data(*(turned(points, -angle).T if share == 0.0 else np.empty((2, 0))))
             cursor.set_xdata([np.degrees(angle)] * 2)
             title.set_text(
-                f"ground tilted by {np.degrees(angle):.2f} degrees, equal to {np.tan(angle):.4f} g horizontally"
+                (
+                    f"ground tilted by {np.degrees(angle):.2f} degrees, which corresponds to a horizontal acceleration of "
+                    f"{np.tan(angle):.4f} g"
+                )
                 + (": collapse" if share else "")
             )
 

@@ -36,7 +36,8 @@ class Division:
             groups = _groups([p[:2] for p in below], [p[:2] for p in above])
             if level and any(len(g) > 2 for g in groups):
                 self.remarks.append(
-                    f"Wall '{wall.name}', level {level}: piers above and below do not match. Piers that overlap share one rigid node."
+                    f"Wall '{wall.name}', level {level}: piers above and below do not lie above each other. Piers "
+                    "that overlap share one rigid node."
                 )
             for group in groups:
                 if level and not any(side == 0 for side, _ in group):

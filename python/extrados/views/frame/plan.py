@@ -66,20 +66,7 @@ class _Maker(Division):
             if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
                 raise BadGeometry(f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k))
         self.remarks += plan.floor_remarks
-        if plan.beds:
-            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
-        if plan.ring_beams:
-            elastic = [b for b in plan.ring_beams if b.reinforcement is None]
-            if elastic:
-                self.remarks.append(
-                    "Ring beams of [[structure.ring_beams]] without reinforcement remain elastic: check them for the greatest moment."
-                )
-            weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
-            if weak:
-                self.remarks.append(
-                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} has no "
-                    "tensile_strength: spandrels beside them have the full strut against a tie. Give the strength, or check the reinforcement."
-                )
+        self._remark_beams()
         for w, wall in enumerate(plan.walls):
             with blaming("walls", w):
                 if plan.reach(wall)[0] != 1:
@@ -134,6 +121,25 @@ class _Maker(Division):
             self._traces(),
         )
 
+    def _remark_beams(self) -> None:
+        """Remarks on bed joints and ring beams, which the frame simplifies."""
+        plan = self.plan
+        if plan.beds:
+            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own shear strength.")
+        if plan.ring_beams:
+            elastic = [b for b in plan.ring_beams if b.reinforcement is None]
+            if elastic:
+                self.remarks.append(
+                    "Ring beams of [[structure.ring_beams]] without reinforcement remain elastic: check them for the greatest moment."
+                )
+            weak = {b.material for b in elastic if (m := self.building.materials.get(b.material)) and m.tensile_strength is None}
+            if weak:
+                self.remarks.append(
+                    f"The tension of ring beams is not limited, because {', '.join(f'[materials.{name}]' for name in sorted(weak))} "
+                    "has no `tensile_strength`: spandrels beside them have the full strut against a tie. Give the strength, or check the "
+                    "reinforcement."
+                )
+
     def _traces(self) -> list[Trace]:
         found = []
         for w, wall in enumerate(self.plan.walls):
@@ -154,8 +160,10 @@ class _Maker(Division):
         slides = "" if o.shear in ("none", "damage") else f"piers slide at {o.friction:g} times their compression, "
         corners = ", and walls that meet at corners are not bonded" if self.junctions and not o.flange_strength else ""
         return [
-            f"Neither cohesion nor diagonal_strength is given: {slides}spandrels have no strength{corners}. For masonry in mortar, give "
-            "[joints] cohesion, or diagonal_strength in [analysis.frame]."
+            (
+                f"Neither cohesion nor `diagonal_strength` is given: {slides}spandrels have no strength{corners}. "
+                "For masonry in mortar, give [joints] cohesion, or `diagonal_strength` in [analysis.frame]."
+            )
         ]
 
     def _named(self, name: str) -> int:
@@ -283,17 +291,17 @@ class _Maker(Division):
             middles = a + (b - a) * (np.arange(SLICES) + 0.5) / SLICES
             self.weight += sum(force / SLICES @ self._vector(w, s, floor.storey) for s in middles.tolist())
             self.remarks.append(
-                f"Floor on storey {floor.storey}: the rafters push wall '{self.plan.walls[w].name}' outward with "
-                f"{float(np.hypot(*force)) / (b - a) / 1e3:.3g} kN/m. In the frame the transverse walls resist this thrust: check the wall "
-                "out of its plane with local-mechanism."
+                f"Floor on storey {floor.storey}: the rafters push wall '{self.plan.walls[w].name}' outward with {float(np.hypot(*force)) / (b - a) / 1000.0:.3g} "
+                "kN/m. The transverse walls of the frame resist this thrust: check the wall out of its plane "
+                "with `local-mechanism`."
             )
 
     def _floor(self, floor: StoreyFloor) -> None:
         plan, level = self.plan, floor.storey
         if floor.seat is not None:
             self.remarks.append(
-                f"Floor on storey {level} is connected to its walls in the frame: its seat cannot slide. Out of their planes it restrains no "
-                "wall. `pushover` with shells follows seats."
+                f"Floor on storey {level}: the frame connects this floor to its walls, so its seat cannot slide. "
+                "The floor restrains no wall out of its plane. `pushover` with shells considers seats."
             )
         around = plan.around(floor)
         rows = []
@@ -481,15 +489,16 @@ class _Maker(Division):
         concrete = self.building.materials[beam.material].compressive_strength
         if concrete is None:
             raise BadGeometry(
-                f"ring beam of storey {beam.storey}: its reinforcement requires a compressive_strength in [materials.{beam.material}]",
+                f"ring beam of storey {beam.storey}: its reinforcement requires `compressive_strength` in [materials.{beam.material}]",
                 place,
             )
         axis = beam.reinforcement.relative_axis(beam.depth, strip.thickness, concrete)
         if axis > DEEPEST_AXIS:
             raise BadGeometry(
-                f"ring beam of storey {beam.storey}, wall '{wall.name}': with bars of {1e4 * beam.reinforcement.area:.3g} cm^2 in all the "
-                f"neutral axis is at {axis:.2f} of the effective depth; above {DEEPEST_AXIS:g} the concrete crushes before the hinge "
-                "rotates. Reduce reinforcement.area, or increase depth or the compressive_strength of its material",
+                f"ring beam of storey {beam.storey}, wall '{wall.name}': with a total of {10000.0 * beam.reinforcement.area:.3g} "
+                f"cm^2 of bars, the neutral axis is at {axis:.2f} of the effective depth. Above {DEEPEST_AXIS:g}, the "
+                "concrete crushes before the hinge rotates. Reduce reinforcement.area, or increase the depth or "
+                "the `compressive_strength` of its material",
                 place,
             )
         moment, tension = beam.reinforcement.plastic_moment(beam.depth, strip.thickness, concrete), beam.reinforcement.tension

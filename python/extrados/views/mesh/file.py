@@ -28,7 +28,8 @@ def open_mesh(wall: MeshFile, building: Description) -> tuple[str, ForeignMesh]:
     if far > FARTHEST:
         node = int(np.abs(points).max(axis=1).argmax()) + 1
         raise BadGeometry(
-            f"{path.name}: node {node} lies {far:.3g} m from the origin; expected at most {FARTHEST:g} m. Move the origin to the building"
+            f"{path.name}: node {node} is {far:.3g} m from the origin, but at most {FARTHEST:g} m are allowed. Move "
+            "the origin to the building"
         )
     for cells in mesh.cells:
         data = np.asarray(cells.data)

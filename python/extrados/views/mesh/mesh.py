@@ -110,8 +110,8 @@ class Mesh:
                 )
             if distance[nearest] > 1e-3 * self.size:
                 self.tell(
-                    f"{what}: no node lies at x {point[0]:g} m, y {point[1]:g} m. The nearest node is used, at "
-                    f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
+                    f"{what}: no node is at x {point[0]:g} m, y {point[1]:g} m. The nearest node is used instead, at {self.xy[nearest, 0]:g}, "
+                    f"{self.xy[nearest, 1]:g}"
                 )
             return np.array([nearest])
         for axis, ends in enumerate((place.x, place.y)):
@@ -212,7 +212,7 @@ def build_mesh(
 ) -> Mesh:
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
-        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove joint_thickness")
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: remove `joint_thickness`")
     if options.joints is not None:
         raise BadGeometry(f"a structure of kind '{wall.kind}' has no blocks: remove joints")
     if not len(connect):
@@ -242,7 +242,7 @@ def build_mesh(
     warnings = []
     for i, region in enumerate(wall.regions):
         if region.edge is not None:
-            raise BadGeometry("a region is given by x and y, not by an edge")
+            raise BadGeometry("give a region by `x` and `y`, not by `edge`")
         inside = region.holds(centre)
         if not inside.any():
             warnings.append(f"region {i + 1} contains no element")

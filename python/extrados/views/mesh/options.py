@@ -23,21 +23,22 @@ class MeshOptions(Table):
     """Kind, size and pattern of the elements."""
 
     size: Length | None = key(
-        None, "target size of the elements; default: 1/20 of the lesser side of the wall, or 1/8 of the median joint for blocks", gt=0
+        None,
+        "target size of the elements; default: 1/20 of the lesser side of the wall; for blocks, 1/8 of the median length of a joint",
+        gt=0,
     )
     joints: Literal["interfaces", "rows"] | None = key(
         None,
-        "for blocks: joints without thickness (interfaces), which open and slide, or thin rows of elements, which only "
-        "open; default: interfaces. A panel is divided into blocks if this key and its unit are given",
+        "for blocks: interfaces (joints without thickness), which open and slide, or thin rows of elements, which only open; default: "
+        "interfaces. A panel is divided into blocks if this key and the size of its unit are given",
     )
     joint_thickness: Length | None = key(
         None,
-        "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, and at most 1/5 of "
-        "the shortest element along a joint. By default, interfaces have the stiffness of the block material over this "
-        "thickness",
+        "thickness of the row of elements along each joint between blocks; default: 1/25 of the size, and at most 1/5 of the shortest "
+        "element along a joint. The default stiffness of interfaces is that of the block material with this thickness",
         gt=0,
     )
-    element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; blocks also get triangles where quadrilaterals do not fit")
+    element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element; blocks also have triangles if quadrilaterals do not fit")
     pattern: Literal["structured", "random"] = key(
         "structured",
         "pattern of the mesh. structured: structured grid; random: triangles on randomly moved points (without mesh "
@@ -47,10 +48,10 @@ class MeshOptions(Table):
     refine: list[Refinement] = key([], "ranges with smaller elements", max_length=100)
     lines_x: list[Length] = key([], "x of additional mesh lines", max_length=2000)
     lines_y: list[Length] = key([], "y of additional mesh lines", max_length=2000)
-    selective: bool = key(False, "Q4 elements with the shear strain of their middle (avoids shear locking)")
+    selective: bool = key(False, "whether Q4 elements use the shear strain of their middle, which avoids shear locking")
 
     @model_validator(mode="after")
     def _triangles(self) -> "MeshOptions":
         if self.pattern == "random" and self.element not in ("T3", "T6"):
-            raise ValueError(f'a random pattern consists of triangles: element is {self.element}, expected "T3" or "T6"')
+            raise ValueError(f'a random pattern consists of triangles, but `element` is {self.element}: give "T3" or "T6"')
         return self

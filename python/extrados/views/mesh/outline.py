@@ -21,11 +21,11 @@ def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed
     drawn = read_dxf(read(drawing, LARGEST_FILE, folder, ("structure", "outline")), unit)
     rings = sorted((np.asarray(p.points) for p in drawn.blocks), key=lambda r: -abs(signed_area(r)))
     if not rings:
-        raise BadGeometry(f"{drawing}: the drawing contains no closed polyline")
+        raise BadGeometry(f"{drawing}: the drawing contains no closed polyline, so the wall has no outline")
     outer, holes = Ring(rings[0]), [Ring(r) for r in rings[1:]]
     for ring in rings[1:]:
         if not outer.contains_points(ring, radius=1e-9).any():
-            raise BadGeometry(f"{drawing}: a polyline lies outside the largest one, which is assumed to be the wall")
+            raise BadGeometry(f"{drawing}: a polyline lies outside the largest polyline, which is taken as the outline of the wall")
 
     def inside(points: np.ndarray) -> np.ndarray:
         found = outer.contains_points(points)

@@ -37,7 +37,7 @@ def mesh_panel(building: Masonry, options: MeshOptions, seed: int | None = None)
     if options.joints is None:
         return make_panel(panel, building, options, seed)
     if panel.regions:
-        raise BadGeometry("a panel meshed by units takes no regions: give properties of its joints by joints.types")
+        raise BadGeometry("a panel meshed by units takes no regions: give the properties of its joints by [[joints.types]]")
     return make_stones(building, options)
 
 
@@ -47,11 +47,14 @@ def make_panel(panel: Panel, building: Description, options: MeshOptions, seed: 
     notes: tuple[str, ...] = ()
     if panel.outline is not None:
         if options.element not in ("T3", "T6"):
-            raise BadGeometry(f'an outline is meshed with triangles: element is {options.element}, expected "T3" or "T6"')
+            raise BadGeometry(f'a panel with an `outline` is meshed with triangles, but `element` is {options.element}: give "T3" or "T6"')
         if options.lines_x or options.lines_y or options.refine:
-            raise BadGeometry("an outline takes no lines_x, lines_y or refine, because its corners determine the mesh")
+            raise BadGeometry(
+                "a panel with an `outline` takes no `lines_x`, `lines_y` or `refine`, because the corners of the "
+                "outline determine the mesh: remove them"
+            )
         if options.size is None:
-            raise BadGeometry("an outline requires a size of the elements")
+            raise BadGeometry("a panel with an `outline` requires the `size` of the elements")
         size = options.size
         xy, connect, notes = fill_outline(panel.outline, panel.outline_unit, building.folder, size, seed)
     else:

@@ -68,7 +68,8 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     thickness = options.joint_thickness or min(THICKNESS * size, THICKNESS_OF_SIDE * shortest)
     if thickness > 0.5 * shortest:
         raise BadGeometry(
-            f"joint_thickness {thickness:g} m is too large for joint elements of {shortest:g} m length: give at most {0.5 * shortest:g} m"
+            f"`joint_thickness` = {thickness:g} m is too large for joint elements of {shortest:g} m length: give "
+            f"at most {0.5 * shortest:g} m"
         )
     snap = max(1e-7 * assembly.size, 10.0 * assembly.tolerance)
     triangles_only = options.element == "T3"
@@ -152,8 +153,8 @@ def _tell_of_idle_joints(mesh: Mesh, row: np.ndarray) -> None:
     held[np.concatenate([np.empty(0, dtype=int), *fixed])] = True
     if held[row].all(axis=1).any():
         mesh.tell(
-            "supports.held holds both sides of joints at the ground. These joints neither open nor slide. Omit supports.held to keep "
-            "them: the ground is then held"
+            "supports.held holds both sides of joints at the ground, so these joints neither open nor slide. "
+            "To let them open and slide, omit supports.held: the ground is then held"
         )
 
 
@@ -166,7 +167,7 @@ def _rows(
     bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
     if len(bad):
         raise BadGeometry(
-            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' overlaps itself: use a smaller joint_thickness"
+            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' overlaps itself: use a smaller `joint_thickness`"
         )
     materials, index, dry = _joint_materials(building, assembly, thickness)
     normal = assembly.normal[joint]
@@ -197,7 +198,7 @@ def _interfaces(
                 f"joint '{assembly.joint_names[missing[0]]}' has a {strength} but no {energy}: give joints.{energy}, or {strength} = 0"
             )
     if (missing := np.flatnonzero(np.isnan(value["compressive_strength"]) != np.isnan(value["crushing_energy"]))).size:
-        raise BadGeometry(f"joint '{assembly.joint_names[missing[0]]}': compressive_strength and crushing_energy require each other")
+        raise BadGeometry(f"joint '{assembly.joint_names[missing[0]]}': `compressive_strength` and `crushing_energy` require each other")
     stiffness = _in_series(building, assembly, 1.0 / thickness)
     joints = building.joints
     shear = np.full(len(stiffness), joints.shear_stiffness or np.nan)
@@ -255,11 +256,13 @@ def _small_stress(assembly: Assembly) -> float:
 
 def _refuse(options: MeshOptions) -> None:
     if options.element not in ("Q4", "T3"):
-        raise BadGeometry(f'blocks are meshed by "Q4" (triangles where these do not fit) or "T3", not by {options.element}')
+        raise BadGeometry(
+            f'`element` = {options.element} is not for blocks, which are meshed by "Q4" (with triangles if these do not fit) or "T3"'
+        )
     if options.pattern == "random":
         raise BadGeometry('pattern = "random" is not for blocks, because cracks follow the joints between the blocks')
     if options.refine or options.lines_x or options.lines_y:
-        raise BadGeometry("blocks take no refine, lines_x or lines_y, because their joints determine the mesh")
+        raise BadGeometry("`refine`, `lines_x` and `lines_y` are not for blocks, because joints between blocks determine the mesh")
 
 
 def _joint_materials(building: Masonry, assembly: Assembly, thickness: float) -> tuple[list[Material], np.ndarray, np.ndarray]:
@@ -274,8 +277,8 @@ def _joint_materials(building: Masonry, assembly: Assembly, thickness: float) ->
     dry = tension == 0.0
     if (missing := np.flatnonzero(~dry & np.isnan(energy))).size:
         raise BadGeometry(
-            f"joint '{assembly.joint_names[missing[0]]}' has a tension but no fracture_energy: give "
-            "joints.fracture_energy, or tension = 0 for dry joints"
+            f"joint '{assembly.joint_names[missing[0]]}' has a `tension` but no `fracture_energy`: give "
+            "`fracture_energy` of [joints], or tension = 0 for dry joints"
         )
     small = _small_stress(assembly)
     strength = np.where(dry, small, tension)

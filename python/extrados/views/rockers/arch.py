@@ -130,7 +130,7 @@ class ArchModel:
         try:
             return four_hinge(self.arch, mechanism)
         except ValueError as error:
-            raise NoView(f"rocking requires a four-hinge mechanism, but {error}", WHOLE) from None
+            raise NoView(f"rocking requires a four-hinge mechanism: {error}", WHOLE) from None
 
     @cached_property
     def limits(self) -> core_arch.Limits:
@@ -161,8 +161,8 @@ class ArchModel:
         value = self.impacts.by_rule[self.rule]
         if value < 0.0:
             raise NoView(
-                f'the impact rule "{self.rule}" gives c_v = {value:.3f}, with which the mirrored mechanism would have to close '
-                f'further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}',
+                f'the impact rule "{self.rule}" gives c_v = {value:.3f}, for which the mirrored mechanism would have '
+                f'to close further. With restitution = "inelastic", c_v is {self.impacts.inelastic:.3f}',
                 ("joints", "restitution"),
             )
         return min(value, 1.0)

@@ -63,8 +63,8 @@ class BlockModel:
         if self.energy_ratio is None and isinstance(self.rule, str) and self.housner.min() < 0.0:
             return [
                 (
-                    "the block is too stocky for the impact rule of Housner (c_v below zero): it lands flat and stays in contact; "
-                    "c_v = 0 is used"
+                    "the block is too stocky for the impact rule of Housner, which gives c_v below zero. The block "
+                    "then lands flat and stays in contact (c_v = 0)"
                 )
             ]
         return []

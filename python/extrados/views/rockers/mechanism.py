@@ -110,8 +110,8 @@ class MechanismModel:
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
                 raise NoView(
-                    f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis gives "
-                    f"{state.gamma:.6g} g: a load on the structure is not part of its mass",
+                    f"under self-weight the mechanism towards {WORD[side]} starts at {uplift:.6g} g, but limit analysis "
+                    f"gives {state.gamma:.6g} g: a load on the structure is not part of its mass",
                     WHOLE,
                 )
             made.append(table)
@@ -215,22 +215,23 @@ class MechanismModel:
         )
         if self.rule == "energy-safe" and max(self.projections) <= 0.0:
             found.append(
-                f"the impact of one mechanism does not start the other (c_v = {self.projections[0]:.3f} towards +x, "
-                f"{self.projections[1]:.3f} towards -x), so the structure comes to rest at every impact"
+                f"after an impact, the mechanism towards the opposite side does not start (c_v = {self.projections[0]:.3f} "
+                f"towards +x, {self.projections[1]:.3f} towards -x), so the structure comes to rest at each impact"
             )
         if self.energy_kept is not None and max(self.energy_kept) > max(kept) + LOST:
             found.append(
-                f"after an impact the mechanism of the other side keeps {100 * max(kept):.0f} % of the kinetic energy. If hinges "
-                f"could open anywhere, {100 * max(self.energy_kept):.0f} % would remain. The section then moves differently, and "
-                'rotations after an impact are underestimated (restitution = "inelastic" keeps all of this energy)'
+                f"after an impact, the mechanism towards the opposite side keeps {100 * max(kept):.0f} % of the "
+                f"kinetic energy. If hinges could open at all joints, {100 * max(self.energy_kept):.0f} % would "
+                "remain. The section then moves differently, and rotations after an impact are underestimated "
+                '(restitution = "inelastic" keeps all of this energy)'
             )
         for side, one, table, (_, mechanism) in zip(SIDES, self.linkages, self.tables, self.collapse, strict=True):
             closing = self._closing(one, table, mechanism)
             if closing:
                 q, name = closing
                 found.append(
-                    f"during rocking towards {WORD[side]}, {name} closes again at {q / table.critical:.2f} times the critical "
-                    "rotation; beyond this rotation the section would move differently"
+                    f"when the structure rocks towards {WORD[side]}, {name} closes again at {q / table.critical:.2f} "
+                    "times the critical rotation. Beyond this rotation the section would move differently"
                 )
         return found
 

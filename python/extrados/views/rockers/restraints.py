@@ -244,7 +244,10 @@ def _law(one: Tie | Damper, key: Key) -> Law:
         assert one.slip_force is not None and one.stiffness is not None
         return Law(one.stiffness, 0.0, one.slip_force, -one.slip_force)
     if one.stiffness is None:
-        raise NoView(f"{one.name} is rigid until it yields, but rocking requires its stiffness EA/L", key)
+        raise NoView(
+            f"{one.name} has no stiffness EA/L and is therefore rigid until it yields, but rocking requires a stiffness: give `stiffness`",
+            key,
+        )
     slack = {"tension": 1, "compression": -1, "both": 0}[one.works_in]
     return Law(one.stiffness, one.prestress, min(one.most, FREE), max(one.least, -FREE), slack)
 

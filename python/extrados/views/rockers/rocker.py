@@ -26,7 +26,7 @@ from extrados.views.rockers.stack import StackModel, rocks_as_stack
 from extrados.views.rockers.watch import Watch, opening_capacity, sliding_capacity
 from extrados.views.rockers.words import refuse_stack, refuse_words, rocks_as_block
 
-OTHER_RULE = 'the impact rule "thesis" is for circular arches without restraints; "energy-safe" is used instead'
+OTHER_RULE = 'the impact rule "thesis" is only for circular arches without restraints; "energy-safe" is used instead'
 
 
 @dataclass(frozen=True)
@@ -315,9 +315,9 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker:
     if wall is not None and building.supports.rebound is None:
         told += (
             (
-                f"the structure rebounds from the wall with {rebound[0 if sides[0] else 1]:.3f} times its angular velocity, by "
-                "three plastic impacts. For a facade of 0.6 x 3 m, discrete elements gave 0.7 to 1.2 times this value at 5 % of "
-                "critical damping, and less at critical damping (docs/rocking.md). If the value matters, give [supports] rebound"
+                f"the structure rebounds from the wall with {rebound[0 if sides[0] else 1]:.3f} times its angular velocity, calculated "
+                "from three plastic impacts. For a facade of 0.6 x 3 m, discrete elements gave 0.7 to 1.2 times this value at 5 % of "
+                "critical damping, and less at critical damping (docs/rocking.md). If the value matters, give `rebound` of [supports]"
             ),
         )
     return replace(

@@ -17,7 +17,7 @@ from extrados.views.rockers.words import refuse_soft_base
 
 #: Rotations tried up to the one taken as collapse, in the search for equilibria
 LOOKS = 400
-UNDAMPED = "the base has no damping, so no energy is lost and bounces continue: give [supports] damping_ratio"
+UNDAMPED = "the base has no damping, so no energy is lost and bounces continue: give `damping_ratio` of [supports]"
 
 
 @dataclass(frozen=True)
@@ -102,8 +102,8 @@ class SoftBaseModel:
     def _too_soft(self) -> str:
         least = self.core.stiffness * self.weight * self.core.height / (self._stiffness_at_rest + self.weight * self.core.height)
         return (
-            f"the stiffness of the base is too low, {self.core.stiffness / self.block.depth:.4g} N/m^3: below about "
-            f"{least / self.block.depth:.3g} N/m^3 the block overturns under its own weight"
+            f"the stiffness of the base is {self.core.stiffness / self.block.depth:.4g} N/m^3, which is too low: "
+            f"below about {least / self.block.depth:.3g} N/m^3 the block overturns under its own weight"
         )
 
     @property
@@ -206,7 +206,7 @@ def soft_base_model(building: Masonry, linear: bool = False, stones: Assembly | 
     rigid = block_model(building, linear, stones)
     block = rigid.block
     if block.slope:
-        raise NoView("a compliant base must be level: remove base_slope, or [supports] stiffness", ("structure", "base_slope"))
+        raise NoView("a compliant base must be level: remove `base_slope`, or `stiffness` of [supports]", ("structure", "base_slope"))
     mass, width = float(block.mass[0]), block.toe_left + block.toe_right
     stiffness = supports.stiffness * block.depth
     damping = 2.0 * (supports.damping_ratio or 0.0) * float(np.sqrt(stiffness * mass / width))

@@ -52,7 +52,7 @@ def open_shells(structure: MeshFile, building: Description, options: ShellOption
             )
     file, mesh = open_mesh(structure, building)
     if options.size is not None:
-        raise BadGeometry(f"{file}: the file determines the elements: remove mesh.size", ("analysis", "mesh", "size"))
+        raise BadGeometry(f"{file}: the mesh file determines the elements: remove mesh.size", ("analysis", "mesh", "size"))
     if mesh.points.shape[1] != 3:
         raise BadGeometry(f"{file}: the points have {mesh.points.shape[1]} coordinates; shells in space require 3")
     for cells in mesh.cells:
@@ -170,7 +170,8 @@ def _check(group: MeshGroup, what: str, elements: bool, key: Key) -> None:
     told = [key for key in ("thickness", "material", "linear", "membrane", "pressure") if getattr(group, key)]
     if told and not elements:
         raise BadGeometry(
-            f"{what}: {told[0]} is a key for elements, and this group has none: give only the keys `support` and `force`", (*key, told[0])
+            f"{what}: `{told[0]}` is a key for elements, but this group has no elements: give only the keys `support` and `force`",
+            (*key, told[0]),
         )
     if not (told or group.support or group.force):
         raise BadGeometry(
@@ -333,7 +334,7 @@ def _mesh(
         )
     levels = np.array([kept[:, 2].min(), kept[:, 2].max()])
     if not levels[1] > levels[0]:
-        raise BadGeometry(f"{file}: all nodes have the same height; z must point up")
+        raise BadGeometry(f"{file}: all nodes have the same height, but z must point up")
     return ShellMesh(
         kept,
         parts,

@@ -52,8 +52,8 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     ]
     if joints and building.joints.coefficient is not None and not all(j.strength["cohesion"] > 0.0 for j in joints):
         warnings.append(
-            "joints without cohesion slide only after they open. To let them slide under compression, give a cohesion of any "
-            "value, with its shear_energy"
+            "joints without cohesion slide only after they open. To let them slide under compression, give "
+            "any `cohesion` with its `shear_energy`"
         )
     xyz = np.concatenate([xyz, xyz[sources]])
     planes = [_plane(plan, grid) for grid in grids]
@@ -84,7 +84,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
             bars.append(_rod(rod, k + 1, grown, used, building, size))
     held, springs = _supports(plan, [*parts, *joints], grown, used, above)
     if any(beam.reinforcement is not None for beam in plan.ring_beams):
-        warnings.append("ring beams remain elastic in shells: their reinforcement is not considered")
+        warnings.append("ring beams remain elastic in the shell model: their reinforcement is not considered")
     warnings += _apart(plan, parts, bars, joints, grown)
     held = _propped(plan, grids, number, held)
     kept = np.cumsum(used) - 1
@@ -171,7 +171,7 @@ def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], joints: lis
     alone = [names for which, names in joined.items() if not any(which & other for other in joined if other != which)]
     if len(alone) < 2:
         return []
-    return [(f"no corner, floor or rod connects {' with '.join(', '.join(names) for names in alone)}: each of these stands alone")]
+    return [(f"no corner, floor or rod connects the following parts with each other: {' with '.join(', '.join(names) for names in alone)}")]
 
 
 def _plane(plan: Plan, grid: WallGrid) -> WallPlane:

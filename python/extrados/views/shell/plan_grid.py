@@ -42,7 +42,10 @@ def _lines(breaks: Iterable[float], length: float, size: float, what: str, warni
     kept[-1] = length
     thin = min((b - a for a, b in itertools.pairwise(kept)), default=length)
     if thin < SLIVER * size:
-        warnings.append(f"{what}: two mesh lines are only {1e3 * thin:.3g} mm apart, but elements of {size:.3g} m were requested")
+        warnings.append(
+            f"{what}: two mesh lines are only {1000.0 * thin:.3g} mm apart, although elements of {size:.3g} m were "
+            "requested: move the lines, or give a smaller size"
+        )
     parts = [np.zeros(1)]
     for a, b in itertools.pairwise(kept):
         count = max(1, round((b - a) / size))

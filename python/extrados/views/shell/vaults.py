@@ -113,8 +113,8 @@ def mesh_barrel(
         springing = radius * np.array([np.sin(half), np.cos(half)])
         if wide > THICK_WALL * (springing[1] - sole):
             raise BadGeometry(
-                f"the walls have a thickness of {wide:g} m and a height of {springing[1] - sole:.4g} m. Shells require a "
-                f"thickness below {THICK_WALL:g} of the height"
+                f"the walls are {wide:g} m thick and {springing[1] - sole:.4g} m high. Shells require a thickness below "
+                f"{THICK_WALL:g} of the height"
             )
         extra = [Material(density=0.0, young=building.material.young, poisson=building.material.poisson)]
         ledge, up = abs(away - springing[0]), count_along(springing[1] - sole, size, 2)

@@ -44,7 +44,8 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         return solids_of_section(building)
     if drawing.layers is not None or drawing.layer or drawing.ground is not None or drawing.origin is not None:
         raise BadGeometry(
-            f"{name}: the keys `layers`, `ground` and `origin` are only for plane drawings; solids are supported by foundation_levels"
+            f"{name}: the keys `layers`, `ground` and `origin` are only for plane drawings; the supports of "
+            "solids are given by `foundation_levels`"
         )
     if drawing.fill is not None:
         raise BadGeometry(f"{name}: the key `fill` is only for plane drawings", ("structure", "fill"))

@@ -49,8 +49,7 @@ def near_pairs(low: np.ndarray, high: np.ndarray, owner: np.ndarray, reach: floa
         total += len(j)
         if total > (most := max(MOST_PAIRS, MOST_NEIGHBOURS * len(low))):
             raise BadGeometry(
-                f"the boxes around {len(low)} solids intersect in more than {most:,} pairs, the greatest number considered: many "
-                "solids overlap"
+                f"the boxes around {len(low)} solids intersect in more than {most:,} pairs, the limit of this program: many solids overlap"
             )
     pairs = np.concatenate(found) if found else np.empty((0, 2), dtype=int)
     pairs = np.sort(pairs, axis=1)

@@ -40,15 +40,17 @@ def section_of_meshes(meshes: Sequence[Mesh], plane: Plane, unit: str | None, na
     found = {mesh.stone: section_of(mesh.points, mesh.faces, across) for mesh in meshes}
     if wrong := [title for title, one in found.items() if one is None]:
         raise BadGeometry(
-            f"{name}: these blocks are not prisms across the plane {plane}: {', '.join(wrong[:6])}{' and others' if len(wrong) > 6 else ''}. "
-            "Give the plane of the section, or a direction to analyse solids",
+            f"{name}: these blocks are not prisms perpendicular to the plane {plane}: {', '.join(wrong[:6])}{(' and others' if len(wrong) > 6 else '')}. "
+            "Give another plane as `section`, or give `direction` to analyse solids",
             ("structure", "section"),
         )
     prisms = [(title, scale * one[0], scale * one[1]) for title, one in found.items() if one is not None]
     depths = [depth for _, _, depth in prisms]
     notes = [f"{name}: {len(prisms)} prisms, section in the plane {plane}"]
     if len(prisms) < len(meshes):
-        raise BadGeometry(f"{name}: a block consists of several bodies; a block of a section is one prism", ("structure", "section"))
+        raise BadGeometry(
+            f"{name}: a block of a section must be a single prism, but one block consists of several bodies", ("structure", "section")
+        )
     one_depth = depths[0] if np.ptp(depths) < 1e-6 * max(depths) else None
     if one_depth is None:
         notes.append(

@@ -160,7 +160,7 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
     BadGeometry names the meshes that are open, flat or not convex.
     """
     if len(meshes) > MOST_SOLIDS:
-        raise BadGeometry(f"{name}: {len(meshes)} bodies exceed the limit of {MOST_SOLIDS}")
+        raise BadGeometry(f"{name}: the file has {len(meshes)} bodies; at most {MOST_SOLIDS} are allowed")
     scale = UNITS[unit or "m"]
     stones: dict[str, list[Polyhedron]] = {}
     grounds: dict[str, bool] = {}
@@ -225,15 +225,15 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: floa
     open_edges = sum(len(there) != 2 for there in around_edge.values())
     if open_edges:
         raise ValueError(
-            f"is not closed: {open_edges} edges do not have a face on both sides. Close the surface, or write blocks that "
-            "share corners as objects `o` of an OBJ file"
+            f"is not closed: {open_edges} edges do not have a face on both sides. Close the surface, or write "
+            "blocks that share corners as separate objects (`o`) of an OBJ file"
         )
     turned = _turned(faces, around_edge)
     triangles = np.array([(f[0], b, c) for f in turned for b, c in itertools.pairwise(f[1:])])
     if not np.ptp(points, axis=0).all():
         raise ValueError("is flat: its volume is zero")
     volume = abs(moments(points, triangles)[0])
-    fine = f"has more than {MOST_CORNERS} corners, the greatest number considered: draw it with fewer corners"
+    fine = f"has more than {MOST_CORNERS} corners, the limit of this program: draw it with fewer corners"
     try:
         # more faces have more corners, by Euler; faces are made one by the fit of all of their corners where that is known
         whole = hull(points, SAME_PLANE if within > 0.0 else PLANE, 2 * MOST_CORNERS)
@@ -342,9 +342,9 @@ def _stl_binary(content: bytes, name: str) -> np.ndarray:
     """Triangles (n, 3, 3)."""
     count = struct.unpack("<I", content[80:84])[0] if len(content) >= 84 else -1
     if count < 1 or len(content) < 84 + 50 * count:
-        raise BadGeometry(f"{name}: this file has neither the text nor the length of an STL file")
+        raise BadGeometry(f"{name}: this file is neither a text STL file nor a binary STL file of the right length")
     if 3 * count > MOST_VERTICES:
-        raise BadGeometry(f"{name}: {count} triangles exceed the limit of {MOST_VERTICES // 3}")
+        raise BadGeometry(f"{name}: the file has {count} triangles; at most {MOST_VERTICES // 3} are allowed")
     row = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
     found = np.frombuffer(content, row, count, 84)["corners"].astype(float)
     if not (np.abs(found) <= FARTHEST).all():  # NaN too
