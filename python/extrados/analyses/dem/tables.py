@@ -224,6 +224,8 @@ class Dem(SpatialDem, Animated):
             raise ValueError(
                 'rigid contacts do not determine the place of a force in a joint: give solver = "compliant", or remove `thrust`'
             )
+        if self.thrust and self.crushing:
+            raise ValueError("the key `thrust` gives the pressure of elastic springs: remove `thrust` or `crushing`")
         return self
 
     @property
